@@ -1,0 +1,250 @@
+"""A campaign: one folder of raw recordings, described by `campaign.yaml`."""
+
+import os
+import re
+import unicodedata
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from rovsim.errors import BadInput, nearest
+from rovsim.files import read_yaml
+from rovsim.frames import BodyAxes, WorldAxes, axes_signs
+from rovsim.strict import Section, checked
+
+AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+
+
+def _as_text(value: Any) -> Any:
+    # `id: 115750` is a number in YAML, and a name to its author
+    return str(value) if type(value) in (int, float) else value
+
+
+def _file_name(text: str) -> str:
+    """Refuse what cannot be part of a path on every system, or of a Snakemake wildcard."""
+    unsafe = re.search(r'[/\\:*?"<>|{}\x00-\x1f\x7f]', text)
+    if unsafe or not text or len(text) > 100 or text[0] in ".-~" or text != text.strip():
+        raise ValueError(
+            'a name that can be a file name: at most 100 characters, no / \\ : * ? " < > | { }, '
+            "no '.', '-' or '~' in front, no space around it"
+        )
+    return text
+
+
+def _interval(value: list[float]) -> list[float]:
+    if value[0] >= value[1]:
+        raise ValueError("[low, high] with low below high, in m")
+    return value
+
+
+def _distinct(names: list[str]) -> list[str]:
+    if len(set(names)) < len(names):
+        raise ValueError("different names, each named once")
+    return names
+
+
+Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1)]
+FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
+Interval = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_interval)]
+
+
+class Tank(Section):
+    """Walls, floor and surface in MoCap world axes, m; an axis left out is unbounded."""
+
+    x: Interval | None = None
+    y: Interval | None = None
+    z: Interval | None = None
+
+
+class Mocap(Section):
+    """How the poses were exported; `body` is the rigid body (or topic) to read."""
+
+    format: str
+    body: Annotated[str, BeforeValidator(_as_text)] = ""
+    world_axes: WorldAxes
+    body_axes: BodyAxes
+
+
+class CommandLog(Section):
+    """How the commands were logged.
+
+    `pwm` in us and `normalized` are per thruster, in the vehicle's order; `demand` and `wrench`
+    are per axis: the columns carry axis names, or are six in the order surge ... yaw.
+    """
+
+    format: str
+    kind: Literal["pwm", "normalized", "demand", "wrench"]
+    columns: Annotated[list[Text], Field(min_length=1), AfterValidator(_distinct)]
+
+    @property
+    def per_axis(self) -> bool:
+        """Whether a column is an axis of the body and not a thruster."""
+        return self.kind in ("demand", "wrench")
+
+    @property
+    def axes(self) -> list[int]:
+        """For `demand` and `wrench`: the axis, 0 to 5, of every column."""
+        if all(column in AXES for column in self.columns):
+            return [AXES.index(column) for column in self.columns]
+        return list(range(len(AXES)))
+
+
+class Run(Section):
+    """One run: its files, relative to the folder of the recordings."""
+
+    id: FileName
+    control: Literal["3dof", "6dof"]
+    split: Literal["train", "test"]
+    mocap: Text
+    commands: Text
+
+
+class CampaignFile(Section):
+    """The keys of `campaign.yaml`."""
+
+    name: FileName
+    vehicle: Text
+    tank: Tank | None = None
+    mocap: Mocap
+    commands: CommandLog
+    runs: Annotated[list[Run], Field(min_length=1)]
+    folder: str = ""  # where the recordings lie when they are not beside this file
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A checked campaign: every file of every run was there when it was loaded.
+
+    `vehicle` is a name or a path; a relative path is relative to `file.parent`.
+    """
+
+    name: str
+    vehicle: str
+    tank: Tank | None
+    mocap: Mocap
+    commands: CommandLog
+    runs: tuple[Run, ...]
+    file: Path
+    folder: Path
+
+    def run(self, run_id: str) -> Run:
+        """Return the run with that id.
+
+        Raises:
+            BadInput: there is none.
+        """
+        runs = {run.id: run for run in self.runs}
+        if run_id not in runs:
+            raise BadInput(
+                f"no run '{run_id}'",
+                where=self.file,
+                expected=f"one of {', '.join(runs)}",
+                remedy=nearest(run_id, runs),
+            )
+        return runs[run_id]
+
+    def mocap_path(self, run: Run) -> Path:
+        """Absolute path of the run's poses."""
+        return self.folder / run.mocap
+
+    def commands_path(self, run: Run) -> Path:
+        """Absolute path of the run's commands."""
+        return self.folder / run.commands
+
+    def tank_ned(self) -> np.ndarray:
+        """Low and high walls (3, 2) in NED m, NaN where unknown."""
+        walls = np.array([getattr(self.tank, axis, None) or [np.nan] * 2 for axis in "xyz"])
+        return np.sort(walls * self.world_signs()[:, None], axis=1)
+
+    def world_signs(self) -> np.ndarray:
+        """Signs (3,) between the MoCap world axes and NED."""
+        return axes_signs(self.mocap.world_axes)
+
+
+def load_campaign(path: Path) -> Campaign:
+    """Load a folder that holds `campaign.yaml`, or such a file under another name.
+
+    Raises:
+        BadInput: a key, a value or a recording is wrong or missing.
+    """
+    file = _campaign_file(Path(path).expanduser()).absolute()
+    content = checked(CampaignFile, read_yaml(file), file)
+    _check_ids(content.runs, file)
+    _check_columns(content.commands, file)
+    fields = dict(content) | {"runs": tuple(content.runs), "folder": _folder(content.folder, file)}
+    campaign = Campaign(file=file, **fields)
+    for run in campaign.runs:
+        _check_files(campaign, run)
+    return campaign
+
+
+def _campaign_file(path: Path) -> Path:
+    file = path / "campaign.yaml" if path.is_dir() else path
+    if not file.is_file():
+        raise BadInput(
+            "no campaign.yaml in this folder" if path.is_dir() else "no such file or folder",
+            where=path,
+            expected="a folder that holds campaign.yaml",
+            remedy="Check the path; docs/formats.md shows how to write that file.",
+        )
+    return file
+
+
+def _check_ids(runs: list[Run], file: Path) -> None:
+    seen: dict[str, str] = {}
+    for place, run in enumerate(runs):
+        # some file systems see neither case nor Unicode form
+        key = unicodedata.normalize("NFC", run.id).casefold()
+        if key in seen:
+            raise BadInput(
+                f"'runs.{place}.id' is {run.id!r}, and an earlier run is {seen[key]!r}",
+                where=file,
+                expected="a different id for each run (case does not count)",
+                remedy="Rename one of them.",
+            )
+        seen[key] = run.id
+
+
+def _check_columns(commands: CommandLog, file: Path) -> None:
+    if commands.per_axis and len(commands.axes) != len(commands.columns):
+        raise BadInput(
+            f"'commands.columns' names {len(commands.columns)} columns for kind {commands.kind}",
+            where=file,
+            expected=f"columns named after the axes, or six in the order {', '.join(AXES)}",
+            remedy="List all six columns, or name them after their axes.",
+        )
+
+
+def _folder(text: str, file: Path) -> Path:
+    """Folder of the recordings: `text` with variables expanded, relative to the file."""
+
+    def value(match: re.Match[str]) -> str:
+        name = match["name"] or match["bare"]
+        found = os.environ.get(name) or match["default"]
+        if found is None:
+            raise BadInput(
+                f"'folder' is {text!r}, and the environment has no {name}",
+                where=file,
+                expected=f"{name} set to the folder of the recordings",
+                remedy=f"Set it, or give a default: ${{{name}:-../recordings}}.",
+            )
+        return found
+
+    pattern = r"\$(?:\{(?P<name>\w+)(?::-(?P<default>[^}]*))?\}|(?P<bare>\w+))"
+    return Path(os.path.normpath(file.parent / Path(re.sub(pattern, value, text)).expanduser()))
+
+
+def _check_files(campaign: Campaign, run: Run) -> None:
+    for key in ("mocap", "commands"):
+        path = campaign.folder / getattr(run, key)
+        if not path.is_file():
+            raise BadInput(
+                f"the {key} file of run '{run.id}' is missing: {path}",
+                where=campaign.file,
+                expected=f"that file in {campaign.folder}",
+                remedy=f"Put it there, correct '{key}' of that run, or set 'folder' (or the "
+                "environment variable that it names) to where the recordings are.",
+            )

@@ -1,0 +1,167 @@
+"""What an effect is: one declaration that simulates, fits, is reported and documented.
+
+An effect acts at one place of the equation of motion; the base class says which, and asks for one
+method. Effects are immutable and add: a model is a list of them.
+
+    base class      acts on                                    method
+    Coefficients    the constants of Fossen's equation         enter(body)
+    Wrench          the forces at one instant (compiled)       wrench(at, p) -> 6 numbers
+    Clock           when a logged command takes effect         arrival(time) -> time
+    Shaping         the thruster command                       shaped(command) -> command
+    Strength        the static thruster force                  scaled(force, t, duration) -> force
+    Response        the dynamic thruster force                 respond(force, h, state) -> ...
+"""
+
+from abc import ABC, abstractmethod
+from collections import namedtuple
+from dataclasses import dataclass
+from typing import Any, ClassVar, Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.body import Body
+from rovsim.engine.at import At, Vector6
+from rovsim.errors import BadInput, nearest
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of an effect: its name, SI unit, symbol, allowed range and value when absent."""
+
+    name: str
+    unit: str
+    symbol: str
+    low: float = -np.inf
+    high: float = np.inf
+    default: float = 0.0
+
+
+def per_axis(translation: str, rotation: str, symbol: str) -> tuple[Parameter, ...]:
+    """Six parameters named surge ... yaw, with the units of the two kinds of axes."""
+    return tuple(
+        Parameter(axis, translation if i < 3 else rotation, f"{symbol}_{axis}")
+        for i, axis in enumerate(AXES)
+    )
+
+
+class Effect(ABC):
+    """A physical effect with values for its parameters; those not given have their default.
+
+    Raises:
+        BadInput: an unknown parameter, a value that is not a number or outside its range.
+    """
+
+    id: ClassVar[str]
+    equation: ClassVar[str]
+    neglects: ClassVar[str]
+    source: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
+    rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
+
+    def __init__(self, **values: float) -> None:
+        known = [p.name for p in self.parameters]
+        for name in values:
+            if name not in known:
+                raise BadInput(
+                    f"unknown parameter '{name}'",
+                    where=f"effect {self.id}",
+                    expected=f"one of {', '.join(known)}",
+                    remedy=nearest(name, known),
+                )
+        numbers = [self._checked(p, values.get(p.name, p.default)) for p in self.parameters]
+        self.values: Array = np.array(numbers, dtype=float)
+        self.values.setflags(write=False)
+
+    def _checked(self, parameter: Parameter, value: Any) -> float:
+        is_number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
+        if is_number and parameter.low <= value <= parameter.high and np.isfinite(value):
+            return float(value)
+        raise BadInput(
+            f"{parameter.name} is {value!r}",
+            where=f"effect {self.id}",
+            expected=f"a number from {parameter.low:g} to {parameter.high:g} {parameter.unit}",
+            remedy="Correct that value.",
+        )
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.values[[p.name for p in self.parameters].index(name)])
+
+    def __repr__(self) -> str:
+        given = ", ".join(f"{k}={v:g}" for k, v in self.given().items())
+        return f"{type(self).__name__}({given})"
+
+    def given(self) -> dict[str, float]:
+        """The values that differ from their default, by name."""
+        return {
+            p.name: float(v)
+            for p, v in zip(self.parameters, self.values, strict=True)
+            if v != p.default
+        }
+
+    def with_values(self, values: Mapping[str, float]) -> "Effect":
+        """The same effect with some values replaced."""
+        names = [p.name for p in self.parameters]
+        return type(self)(**dict(zip(names, self.values.tolist(), strict=True)) | dict(values))
+
+
+class Coefficients(Effect):
+    """Changes the constants of Fossen's equation: inertia, damping, buoyancy, current, thrusters."""
+
+    @abstractmethod
+    def enter(self, body: Body) -> None:
+        """Add this effect's contribution to the constants."""
+
+
+class Wrench(Effect):
+    """Pushes the vehicle: a wrench that depends on the state and on time."""
+
+    @staticmethod
+    @abstractmethod
+    def wrench(at: At, p: Any) -> Vector6:
+        """Wrench on the vehicle at CO, FRD, N and N m. Compiled: plain arithmetic on floats.
+
+        `p` has the parameters by name.
+        """
+
+    @classmethod
+    def named_parameters(cls) -> type:
+        """The named tuple type in which the compiled kernel gets its parameters."""
+        return namedtuple(f"{cls.__name__}Parameters", [p.name for p in cls.parameters])  # type: ignore[misc]
+
+
+class Clock(Effect):
+    """Moves the instants at which logged commands take effect."""
+
+    @abstractmethod
+    def arrival(self, time: Array) -> Array:
+        """Instants (m,) in s, increasing, at which lines logged at `time` (m,) take effect."""
+
+
+class Shaping(Effect):
+    """Changes the thruster command before the force curve."""
+
+    @abstractmethod
+    def shaped(self, command: Array) -> Array:
+        """Commands (m, n) in [-1, 1] as the propellers see them."""
+
+
+class Strength(Effect):
+    """Changes the static thruster force after the force curve."""
+
+    @abstractmethod
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Forces (m, n) in N at times t (m,) s into a recording of that duration."""
+
+
+class Response(Effect):
+    """Gives the thruster force dynamics of its own."""
+
+    @abstractmethod
+    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
+        """Mean forces (k, n) over steps of h s that follow static mean forces (k, n).
+
+        `state` is what an earlier call returned; None starts at rest at the first force.
+        """

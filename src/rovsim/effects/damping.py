@@ -1,0 +1,32 @@
+"""Water resistance, axis by axis."""
+
+from rovsim.body import Body
+from rovsim.effects.base import Coefficients, per_axis
+
+
+class LinearDamping(Coefficients):
+    """Skin friction: a force against the motion through the water, proportional to it."""
+
+    id = "linear_damping"
+    equation = r"\tau_i = -d_i\,\nu_{r,i}"
+    neglects = "coupling between axes"
+    source = "Fossen 2021, sec. 6.4"
+    parameters = per_axis("N s/m", "N m s/rad", "d")
+
+    def enter(self, body: Body) -> None:
+        """Add to the linear damping coefficients."""
+        body.linear += self.values
+
+
+class QuadraticDamping(Coefficients):
+    """Separated flow behind a bluff body: a force that grows with the speed squared."""
+
+    id = "quadratic_damping"
+    equation = r"\tau_i = -d_i\,|\nu_{r,i}|\,\nu_{r,i}"
+    neglects = "coupling between axes; valid above about 0.1 m/s"
+    source = "Fossen 2021, sec. 6.4"
+    parameters = per_axis("N s2/m2", "N m s2/rad2", "d")
+
+    def enter(self, body: Body) -> None:
+        """Add to the quadratic damping coefficients."""
+        body.quadratic += self.values

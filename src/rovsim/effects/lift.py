@@ -1,0 +1,19 @@
+"""Lift of the hull at an angle of attack."""
+
+from rovsim.effects.base import Parameter, Wrench
+
+
+class Lift(Wrench):
+    """Side and heave force of a hull that moves ahead at an angle of attack; no moment."""
+
+    id = "lift"
+    equation = r"Y = -c\,|u_r|\,v_r,\quad Z = -c\,|u_r|\,w_r"
+    neglects = "stall, and the moment of the lift"
+    source = "Fossen 2021, sec. 6.4 (lift), small angles"
+    parameters = (Parameter("coefficient", "kg/m", "c"),)
+
+    @staticmethod
+    def wrench(at, p):
+        """Lift in sway and heave."""
+        c = p.coefficient * abs(at.nu_r[0])
+        return 0.0, -c * at.nu_r[1], -c * at.nu_r[2], 0.0, 0.0, 0.0

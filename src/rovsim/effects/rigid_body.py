@@ -1,0 +1,42 @@
+"""Mass and weight: the dry vehicle, and what was bolted to it."""
+
+import numpy as np
+
+from rovsim.body import Body
+from rovsim.effects.base import Coefficients, Parameter
+
+PLACE = tuple(Parameter(axis, "m", axis) for axis in "xyz")
+
+
+class RigidBody(Coefficients):
+    """The dry vehicle: mass, inertia about its centre of gravity, and weight."""
+
+    id = "rigid_body"
+    listed = False
+    equation = r"M_{RB}\dot\nu + C_{RB}(\nu)\nu"
+    neglects = "products of inertia"
+    source = "Fossen 2021, sec. 3.3"
+    parameters = (
+        Parameter("mass", "kg", "m", low=0.0),
+        *(Parameter(name, "kg m2", f"I_{name[1:]}", low=0.0) for name in ("Ixx", "Iyy", "Izz")),
+        *PLACE,
+    )
+
+    def enter(self, body: Body) -> None:
+        """Add mass, inertia and weight at the centre of gravity."""
+        mass, *moments = self.values[:4]
+        body.add_mass(mass, self.values[4:], np.diag(moments))
+
+
+class Payload(Coefficients):
+    """A point mass without volume, carried along."""
+
+    id = "payload"
+    equation = r"M_{RB} \mathrel{+}= m H^\top(r) H(r),\quad \text{weight } m g \text{ at } r"
+    neglects = "its displaced water and its drag"
+    source = "Fossen 2021, sec. 3.3 (parallel-axis theorem)"
+    parameters = (Parameter("mass", "kg", "m", low=0.0), *PLACE)
+
+    def enter(self, body: Body) -> None:
+        """Add the point mass and its weight."""
+        body.add_mass(self["mass"], self.values[1:], np.zeros((3, 3)))

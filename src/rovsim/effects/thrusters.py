@@ -1,0 +1,146 @@
+"""What happens between a logged command and a thruster's force."""
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.signal import lfilter
+
+from rovsim.body import Body
+from rovsim.effects.base import Clock, Coefficients, Parameter, Response, Shaping, Strength
+
+THRUSTERS = tuple(f"t{i}" for i in range(1, 9))
+
+
+class InputDelay(Clock):
+    """Commands take effect late: transport delay, or a constant offset between two clocks."""
+
+    id = "input_delay"
+    rank = 1
+    equation = r"u(t - \delta)"
+    neglects = "jitter"
+    source = "definition"
+    parameters = (Parameter("delay", "s", r"\delta"),)
+
+    def arrival(self, time: Array) -> Array:
+        """Every line arrives later by the delay."""
+        return time + self["delay"]
+
+
+class ClockDrift(Clock):
+    """The computer that logged the commands has a clock that runs fast."""
+
+    id = "clock_drift"
+    equation = r"t_\text{command} = (1 + r)\,t"
+    neglects = "a rate that changes with temperature"
+    source = "definition"
+    parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5),)
+
+    def arrival(self, time: Array) -> Array:
+        """Instant on the MoCap clock at which the command clock shows `time`."""
+        return time / (1.0 + self["rate"])
+
+
+class ThrusterDeadband(Shaping):
+    """A thruster that does not start below a small command; above it the curve is unchanged."""
+
+    id = "thruster_deadband"
+    equation = r"F = 0 \text{ for } |c| \le w"
+    neglects = "hysteresis between starting and stopping"
+    source = "definition"
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0),)
+
+    def shaped(self, command: Array) -> Array:
+        """Commands inside the band become zero."""
+        return np.where(np.abs(command) <= self["width"], 0.0, command)
+
+
+class ThrusterGain(Strength):
+    """Thrusters stronger or weaker than the published curve; negative means reversed wiring."""
+
+    id = "thruster_gain"
+    equation = r"F_i \to g\,g_i\,F_i"
+    neglects = "a change of the curve's shape"
+    source = "definition"
+    parameters = tuple(Parameter(name, "1", f"g_{name}", default=1.0) for name in (*THRUSTERS, "all"))
+
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Forces times each thruster's gain and the common one."""
+        return force * (self["all"] * self.values[: force.shape[1]])
+
+
+class ThrustAsymmetry(Strength):
+    """Propellers push less backwards than forwards."""
+
+    id = "thrust_asymmetry"
+    rank = 1
+    equation = r"F \to a F \text{ where } F < 0"
+    neglects = "a ratio that depends on speed"
+    source = "definition"
+    parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0),)
+
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Negative forces times the ratio."""
+        return np.where(force < 0.0, self["ratio"] * force, force)
+
+
+class VoltageSag(Strength):
+    """The battery empties: thrust fades over the run."""
+
+    id = "voltage_sag"
+    rank = 2
+    equation = r"F \to F\,(1 - s\,t/T_\text{run})"
+    neglects = "recovery at rest and sag under load"
+    source = "definition"
+    parameters = (Parameter("fraction", "1", "s", high=1.0),)
+
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Forces that fade linearly with time."""
+        return force * (1.0 - self["fraction"] * t / duration)[:, None]
+
+
+class ThrusterLag(Response):
+    """Propellers take time to spin up: first order on the force."""
+
+    id = "thruster_lag"
+    equation = r"T \dot F + F = F_\text{static}"
+    neglects = "that spinning up and down differ"
+    source = "Fossen 2021, sec. 9.4 (first-order actuator)"
+    parameters = (Parameter("time_constant", "s", "T", low=0.0),)
+
+    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
+        """Exact response to forces that are constant over each step, and its mean over it."""
+        T = self["time_constant"]
+        start = force[0] if state is None else state
+        if T == 0.0:
+            return force, force[-1]
+        decay = np.exp(-h / T)
+        ends, _ = lfilter([1.0 - decay], [1.0, -decay], force, axis=0, zi=decay * start[None])
+        begins = np.vstack([start[None], ends[:-1]])
+        return force + (begins - force) * (T / h) * (1.0 - decay), ends[-1]
+
+
+class AdvanceLoss(Coefficients):
+    """A propeller that advances through the water pushes less; opposing inflow raises thrust."""
+
+    id = "advance_loss"
+    equation = r"F \to F\,(1 - c\,\operatorname{sign}(F)\,d_i \cdot v_r)"
+    neglects = "the velocity of the thruster relative to CO"
+    source = "Fossen 2021, sec. 9.4 (linear in the advance speed)"
+    parameters = (Parameter("coefficient", "s/m", "c"),)
+
+    def enter(self, body: Body) -> None:
+        """Add to the loss per speed of advance."""
+        body.advance += self["coefficient"]
+
+
+class PropellerTorque(Coefficients):
+    """The reaction moment of each propeller about its axis."""
+
+    id = "propeller_torque"
+    equation = r"\tau_\text{rotation} \mathrel{+}= q\,s_i F_i d_i"
+    neglects = "the torque of spinning up"
+    source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"
+    parameters = (Parameter("ratio", "m", "q"),)
+
+    def enter(self, body: Body) -> None:
+        """Add each propeller's moment to its column of the allocation."""
+        body.B[3:] += self["ratio"] * (body.spin[:, None] * body.directions).T

@@ -1,0 +1,1 @@
+"""The compiled equation of motion."""

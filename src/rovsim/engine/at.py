@@ -1,0 +1,95 @@
+"""What the compiled engine passes around. SI units, body axes FRD at CO, world NED, float64."""
+
+from typing import NamedTuple
+
+from numpy import ndarray as Array
+
+Vector3 = tuple[float, float, float]
+Vector6 = tuple[float, float, float, float, float, float]
+
+
+class At(NamedTuple):
+    """One instant, as a wrench kernel sees it: floats and tuples of floats.
+
+    `t` s since the start of the recording, `duration` s of the whole recording, `position` (3),
+    `R` rows of the rotation body to world, `nu` (6) velocity, `nu_r` (6) velocity through the
+    water, `nu_c_dot` (6) acceleration of the current in body axes, `demand` (6) pilot demand per
+    axis in [-1, 1] (NaN if not logged), `tank` (low, high) per world axis (NaN if unknown),
+    `axes` (3) signs between MoCap world axes and NED.
+    """
+
+    t: float
+    duration: float
+    position: Vector3
+    R: tuple[Vector3, Vector3, Vector3]
+    nu: Vector6
+    nu_r: Vector6
+    nu_c_dot: Vector6
+    demand: Vector6
+    tank: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+    axes: Vector3
+
+
+class State(NamedTuple):
+    """Position NED m, quaternion body to world, body velocity; or their rates of change."""
+
+    position: Vector3
+    attitude: tuple[float, float, float, float]
+    nu: Vector6
+
+
+class Constants(NamedTuple):
+    """Constants of the equation of motion for m parameter sets, stacked along the first axis.
+
+    `M_RB`, `M_A`, `M_inv` (m, 6, 6); `linear`, `quadratic` (m, 6); `heaviness` (m,) weight minus
+    buoyancy in N; `righting` (m, 3) weight at CG minus buoyancy at CB in N m; `current` (m, 3) NED;
+    `advance` (m,) s/m; `B` (m, 6, n) thruster allocation; `directions` (n, 3) of positive thrust.
+    """
+
+    M_RB: Array
+    M_A: Array
+    M_inv: Array
+    linear: Array
+    quadratic: Array
+    heaviness: Array
+    righting: Array
+    current: Array
+    advance: Array
+    B: Array
+    directions: Array
+
+
+class Inputs(NamedTuple):
+    """Mean thrust over each step: `wrench` (r, k, 6), `force` (r, k, n), `demand` (k, 6).
+
+    `row` (m,) says which of the r rows belongs to each parameter set; `duration` (k,) is the
+    length in s of the recording the step belongs to.
+    """
+
+    wrench: Array
+    force: Array
+    demand: Array
+    row: Array
+    duration: Array
+
+
+class Jobs(NamedTuple):
+    """Trajectories to integrate, j of them.
+
+    `state` (j, 13) to start from, at `time` (j,) s; `first` (j,) step of the inputs, `steps` (j,)
+    to take, `member` (j,) parameter set, `out` (j,) first row of the output.
+    """
+
+    state: Array
+    time: Array
+    first: Array
+    steps: Array
+    member: Array
+    out: Array
+
+
+class Place(NamedTuple):
+    """`tank` (3, 2) low and high walls in NED, `axes` (3,) signs of the MoCap axes."""
+
+    tank: Array
+    axes: Array

@@ -1,0 +1,94 @@
+"""Compiled engines: one generated module per list of wrench effects, cached on disk by Numba.
+
+Closures do not cache, modules do. The module's name is a digest of everything it is compiled from,
+so an edited kernel never meets an old engine.
+"""
+
+import hashlib
+import importlib.util
+import inspect
+import os
+import sys
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Sequence
+
+import numba
+from filelock import FileLock
+from platformdirs import user_cache_path
+
+from rovsim.effects.base import Wrench
+from rovsim.files import write_text
+
+TEMPLATE = Path(__file__).with_name("equation.py")
+
+
+def cache_folder() -> Path:
+    """Where engines are kept: $ROVSIM_CACHE, or the user's cache folder."""
+    return Path(os.environ.get("ROVSIM_CACHE") or user_cache_path("rovsim")) / "engines"
+
+
+def engine(wrenches: Sequence[type[Wrench]]) -> ModuleType:
+    """The compiled equation of motion with these wrench effects, in this order."""
+    return _engine(tuple(wrenches))
+
+
+@cache
+def _engine(wrenches: tuple[type[Wrench], ...]) -> ModuleType:
+    text = TEMPLATE.read_text(encoding="utf-8")
+    before, rest = text.split("# <extra>")
+    after = rest.split("# </extra>")[1]
+    source = before + _chain(wrenches) + after
+    name = f"rovsim_engine_{_digest(source, wrenches)}"
+    path = cache_folder() / f"{name}.py"
+    with FileLock(_made(path.parent) / f"{name}.lock"):
+        if not path.exists():
+            write_text(path, source)
+        return _imported(name, path, wrenches)
+
+
+def _made(folder: Path) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def _imported(name: str, path: Path, wrenches: tuple[type[Wrench], ...]) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    module.__dict__["WRENCHES"] = wrenches
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _chain(wrenches: tuple[type[Wrench], ...]) -> str:
+    """Source of `extra`: every kernel gets its slice of p as a named tuple."""
+    lines, at = [], 0
+    for i, wrench in enumerate(wrenches):
+        count = len(wrench.parameters)
+        values = "".join(f"p[{k}], " for k in range(at, at + count))
+        lines.append(f"    tau = add6(tau, 1.0, kernel_{i}(at, Named_{i}({values})))")
+        at += count
+    names = [
+        f"Named_{i}, kernel_{i} = WRENCHES[{i}].named_parameters(), "
+        f"inlined(WRENCHES[{i}].wrench)  # {wrench.id}"
+        for i, wrench in enumerate(wrenches)
+    ]
+    head = ["", *names, "", "", "@inlined", "def extra(at, p):"]
+    start = '    """Wrench of the model\'s further effects."""\n    tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)'
+    return "\n".join([*head, start, *lines, "    return tau"])
+
+
+def _digest(source: str, wrenches: tuple[type[Wrench], ...]) -> str:
+    """Digest of the engine's source, of every module its kernels come from, and of Numba."""
+    from rovsim.engine import at, vectors
+    from rovsim.residual import features, predictor
+
+    files = [inspect.getsourcefile(m) for m in (at, vectors, features, predictor, *wrenches)]
+    content = hashlib.sha256(f"{source}{numba.__version__}".encode())
+    for file in files:
+        content.update(Path(str(file)).read_bytes())
+    return content.hexdigest()[:16]

@@ -1,0 +1,87 @@
+"""Small vectors as tuples of floats: they live in registers, where arrays would be counted."""
+
+from numba import njit
+
+inlined = njit(cache=True, forceinline=True, error_model="numpy", fastmath={"contract", "nsz"})
+compiled = njit(cache=True, error_model="numpy", fastmath={"contract", "nsz"})
+
+
+@inlined
+def cross(a, b):
+    """Cross product of 3-vectors."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inlined
+def dot3(a, b):
+    """Scalar product of 3-vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def dot6(a, b):
+    """Scalar product of 6-vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
+
+
+@inlined
+def add3(a, h, b):
+    """a + h b."""
+    return a[0] + h * b[0], a[1] + h * b[1], a[2] + h * b[2]
+
+
+@inlined
+def add4(a, h, b):
+    """a + h b."""
+    return a[0] + h * b[0], a[1] + h * b[1], a[2] + h * b[2], a[3] + h * b[3]
+
+
+@inlined
+def add6(a, h, b):
+    """a + h b."""
+    return (
+        a[0] + h * b[0], a[1] + h * b[1], a[2] + h * b[2],
+        a[3] + h * b[3], a[4] + h * b[4], a[5] + h * b[5],
+    )  # fmt: skip
+
+
+@inlined
+def times6(M, v):
+    """Matrix (six rows) times 6-vector."""
+    return (
+        dot6(M[0], v), dot6(M[1], v), dot6(M[2], v), dot6(M[3], v), dot6(M[4], v), dot6(M[5], v)
+    )  # fmt: skip
+
+
+@inlined
+def into_body(R, x):
+    """R' x: a world vector in body axes."""
+    return (
+        R[0][0] * x[0] + R[1][0] * x[1] + R[2][0] * x[2],
+        R[0][1] * x[0] + R[1][1] * x[1] + R[2][1] * x[2],
+        R[0][2] * x[0] + R[1][2] * x[1] + R[2][2] * x[2],
+    )
+
+
+@inlined
+def into_world(R, x):
+    """R x: a body vector in world axes."""
+    return dot3(R[0], x), dot3(R[1], x), dot3(R[2], x)
+
+
+@inlined
+def vector3(a):
+    """Tuple of an array (3,)."""
+    return a[0], a[1], a[2]
+
+
+@inlined
+def vector6(a):
+    """Tuple of an array (6,)."""
+    return a[0], a[1], a[2], a[3], a[4], a[5]
+
+
+@inlined
+def matrix6(a):
+    """Rows of an array (6, 6)."""
+    return vector6(a[0]), vector6(a[1]), vector6(a[2]), vector6(a[3]), vector6(a[4]), vector6(a[5])

@@ -1,0 +1,33 @@
+"""Errors a user can act on: what was found, where, what was expected, what to do."""
+
+from difflib import get_close_matches
+from typing import Iterable
+
+
+class RovsimError(Exception):
+    """Base of every error raised on purpose. Its text is the whole message for the user."""
+
+
+class BadInput(RovsimError):
+    """Input that cannot be used. The command line turns it into one message and exit code 2."""
+
+    def __init__(self, found: str, *, where: object, expected: str, remedy: str) -> None:
+        self.found, self.where, self.expected, self.remedy = found, str(where), expected, remedy
+        super().__init__(f"{where}: {found}. Expected {expected}. {remedy}")
+
+    def __reduce__(self):
+        # keyword-only arguments would otherwise be lost between processes
+        return _rebuild, (self.found, self.where, self.expected, self.remedy)
+
+
+def _rebuild(found: str, where: str, expected: str, remedy: str) -> BadInput:
+    return BadInput(found, where=where, expected=expected, remedy=remedy)
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return a remedy for an unknown name: the nearest known one, else all of them."""
+    names = [str(k) for k in known]
+    close = get_close_matches(str(name), names, n=1, cutoff=0.5)
+    if close:
+        return f"Did you mean '{close[0]}'?"
+    return f"Known: {', '.join(names) or 'none'}."

@@ -1,0 +1,93 @@
+"""What each model looks like in every figure: one colour and one line style per family.
+
+Colours: Okabe and Ito, "Color Universal Design" (2008), told apart by colour-blind readers.
+"""
+
+import re
+from dataclasses import dataclass, replace
+from typing import Any, Iterable
+
+from matplotlib.colors import to_hex, to_rgb
+
+Dash = str | tuple[float, tuple[float, ...]]
+
+
+@dataclass(frozen=True)
+class Look:
+    """Colour, line style and (for bars) hatch of one model."""
+
+    color: str
+    dash: Dash
+    hatch: str = ""
+
+    width: float = 0.9
+
+    def line(self) -> dict[str, Any]:
+        """Keyword arguments for a line."""
+        return {"color": self.color, "linestyle": self.dash, "linewidth": self.width}
+
+    def bar(self) -> dict[str, Any]:
+        """Keyword arguments for a bar; the hatch is white on the colour."""
+        return {"facecolor": self.color, "edgecolor": "white", "linewidth": 0, "hatch": self.hatch}
+
+
+FAMILIES = {
+    "measured": Look("#000000", "-", width=1.4),
+    "nominal": Look("#D55E00", (0, (4, 1.5))),
+    "knn": Look("#0072B2", (0, (6, 1, 1, 1))),
+    "gp": Look("#009E73", (0, (2, 0.8))),
+    "svgp": Look("#CC79A7", (0, (3, 1, 1, 1, 1, 1))),
+    "effects": Look("#E69F00", "-"),
+    "zero_acceleration": Look("#999999", (0, (1, 1.2))),
+    "noise_floor": Look("#555555", (0, (8, 3))),
+}
+RESIDUALS = ("svgp", "knn", "gp")
+
+# Members of a family differ by lightness, dash and hatch: (share of white or black, dash, hatch).
+_MEMBERS: list[tuple[float, Dash | None, str]] = [
+    (0.0, None, ""),
+    (0.45, None, "////"),
+    (-0.4, (0, (9, 1.5)), "...."),
+    (0.6, "-", "xxxx"),
+    (-0.6, (0, (5, 3)), "----"),
+]
+
+
+def family(name: str) -> str:
+    """Return the family of a model's name; a user's own model file counts as `effects`."""
+    if name in FAMILIES:
+        return name
+    words = re.split(r"[^a-z0-9]+", name.lower())
+    for kind in RESIDUALS:
+        if kind in words:
+            return kind
+    return "nominal" if words[0] in ("nominal", "refitted") else "effects"
+
+
+def looks(names: Iterable[str]) -> dict[str, Look]:
+    """Return one distinct look per name; those of the study's own models never change."""
+    taken: set[tuple[str, int]] = set()
+    found = {}
+    for name in names:
+        kind = family(name)
+        member = _member(name)
+        while (kind, member) in taken and member < 40:
+            member += 1
+        taken.add((kind, member))
+        found[name] = _variant(FAMILIES[kind], member)
+    return found
+
+
+def _member(name: str) -> int:
+    if name in FAMILIES:
+        return 0
+    if re.match(r"(effects|\+)", name) and family(name) in RESIDUALS:
+        return 2
+    return 1 if "3dof" in name or family(name) == "nominal" else 0
+
+
+def _variant(look: Look, member: int) -> Look:
+    shade, dash, hatch = _MEMBERS[member % len(_MEMBERS)]
+    target = 1.0 if shade > 0 else 0.0
+    mixed = [c + (target - c) * abs(shade) for c in to_rgb(look.color)]
+    return replace(look, color=to_hex(mixed), dash=dash or look.dash, hatch=hatch)

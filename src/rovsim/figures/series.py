@@ -1,0 +1,59 @@
+"""Time series on paper: gaps stay gaps, long runs are cut to an excerpt, axes stay readable."""
+
+from typing import Iterable
+
+import numpy as np
+from numpy import ndarray as Array
+
+EXCERPT = 60.0  # s: at 150 mm width still 0.4 s per millimetre
+GAP = 3.0  # a step longer than this many median steps is a gap
+HEADROOM = 2.5  # a diverging model may use this many times the measured range, no more
+
+
+def broken(time: Array, values: Array) -> tuple[Array, Array]:
+    """Put a NaN row into `values` (n, ...) wherever `time` (n,) jumps, so that no line bridges it."""
+    steps = np.diff(time)
+    if not len(steps):
+        return time, values
+    at = np.flatnonzero(steps > GAP * np.median(steps)) + 1
+    middle = 0.5 * (time[at] + time[at - 1])
+    return np.insert(time, at, middle), np.insert(values, at, np.nan, axis=0)
+
+
+def masked(values: Array, usable: Array | None) -> Array:
+    """Copy of `values` (n, ...) with NaN where `usable` (n,) is False."""
+    values = np.array(values, dtype=float)
+    if usable is not None:
+        values[~np.asarray(usable, dtype=bool)] = np.nan
+    return values
+
+
+def excerpt(time: Array, values: Array, length: float = EXCERPT) -> slice:
+    """Return the liveliest stretch of at most `length` seconds; all of a shorter run.
+
+    Liveliest: most measured samples, weighted by motion in units of each axis' own spread.
+    """
+    if not len(time) or time[-1] - time[0] <= length:
+        return slice(0, len(time))
+    spread = np.sqrt(np.nanmean(np.where(np.isfinite(values), values, 0.0) ** 2, axis=0))
+    share = np.abs(values) / np.where(spread > 0, spread, 1.0)
+    lively = np.concatenate([[0.0], np.cumsum(np.nan_to_num(share).sum(axis=1))])
+    first = np.searchsorted(time, np.arange(time[0], time[-1] - length + 1e-9, 5.0))
+    last = np.searchsorted(time, time[first] + length, side="right")
+    best = int(np.argmax(lively[last] - lively[first]))
+    return slice(int(first[best]), int(last[best]))
+
+
+def limits(reference: Array, others: Iterable[Array]) -> tuple[float, float, bool]:
+    """Return low and high of an axis that shows `reference` fully, and whether `others` leave it."""
+    stacked = [a[np.isfinite(a)] for a in (reference, *others)]
+    everything = np.concatenate(stacked)
+    if not len(everything):
+        return -1.0, 1.0, False
+    base = stacked[0] if len(stacked[0]) else everything
+    low, high = float(base.min()), float(base.max())
+    room = max(high - low, 1e-6) * (HEADROOM - 1) / 2
+    shown = everything[(everything >= low - room) & (everything <= high + room)]
+    clipped = len(shown) < len(everything)
+    margin = 0.05 * max(float(np.ptp(shown)), 1e-6)
+    return float(shown.min()) - margin, float(shown.max()) + margin, clipped

@@ -1,0 +1,96 @@
+"""One thesis style for every figure: an A4 text column, 9 pt Times-like type, light grids.
+
+Matplotlib's settings are global, so `styled` sets them under a lock and puts them back: figures
+may be drawn from several threads and leave no state behind.
+"""
+
+import threading
+import warnings
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Iterator
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from rovsim.errors import BadInput
+from rovsim.files import appearing
+
+WIDTH = 150.0  # mm: text width of an A4 page with 30 mm margins
+FONT_SIZE = 9.0  # pt: one step below 11 pt body text
+DPI = 200  # PNG only; the PDF is drawn as lines
+MM = 1 / 25.4  # inches
+
+# STIX (Times-like) comes with matplotlib, so a figure looks the same on every machine;
+# DejaVu Serif steps in for letters STIX lacks.
+STYLE: dict[str, Any] = {
+    "font.family": ["STIXGeneral", "DejaVu Serif"],
+    "mathtext.fontset": "stix",
+    "text.parse_math": False,  # run and model names may hold a dollar sign
+    "font.size": FONT_SIZE,
+    "axes.labelsize": FONT_SIZE,
+    "axes.titlesize": FONT_SIZE,
+    "figure.labelsize": FONT_SIZE,
+    "figure.titlesize": FONT_SIZE,
+    "legend.fontsize": FONT_SIZE,
+    "xtick.labelsize": FONT_SIZE - 1,
+    "ytick.labelsize": FONT_SIZE - 1,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.5,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": "#444444",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.limits": (-4, 5),
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 0.9,
+    "hatch.linewidth": 0.6,
+    "legend.frameon": False,
+    "figure.constrained_layout.use": True,
+    "pdf.fonttype": 42,  # TrueType, so that text stays text
+    "svg.hashsalt": "rovsim",
+}
+
+_lock = threading.RLock()
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Draw in the thesis style; usable as `@styled()` on a function."""
+    with _lock, matplotlib.rc_context(STYLE), warnings.catch_warnings():
+        # a run named in a script neither font has is drawn with boxes, not refused
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        yield
+
+
+def sheet(height: float) -> Figure:
+    """Return an empty figure of the page's text width and `height` in mm."""
+    return Figure(figsize=(WIDTH * MM, height * MM), layout="constrained")
+
+
+def save(figure: Figure, folder: Path, name: str) -> list[Path]:
+    """Write `name`.pdf and `name`.png into `folder`; same figure, same bytes.
+
+    Raises:
+        BadInput: `name` is not a plain file name.
+    """
+    if Path(name).name != name:
+        raise BadInput(
+            f"'{name}' is not a file name",
+            where=folder,
+            expected="a name without folders",
+            remedy="Leave out slashes.",
+        )
+    return [_save(figure, folder / f"{name}.{suffix}") for suffix in ("pdf", "png")]
+
+
+def _save(figure: Figure, path: Path) -> Path:
+    kind = path.suffix[1:]
+    # the PDF would otherwise carry the time of writing
+    metadata = {"CreationDate": None} if kind == "pdf" else {}
+    with styled(), appearing(path) as temporary:
+        figure.savefig(temporary, format=kind, dpi=DPI, metadata=metadata)
+    return path

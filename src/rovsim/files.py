@@ -1,0 +1,142 @@
+"""Files that appear whole or not at all. No pickle anywhere: JSON, safe YAML and plain arrays."""
+
+import io
+import json
+import os
+import tempfile
+import zipfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Iterator, Mapping
+
+import numpy as np
+import yaml
+
+from rovsim.errors import BadInput
+
+
+@contextmanager
+def appearing(path: Path) -> Iterator[Path]:
+    """Yield a temporary path beside `path`; on success it becomes `path` in one step."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write UTF-8 text atomically."""
+    with appearing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write JSON atomically; NaN is refused (it is not JSON)."""
+    write_text(path, json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def read_json(path: Path) -> Any:
+    """Read JSON.
+
+    Raises:
+        BadInput: the file is missing or is not JSON.
+    """
+    try:
+        return json.loads(read_text(path))
+    except json.JSONDecodeError as error:
+        raise BadInput(
+            f"not JSON ({error.msg})",
+            where=f"{path}, line {error.lineno}",
+            expected="a JSON file",
+            remedy="Write the file again with the command that made it.",
+        ) from None
+
+
+def write_yaml(path: Path, content: Any) -> None:
+    """Write plain YAML atomically, keys in the order given."""
+    write_text(path, yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=100))
+
+
+def read_yaml(path: Path) -> Any:
+    """Read safe YAML (no tags that build objects).
+
+    Raises:
+        BadInput: the file is missing or is not YAML.
+    """
+    try:
+        return yaml.safe_load(read_text(path))
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f", line {mark.line + 1}" if mark else ""
+        raise BadInput(
+            f"not YAML ({getattr(error, 'problem', None) or error})",
+            where=f"{path}{line}",
+            expected="a plain YAML file",
+            remedy="Check the indentation and the quotes there.",
+        ) from None
+
+
+def read_text(path: Path) -> str:
+    """Read UTF-8 text (a byte-order mark is dropped).
+
+    Raises:
+        BadInput: the file is missing, a folder or not UTF-8.
+    """
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        found, remedy = "no such file", "Check the path."
+    except IsADirectoryError:
+        found, remedy = "a folder", "Name the file inside it."
+    except UnicodeDecodeError as error:
+        found, remedy = f"byte {error.start} is not UTF-8", "Save the file as UTF-8 text."
+    except OSError as error:
+        found, remedy = f"cannot be read ({error.strerror})", "Check its permissions."
+    raise BadInput(found, where=path, expected="a readable text file", remedy=remedy)
+
+
+def write_arrays(path: Path, **arrays: np.ndarray) -> None:
+    """Write arrays as an `.npz` whose bytes depend on the arrays alone (no time stamps)."""
+    with appearing(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        for name, array in arrays.items():
+            buffer = io.BytesIO()
+            np.lib.format.write_array(buffer, np.asarray(array), allow_pickle=False)
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy"), buffer.getvalue())
+
+
+def read_arrays(path: Path) -> dict[str, np.ndarray]:
+    """Read an `.npz` written by `write_arrays`; pickled content is refused.
+
+    Raises:
+        BadInput: the file is missing, damaged or holds objects.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            return {name: archive[name] for name in archive.files}
+    except FileNotFoundError:
+        found = "no such file"
+    except (ValueError, OSError, zipfile.BadZipFile) as error:
+        found = f"cannot be read ({error})"
+    raise BadInput(
+        found,
+        where=path,
+        expected="plain arrays in an .npz file",
+        remedy="Write it again with the command that made it.",
+    )
+
+
+def plain(value: Any) -> Any:
+    """Turn arrays and NumPy scalars into lists and numbers, for JSON and YAML."""
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,145 @@
+"""Rotations and axis conventions.
+
+Inside rovsim the world is NED and the body FRD (Fossen 2021, sec. 2.1). Quaternions are unit,
+scalar first (w, x, y, z), and rotate body vectors into the world: x_world = R(q) x_body.
+Every function takes arrays with any leading axes.
+"""
+
+from typing import Literal
+
+import numpy as np
+from numpy import ndarray as Array
+
+WorldAxes = Literal["z_up", "ned"]
+BodyAxes = Literal["flu", "frd"]
+
+# A half turn about x: z-up <-> NED and FLU <-> FRD (contract, section 2).
+HALF_TURN_X = np.array([1.0, -1.0, -1.0])
+
+
+def axes_signs(axes: WorldAxes | BodyAxes) -> Array:
+    """Signs (3,) that turn components along `axes` into NED or FRD components, and back."""
+    return HALF_TURN_X if axes in ("z_up", "flu") else np.ones(3)
+
+
+def multiply(a: Array, b: Array) -> Array:
+    """Hamilton product of quaternions (..., 4)."""
+    aw, ax, ay, az = np.moveaxis(a, -1, 0)
+    bw, bx, by, bz = np.moveaxis(b, -1, 0)
+    return np.stack(
+        [
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ],
+        axis=-1,
+    )
+
+
+def conjugate(q: Array) -> Array:
+    """Inverse of unit quaternions (..., 4)."""
+    return q * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def normalized(q: Array) -> Array:
+    """Quaternions (..., 4) scaled to unit length."""
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def rotate(q: Array, x: Array) -> Array:
+    """Rotate vectors x (..., 3) from body to world."""
+    w, v = q[..., :1], q[..., 1:]
+    t = 2.0 * np.cross(v, x)
+    return x + w * t + np.cross(v, t)
+
+
+def unrotate(q: Array, x: Array) -> Array:
+    """Rotate vectors x (..., 3) from world to body."""
+    return rotate(conjugate(q), x)
+
+
+def matrix(q: Array) -> Array:
+    """Rotation matrices (..., 3, 3), body to world (Fossen 2021, eq. 2.73)."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def from_matrix(R: Array) -> Array:
+    """Quaternions (..., 4) with w >= 0 of rotation matrices (..., 3, 3), noise tolerated.
+
+    The nearest rotation's quaternion is the leading eigenvector of Bar-Itzhack's symmetric
+    matrix (J. Guid. Control Dyn. 23(6), 2000, eq. 6).
+    """
+    r = np.moveaxis(R, (-2, -1), (0, 1))
+    K = np.stack(
+        [
+            [r[0, 0] - r[1, 1] - r[2, 2], r[1, 0] + r[0, 1], r[2, 0] + r[0, 2], r[2, 1] - r[1, 2]],
+            [r[1, 0] + r[0, 1], r[1, 1] - r[0, 0] - r[2, 2], r[2, 1] + r[1, 2], r[0, 2] - r[2, 0]],
+            [r[2, 0] + r[0, 2], r[2, 1] + r[1, 2], r[2, 2] - r[0, 0] - r[1, 1], r[1, 0] - r[0, 1]],
+            [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], r[0, 0] + r[1, 1] + r[2, 2]],
+        ]
+    )
+    _, vectors = np.linalg.eigh(np.moveaxis(K, (0, 1), (-2, -1)) / 3.0)
+    q = vectors[..., :, -1][..., [3, 0, 1, 2]]
+    return np.where(q[..., :1] < 0, -q, q)
+
+
+def continuous(q: Array) -> Array:
+    """Flip signs along the time axis so that neighbours of (time, 4) never differ by a turn."""
+    flips = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
+    flips[flips == 0] = 1.0
+    return q * np.concatenate([[1.0], np.cumprod(flips)])[:, None]
+
+
+def from_euler(roll: Array, pitch: Array, yaw: Array) -> Array:
+    """Quaternions (..., 4) of the angles R = Rz(yaw) Ry(pitch) Rx(roll) (Fossen 2021, eq. 2.31)."""
+    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
+    return np.stack(
+        [
+            cy * cp * cr + sy * sp * sr,
+            cy * cp * sr - sy * sp * cr,
+            cy * sp * cr + sy * cp * sr,
+            sy * cp * cr - cy * sp * sr,
+        ],
+        axis=-1,
+    )
+
+
+def to_euler(q: Array) -> Array:
+    """Roll, pitch, yaw (..., 3) in rad; pitch within +-pi/2. For people, never for rates."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return np.stack([roll, pitch, yaw], axis=-1)
+
+
+def exp(rotation: Array) -> Array:
+    """Quaternions (..., 4) of rotation vectors (..., 3) in rad."""
+    half = 0.5 * np.linalg.norm(rotation, axis=-1, keepdims=True)
+    return np.concatenate([np.cos(half), 0.5 * rotation * np.sinc(half / np.pi)], axis=-1)
+
+
+def log(q: Array) -> Array:
+    """Rotation vectors (..., 3) in rad, length at most pi, of unit quaternions (..., 4)."""
+    q = np.where(q[..., :1] < 0, -q, q)
+    sine = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, q[..., :1])
+    ratio = np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 2.0)
+    return ratio * q[..., 1:]
+
+
+def body_rates(q: Array, q_dot: Array) -> Array:
+    """Angular velocity (..., 3) in the body frame: omega = 2 q* q_dot (Fossen 2021, eq. 2.78)."""
+    return 2.0 * multiply(conjugate(q), q_dot)[..., 1:]
+
+
+def body_rate_derivative(q: Array, q_ddot: Array) -> Array:
+    """Derivative (..., 3) of `body_rates`: the product q_dot* q_dot is real, so 2 q* q_ddot."""
+    return 2.0 * multiply(conjugate(q), q_ddot)[..., 1:]

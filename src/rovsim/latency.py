@@ -1,0 +1,83 @@
+"""How long one prediction takes, as a control loop would feel it: one call at a time."""
+
+import gc
+from collections.abc import Callable
+from contextlib import contextmanager
+from time import perf_counter_ns
+from typing import Any, Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+
+RATES = (50, 100, 250, 1000)  # Hz: control loops from a surface pilot's to a motor controller's
+
+
+def latency(
+    call: Callable[[Array], Array],
+    queries: Array,
+    calls: int,
+    warmup: int,
+    *,
+    points: int,
+    seconds: float = 10.0,
+) -> dict[str, Any]:
+    """Time `call` on one query after the other.
+
+    Python's garbage collector runs once before and not during the calls, so that the numbers
+    are those of the prediction; a loop that leaves it on can be later by the collector's pause.
+
+    Args:
+        call: from features (1, d) to accelerations (1, m).
+        queries: features (n, d), used in turn.
+        calls: how often to call, at most.
+        warmup: calls before the clock starts.
+        points: what the predictor looks at, for the record.
+        seconds: no further call is started after this long; at least one is timed.
+
+    Returns:
+        points, features, outputs, calls; median_us, p99_us, p999_us, max_us; misses: calls slower
+        than the period at each rate in Hz.
+    """
+    rows = [queries[i : i + 1] for i in range(len(queries))]
+    for i in range(max(warmup, 1)):
+        answer = call(rows[i % len(rows)])
+    with _no_collection():
+        took = _timed(call, rows, calls, int(seconds * 1e9))
+    return {
+        "points": points,
+        "features": int(queries.shape[1]),
+        "outputs": int(np.shape(answer)[-1]),
+        "calls": len(took),
+        "median_us": float(np.median(took)) / 1e3,
+        "p99_us": float(np.percentile(took, 99.0)) / 1e3,
+        "p999_us": float(np.percentile(took, 99.9)) / 1e3,
+        "max_us": float(took.max()) / 1e3,
+        "misses": {str(rate): int(np.sum(took > 1e9 / rate)) for rate in RATES},
+    }
+
+
+def _timed(call: Callable[[Array], Array], rows: list[Array], calls: int, limit: int) -> Array:
+    """Nanoseconds of each call."""
+    took = np.zeros(max(calls, 1), dtype=np.int64)
+    end = perf_counter_ns() + limit
+    for i in range(len(took)):
+        row = rows[i % len(rows)]
+        start = perf_counter_ns()
+        call(row)
+        stop = perf_counter_ns()
+        took[i] = stop - start
+        if stop > end:
+            return took[: i + 1]
+    return took
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    was = gc.isenabled()
+    gc.collect()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()

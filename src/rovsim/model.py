@@ -1,0 +1,157 @@
+"""A model: a vehicle, a list of further effects, and perhaps a trained residual. They add."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy import ndarray as Array
+from pydantic import FiniteFloat
+
+from rovsim.body import Body, packed
+from rovsim.engine.at import Constants
+from rovsim.effects import effect
+from rovsim.effects.base import Coefficients, Effect, Wrench
+from rovsim.files import plain, read_yaml, write_yaml
+from rovsim.residual.storage import Residual, read_residual
+from rovsim.strict import Section, checked
+from rovsim.thrust import ThrustPath
+from rovsim.vehicle import VEHICLES, Thrusters, Vehicle, load_vehicle
+
+SCHEMA = "rovsim.model/1"
+
+
+class Value(Section):
+    """A parameter's value with what is known of it."""
+
+    value: FiniteFloat
+    std: FiniteFloat | None = None
+    unit: str | None = None
+
+
+class EffectEntry(Section):
+    """One effect of a model file."""
+
+    effect: str
+    parameters: dict[str, Value | FiniteFloat] = {}
+
+    def build(self) -> Effect:
+        """The effect with these values."""
+        given = self.parameters.items()
+        return effect(self.effect)(
+            **{name: v.value if isinstance(v, Value) else v for name, v in given}
+        )
+
+
+class ModelFile(Section):
+    """A model file as it stands on disk: data only."""
+
+    schema_: Literal["rovsim.model/1"] = SCHEMA
+    vehicle: str | Vehicle
+    effects: tuple[EffectEntry, ...] = ()
+    residual: dict[str, Any] | None = None
+    provenance: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A vehicle and what was added to its nominal physics."""
+
+    name: str
+    vehicle: Vehicle
+    entries: tuple[EffectEntry, ...] = ()
+    residual: Residual | None = None
+    inert: bool = False  # keeps its body velocity whatever pushes: the baseline to beat
+
+    def __add__(self, added: Effect) -> "Model":
+        entry = EffectEntry(effect=added.id, parameters=added.given())
+        return replace(self, entries=(*self.entries, entry))
+
+    @cached_property
+    def effects(self) -> list[Effect]:
+        """All effects: the nominal ones of the vehicle, then the added ones."""
+        return [*self.vehicle.effects(), *(entry.build() for entry in self.entries)]
+
+    @cached_property
+    def body(self) -> Body:
+        """Constants of the equation of motion."""
+        body = Body(gravity=self.vehicle.fluid.gravity)
+        for one in self.effects:
+            if isinstance(one, Coefficients):
+                one.enter(body)
+        return body
+
+    @cached_property
+    def constants(self) -> Constants:
+        """The same, packed for the engine."""
+        constants = packed([self.body])
+        return constants._replace(M_inv=0.0 * constants.M_inv) if self.inert else constants
+
+    @cached_property
+    def thrust_path(self) -> ThrustPath:
+        """From commands to thruster forces."""
+        thrusters = next(e for e in self.effects if isinstance(e, Thrusters))
+        return ThrustPath(thrusters, self.effects)
+
+    @cached_property
+    def wrenches(self) -> list[Wrench]:
+        """Effects evaluated at every instant."""
+        return [e for e in self.effects if isinstance(e, Wrench)]
+
+    def wrench_parameters(self) -> Array:
+        """Their parameters (k,), one after the other."""
+        return np.concatenate([np.zeros(0), *(e.values for e in self.wrenches)])
+
+    def write(self, path: Path, residual: dict | None = None, provenance: dict | None = None):
+        """Write a model file; `residual` describes arrays that lie beside it."""
+        known = (VEHICLES / f"{self.vehicle.name}.yaml").is_file() and (
+            load_vehicle(self.vehicle.name) == self.vehicle
+        )
+        content: dict[str, Any] = {"schema": SCHEMA}
+        content["vehicle"] = self.vehicle.name if known else self.vehicle.model_dump(mode="json")
+        content["effects"] = [entry.model_dump(exclude_none=True) for entry in self.entries]
+        content |= {"residual": plain(residual)} if residual else {}
+        content |= {"provenance": plain(provenance)} if provenance else {}
+        write_yaml(path, content)
+
+
+def nominal(vehicle: Vehicle) -> Model:
+    """The model every comparison starts from."""
+    return Model("nominal", vehicle)
+
+
+def zero_acceleration(vehicle: Vehicle) -> Model:
+    """The baseline: a vehicle that keeps its body velocity."""
+    return Model("zero_acceleration", vehicle, inert=True)
+
+
+BUILT_IN = {"nominal": nominal, "zero_acceleration": zero_acceleration}
+
+
+def load_model(spec: str, vehicle: Vehicle) -> Model:
+    """A built-in model of this vehicle, or the model of a file, called by the file's stem.
+
+    Raises:
+        BadInput: no such file, or it does not describe a model.
+    """
+    return BUILT_IN[spec](vehicle) if spec in BUILT_IN else read_model(Path(spec))
+
+
+def read_model(path: Path) -> Model:
+    """Read a model file.
+
+    Raises:
+        BadInput: it is missing, or something in it is unknown or out of range.
+    """
+    content = read_yaml(path)
+    if isinstance(content, dict) and "schema" in content:
+        content = {("schema_" if k == "schema" else k): v for k, v in content.items()}
+    file = checked(ModelFile, content, path)
+    vehicle = file.vehicle
+    if isinstance(vehicle, str):
+        vehicle = load_vehicle(vehicle, beside=path.parent)
+    residual = read_residual(file.residual, path.parent) if file.residual else None
+    model = Model(path.stem, vehicle, file.effects, residual)
+    _ = model.body.M, model.effects  # refuse a model that cannot move
+    return model

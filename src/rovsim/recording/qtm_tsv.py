@@ -1,0 +1,185 @@
+"""Qualisys Track Manager 6DOF export (tab separated, millimetres)."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.campaign import Mocap
+from rovsim.errors import BadInput, nearest
+from rovsim.files import read_text
+from rovsim.frames import from_matrix
+from rovsim.recording.readers import Export, finite_rows, mocap_reader
+from rovsim.recording.table import Lines, numbers, split_lines, times, without_cut_line
+
+POSITION = ["X", "Y", "Z"]
+ROTATION = [f"Rot[{k}]" for k in range(9)]
+RE_EXPORT = "In QTM: File, Export, To TSV, with data type 6D and the column header included."
+# A rotation matrix printed to six digits is orthonormal to about 1e-6; a cut or damaged line is
+# not. Same bound as for quaternions.
+ORTHONORMAL_WITHIN = 0.1
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where things stand: header values by key, the column line, columns by body name."""
+
+    header: dict[str, list[str]]
+    line: int
+    names: list[str]
+    bodies: dict[str, dict[str, int]]
+
+
+@mocap_reader("qtm_tsv")
+def read_qtm(path: Path, mocap: Mocap) -> Export:
+    """Read one rigid body; its attitude comes from the rotation matrix, not the Euler angles.
+
+    Raises:
+        BadInput: not such a file, or no such body in it; names the line and the column.
+    """
+    text = read_text(path)
+    lines = text.split("\n")
+    layout = _layout(path, lines)
+    body = _body(path, layout, mocap.body)
+    rows = split_lines(path, lines, layout.line, layout.names, "\t", ended=text.endswith("\n"))
+    places = [body[name] for name in [*POSITION, *ROTATION]]
+    table, cut = without_cut_line(_without_events(rows), places)
+    rate = _rate(path, layout)
+    time = _time(table, layout, rate)
+    values = numbers(table, places)
+    residual = numbers(table, [body["Residual"]]) if "Residual" in body else None
+    # column by column: element 3 c + r is row r, column c
+    R = values[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
+    seen = finite_rows(values) & values.any(axis=1)
+    if residual is not None:
+        seen &= ~(residual[:, 0] < 0.0)
+    found = seen & _orthonormal(R)
+    attitude = from_matrix(np.where(found[:, None, None], R, np.eye(3)))
+    counts = {"cut_lines": cut, "bad_rotations": int(np.sum(seen & ~found))}
+    return Export(time, values[:, :3] * 1e-3, attitude, found, rate, counts=counts)
+
+
+def _layout(path: Path, lines: list[str]) -> Layout:
+    header: dict[str, list[str]] = {}
+    for number, line in enumerate(lines):
+        cells = [cell.strip() for cell in line.rstrip("\t").split("\t")]
+        if "Rot[0]" in cells or any(cell.endswith(" Rot[0]") for cell in cells):
+            _check_kind(path, header)
+            names = header.get("BODY_NAMES", [])
+            return Layout(header, number, cells, _bodies(path, number, cells, names))
+        header.setdefault(cells[0], cells[1:])
+        if cells[0] in ("Frame", "Time") or _is_data(cells):
+            break
+    _check_kind(path, header)
+    raise BadInput(
+        "no line of column names with X, Y, Z and Rot[0] to Rot[8]"
+        if any(line.strip() for line in lines)
+        else "the file is empty",
+        where=path,
+        expected="a QTM 6DOF export",
+        remedy=RE_EXPORT,
+    )
+
+
+def _is_data(cells: list[str]) -> bool:
+    try:
+        return len(cells) > 3 and all(np.isfinite(float(cell)) for cell in cells[:4])
+    except ValueError:
+        return False
+
+
+def _check_kind(path: Path, header: dict[str, list[str]]) -> None:
+    kind = " ".join(header.get("DATA_INCLUDED", ["6D"]))
+    if "6D" not in kind:
+        raise BadInput(
+            f"the export holds {kind} data (marker positions), not rigid bodies",
+            where=f"{path}, DATA_INCLUDED",
+            expected="DATA_INCLUDED 6D",
+            remedy=RE_EXPORT,
+        )
+
+
+def _bodies(
+    path: Path, line: int, cells: list[str], body_names: list[str]
+) -> dict[str, dict[str, int]]:
+    """Columns of every body. A body starts at its '<Body> X' column."""
+    starts = [n for n, cell in enumerate(cells) if cell == "X" or cell.endswith(" X")]
+    bodies: dict[str, dict[str, int]] = {}
+    if not starts:
+        raise _no_columns(path, line, POSITION[:1], "any body")
+    for order, (start, end) in enumerate(zip(starts, [*starts[1:], len(cells)], strict=True)):
+        name = cells[start][:-1].strip()
+        if not name:
+            name = body_names[order] if order < len(body_names) else f"body {order + 1}"
+        columns = {cells[n].removeprefix(f"{name} "): n for n in range(start, end)}
+        missing = [column for column in [*POSITION, *ROTATION] if column not in columns]
+        if missing:
+            raise _no_columns(path, line, missing, f"the body '{name}'")
+        bodies[name] = columns
+    return bodies
+
+
+def _no_columns(path: Path, line: int, missing: list[str], body: str) -> BadInput:
+    return BadInput(
+        f"no column {', '.join(missing)} for {body}",
+        where=f"{path}, line {line + 1}",
+        expected="X, Y, Z and Rot[0] to Rot[8] for every body",
+        remedy=RE_EXPORT,
+    )
+
+
+def _body(path: Path, layout: Layout, name: str) -> dict[str, int]:
+    if name in layout.bodies:
+        return layout.bodies[name]
+    raise BadInput(
+        f"no rigid body '{name}'; the file has {', '.join(layout.bodies) or 'none'}",
+        where=f"{path}, line {layout.line + 1}",
+        expected="the body named by 'mocap.body' in campaign.yaml",
+        remedy=nearest(name, layout.bodies),
+    )
+
+
+def _without_events(table: Lines) -> Lines:
+    keep = [n for n, row in enumerate(table.cells) if row[0].strip() != "EVENT"]
+    cells, places = [table.cells[n] for n in keep], [table.numbers[n] for n in keep]
+    return Lines(table.path, table.names, cells, places, table.ended)
+
+
+def _rate(path: Path, layout: Layout) -> float | None:
+    text = "".join(layout.header.get("FREQUENCY", [])[:1])
+    try:
+        rate = float(text) if text else None
+    except ValueError:
+        rate = 0.0
+    if rate is None or (np.isfinite(rate) and rate > 0):
+        return rate
+    raise BadInput(
+        f"FREQUENCY is {text!r}",
+        where=path,
+        expected="the capture rate in Hz",
+        remedy="Correct that header line, with a decimal point.",
+    )
+
+
+def _time(table: Lines, layout: Layout, rate: float | None) -> Array:
+    """Times (n,) in s. QTM counts frames from 1, and frame 1 is time 0."""
+    if "Time" in layout.names:
+        return times(table, layout.names.index("Time"))
+    if rate is None:
+        raise BadInput(
+            "neither a Time column nor a FREQUENCY line",
+            where=table.path,
+            expected="one of them",
+            remedy="Export again with the time column, or add the line FREQUENCY <Hz>.",
+        )
+    if "Frame" in layout.names:
+        return (times(table, layout.names.index("Frame")) - 1.0) / rate
+    return np.arange(len(table.cells)) / rate
+
+
+def _orthonormal(R: Array) -> Array:
+    """Where the matrices (n, 3, 3) are rotations: orthonormal and right-handed."""
+    deviation = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
+    with np.errstate(invalid="ignore"):
+        return (deviation < ORTHONORMAL_WITHIN) & (np.linalg.det(R) > 0.0)

@@ -1,0 +1,178 @@
+"""How good a recording is: rate, gaps, repairs, excitation, noise, and what to do about it."""
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.campaign import AXES
+from rovsim.frames import conjugate, continuous, log, multiply, normalized, unrotate
+from rovsim.recording.reading import Anomalies, measured_rate
+from rovsim.recording.recording import Recording
+from rovsim.recording.remarks import remarks
+
+GAP = 0.05  # s; shorter ones are bridged by any resampling
+SHORTEST_RUN = 2.0  # s; one scoring window (contract, section 3)
+# A body at rest stays well inside these: MoCap noise spreads over a few mm and about 0.01 rad, a
+# manoeuvring vehicle over decimetres within seconds.
+STILL_POSITION, STILL_ATTITUDE = 0.01, 0.02  # m, rad
+BLOCK = 0.1  # s; the median of a block rejects single outlier frames
+# An axis whose velocity varies less than this cannot be judged: on runs with no command on an
+# axis, disturbances alone move it up to about 0.02 m/s and 0.1 rad/s.
+EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard deviation
+
+
+def quality_report(
+    recording: Recording, anomalies: Anomalies, outliers: int | None = None
+) -> dict[str, Any]:
+    """Describe a recording in plain JSON values (docs/formats.md lists the keys).
+
+    `outliers` is the number of frames that the outlier rejection refused, None when not looked for.
+    """
+    time, found = recording.time, recording.found
+    gaps = find_gaps(recording)
+    report: dict[str, Any] = {
+        "schema": "rovsim.quality/1",
+        "run": recording.run.id,
+        "split": recording.run.split,
+        "control": recording.run.control,
+        "rate_hz": {"nominal": recording.rate, "median": measured_rate(time)},
+        "duration_s": float(time[-1] - time[0]),
+        "frames": len(time),
+        "not_found": int(np.sum(~found)),
+        "longest_gap_s": max((gap["duration_s"] for gap in gaps), default=0.0),
+        "gaps": gaps,
+        "outliers": outliers,
+        "repairs": asdict(anomalies),
+        "commands": _commands(recording),
+        "excitation": excitation(recording),
+        "noise": noise(recording),
+        "unusable": usable_reason(recording),
+    }
+    report["remarks"] = remarks(report)
+    return report
+
+
+def usable_reason(recording: Recording) -> str | None:
+    """Say why a recording cannot be used, or None when it can."""
+    found = recording.found
+    seen = float(np.sum(found)) / recording.rate
+    duration = float(np.ptp(recording.time[found])) if found.any() else 0.0
+    if min(seen, duration) < SHORTEST_RUN:
+        return (
+            f"too short: the body was seen for {min(seen, duration):.2f} s, {SHORTEST_RUN:g} needed"
+        )
+    position = _spread(recording.position[found])
+    attitude = _spread(_turns(recording.attitude[found]))
+    if position < STILL_POSITION and attitude < STILL_ATTITUDE:
+        return f"motionless: it stays within {1e3 * position:.1f} mm and {attitude:.3f} rad"
+    return None
+
+
+def find_gaps(recording: Recording) -> list[dict[str, float]]:
+    """Stretches without a pose, from the last found frame to the next, longer than 0.05 s.
+
+    On a slow export (bins) a step is a gap when it is more than twice the usual one.
+    """
+    time = recording.time[recording.found]
+    steps = np.diff(time)
+    limit = max(GAP, 2.0 * float(np.median(np.diff(recording.time))))
+    long = np.flatnonzero(steps > limit * (1.0 + 1e-9))
+    return [{"start_s": float(time[k]), "duration_s": float(steps[k])} for k in long]
+
+
+def excitation(recording: Recording) -> dict[str, dict[str, Any]]:
+    """Standard deviation of the body velocity per axis, and whether it suffices to judge it."""
+    nu = rough_velocity(recording)
+    spread = nu.std(axis=0) if len(nu) else np.zeros(6)
+    return {
+        axis: {
+            "std": float(spread[k]),
+            "unit": "m/s" if k < 3 else "rad/s",
+            "excited": bool(spread[k] > EXCITED[k]),
+        }
+        for k, axis in enumerate(AXES)
+    }
+
+
+def rough_velocity(recording: Recording) -> Array:
+    """Body velocities (k, 6): the exported ones, else differences of medians of short blocks."""
+    if recording.nu is not None:
+        return recording.nu[recording.found]
+    size = max(1, round(BLOCK * recording.rate))
+    time, position, attitude = (_blocks(a, size) for a in _seen(recording))
+    step = np.diff(time[:, 0])
+    near = step < 1.5 * size / recording.rate  # no difference across a gap
+    q, dt = attitude[:-1], step[:, None]
+    linear = unrotate(q, np.diff(position, axis=0) / dt)
+    angular = log(multiply(conjugate(q), attitude[1:])) / dt
+    return np.hstack([linear, angular])[near]
+
+
+def noise(recording: Recording) -> dict[str, float | None]:
+    """Noise per sample in m and rad: robust spread of third differences / sqrt(20).
+
+    The variance of the third difference of white noise is 1 + 9 + 9 + 1 = 20 times its own; any
+    motion slow against four samples cancels. On a slow export the motion does not cancel, and the
+    number is an upper bound. None with too few samples.
+    """
+    _, position, attitude = _seen(recording)
+    even = _evenly_spaced(recording)
+    turns = log(multiply(conjugate(attitude[:-1]), attitude[1:]))
+    moved, turned = np.diff(position, 3, axis=0)[even], np.diff(turns, 2, axis=0)[even]
+    return {"position_m": _robust_std(moved), "attitude_rad": _robust_std(turned)}
+
+
+def _commands(recording: Recording) -> dict[str, Any]:
+    time = recording.commands.time
+    steps = np.diff(time)
+    return {
+        "kind": recording.commands.kind,
+        "lines": len(time),
+        "start_s": float(time[0]),
+        "end_s": float(time[-1]),
+        "median_step_s": float(np.median(steps)) if len(steps) else None,
+        "longest_step_s": float(steps.max()) if len(steps) else None,
+        "varies": bool(np.ptp(recording.commands.value, axis=0).max() > 0.0),
+    }
+
+
+def _seen(recording: Recording) -> tuple[Array, Array, Array]:
+    """Time (k, 1), position (k, 3) and sign-continuous attitude (k, 4) of the found frames."""
+    found = recording.found
+    attitude = continuous(recording.attitude[found])
+    return recording.time[found][:, None], recording.position[found], attitude
+
+
+def _blocks(values: Array, size: int) -> Array:
+    """Medians of consecutive blocks of `size` rows; unit length where the rows are quaternions."""
+    count = len(values) // size
+    medians = np.median(values[: count * size].reshape(count, size, values.shape[1]), axis=1)
+    return normalized(medians) if values.shape[1] == 4 else medians
+
+
+def _evenly_spaced(recording: Recording) -> Array:
+    """Where four consecutive found frames are one nominal step apart each."""
+    steps = np.diff(recording.time[recording.found])
+    even = np.abs(steps * recording.rate - 1.0) < 0.5
+    return even[:-2] & even[1:-1] & even[2:]
+
+
+def _robust_std(third: Array) -> float | None:
+    if len(third) < 10:
+        return None
+    # 1.4826 turns a median absolute deviation into a normal standard deviation
+    per_axis = 1.4826 * np.median(np.abs(third - np.median(third, axis=0)), axis=0)
+    return float(np.sqrt(np.mean(per_axis**2) / 20.0))
+
+
+def _turns(attitude: Array) -> Array:
+    """Rotation vectors (n, 3) from the first attitude."""
+    return log(multiply(conjugate(attitude[:1]), attitude))
+
+
+def _spread(values: Array) -> float:
+    """Largest range over the columns, without the outer 1 % at either end (outlier frames)."""
+    low, high = np.percentile(values, [1.0, 99.0], axis=0)
+    return float(np.max(high - low))

@@ -1,0 +1,112 @@
+"""The formats that can be read. A new one is a new module here with a registered function."""
+
+import pkgutil
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import Callable, TypeVar
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.campaign import CommandLog, Mocap
+from rovsim.errors import BadInput, nearest
+from rovsim.recording.recording import CommandKind
+
+# Named in the campaign format but not readable yet, and the way around.
+LATER = {
+    "motive_csv": "Convert the take to 'csv' (time_s, x_m, y_m, z_m, qw, qx, qy, qz).",
+    "rosbag2": "Write its poses and commands to 'csv' files and name those.",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Export:
+    """Poses as a file tells them: its own axes, its own order of lines.
+
+    `time` (n,) s; `position` (n, 3) m; `attitude` (n, 4) quaternion, body to world; `found` (n,)
+    False where the body was not seen; `rate` nominal Hz, None when the file does not say; `nu`
+    (n, 6) body velocities, None when not exported; `counts` of what was repaired while reading
+    (`cut_lines`, `bad_rotations`).
+    """
+
+    time: Array
+    position: Array
+    attitude: Array
+    found: Array
+    rate: float | None = None
+    nu: Array | None = None
+    counts: dict[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class CommandExport:
+    """Commands as a file tells them: `time` (m,) s, `value` (m, c), lines in file order.
+
+    `counts` of what was repaired while reading (`cut_lines`, `dropped`, `clipped`).
+    """
+
+    time: Array
+    value: Array
+    kind: CommandKind
+    counts: dict[str, int] = field(default_factory=dict)
+
+
+MocapReader = Callable[[Path, Mocap], Export]
+CommandReader = Callable[[Path, CommandLog], CommandExport]
+R = TypeVar("R", MocapReader, CommandReader)
+
+_mocap: dict[str, MocapReader] = {}
+_commands: dict[str, CommandReader] = {}
+
+
+def mocap_reader(name: str) -> Callable[[MocapReader], MocapReader]:
+    """Register a function that reads poses of the format `name`."""
+    return lambda reader: _mocap.setdefault(name, reader)
+
+
+def command_reader(name: str) -> Callable[[CommandReader], CommandReader]:
+    """Register a function that reads commands of the format `name`."""
+    return lambda reader: _commands.setdefault(name, reader)
+
+
+def mocap_readers() -> dict[str, MocapReader]:
+    """Every format of poses that can be read."""
+    _discover()
+    return dict(_mocap)
+
+
+def command_readers() -> dict[str, CommandReader]:
+    """Every format of commands that can be read."""
+    _discover()
+    return dict(_commands)
+
+
+def reader_of(name: str, readers: dict[str, R], where: object) -> R:
+    """Return the reader of the format `name`.
+
+    Raises:
+        BadInput: no reader of that name.
+    """
+    if name in readers:
+        return readers[name]
+    remedy = LATER.get(name) or nearest(name, readers)
+    found = "is not readable in this version" if name in LATER else "is not known"
+    raise BadInput(
+        f"the format '{name}' {found}",
+        where=where,
+        expected=f"one of {', '.join(sorted(readers))}",
+        remedy=remedy,
+    )
+
+
+def finite_rows(*arrays: Array) -> Array:
+    """Rows (n,) in which every one of `arrays` (n, k) is finite."""
+    return np.logical_and.reduce([np.isfinite(a).all(axis=1) for a in arrays])
+
+
+def _discover() -> None:
+    import rovsim.recording as package
+
+    for module in pkgutil.iter_modules(package.__path__):
+        import_module(f"{package.__name__}.{module.name}")

@@ -1,0 +1,107 @@
+"""A run as it was logged, in NED and FRD, before any filtering."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.files import read_arrays, write_arrays
+
+CommandKind = Literal["thruster", "demand", "wrench"]
+
+
+@dataclass(frozen=True)
+class RunInfo:
+    """Which run this is: `id` of the run, its `control` (3dof | 6dof) and `split` (train | test)."""
+
+    id: str
+    control: str
+    split: str
+
+
+@dataclass(frozen=True, eq=False)
+class Commands:
+    """What the pilot sent. A line holds until the next one.
+
+    `time` (m,) in s on the MoCap clock, increasing. `value` (m, c): thruster commands in [-1, 1]
+    (`thruster`), demands per axis in [-1, 1] (`demand`) or a body wrench in N, N m (`wrench`).
+    """
+
+    time: Array
+    value: Array
+    kind: CommandKind
+
+
+@dataclass(frozen=True, eq=False)
+class Site:
+    """Where it was recorded: `tank` (3, 2) low and high walls in NED m (NaN when unknown).
+
+    `axes` (3,) are the signs between the MoCap world axes and NED.
+    """
+
+    tank: Array
+    axes: Array
+
+    @staticmethod
+    def unknown() -> "Site":
+        """An unbounded place whose MoCap axes are NED."""
+        return Site(np.full((3, 2), np.nan), np.ones(3))
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """One run on the MoCap clock.
+
+    `time` (n,) s, increasing; `position` (n, 3) m in NED; `attitude` (n, 4) quaternion body to
+    world; `found` (n,) False where the body was not seen (the pose there is NaN); `nu` (n, 6) the
+    export's own body velocities, bin means from time[k] to time[k+1], or None; `rate` nominal Hz.
+    """
+
+    run: RunInfo
+    site: Site
+    time: Array
+    position: Array
+    attitude: Array
+    found: Array
+    commands: Commands
+    rate: float
+    nu: Array | None = None
+
+    def write(self, path: Path) -> None:
+        """Write to `.npz`."""
+        arrays = {**labels(self.run, self.site, self.commands), "time": self.time}
+        arrays |= {"position": self.position, "attitude": self.attitude, "found": self.found}
+        arrays["rate"] = np.array(self.rate)
+        if self.nu is not None:
+            arrays["nu"] = self.nu
+        write_arrays(path, **arrays)
+
+    @staticmethod
+    def read(path: Path) -> "Recording":
+        """Read what `write` wrote."""
+        a = read_arrays(path)
+        run, site, commands = unlabelled(a)
+        return Recording(
+            run, site, a["time"], a["position"], a["attitude"], a["found"], commands,
+            float(a["rate"]), a.get("nu"),
+        )  # fmt: skip
+
+
+def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:
+    """The arrays that every stage of a run carries along."""
+    return {
+        "run": np.array([run.id, run.control, run.split, commands.kind]),
+        "tank": site.tank,
+        "axes": site.axes,
+        "command_time": commands.time,
+        "command_value": commands.value,
+    }
+
+
+def unlabelled(a: dict[str, Array]) -> tuple[RunInfo, Site, Commands]:
+    """Undo `labels`."""
+    *run, kind = (str(s) for s in a["run"])
+    commands = Commands(a["command_time"], a["command_value"], kind)  # type: ignore[arg-type]
+    return RunInfo(*run), Site(a["tank"], a["axes"]), commands

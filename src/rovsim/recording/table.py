@@ -1,0 +1,144 @@
+"""Columns of numbers in delimited text, with the line and column of whatever is wrong."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.errors import BadInput, nearest
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines of cells below a line of column names.
+
+    `numbers` are the line numbers in the file, from 1; `ended` is False when the file stops in
+    the middle of a line (no line end after it).
+    """
+
+    path: Path
+    names: list[str]
+    cells: list[list[str]]
+    numbers: list[int]
+    ended: bool = True
+
+
+def split_lines(
+    path: Path, lines: list[str], header: int, names: list[str], separator: str, *, ended: bool
+) -> Lines:
+    """Split the lines below line `header` (index from 0); blank ones are skipped."""
+    filled = [(n + 1, line) for n, line in enumerate(lines) if n > header and line.strip()]
+    cells = [line.split(separator) for _, line in filled]
+    return Lines(path, names, cells, [number for number, _ in filled], ended)
+
+
+def without_cut_line(table: Lines, columns: list[int]) -> tuple[Lines, int]:
+    """Drop a last line that was cut; return how many were dropped (0, 1).
+
+    It is cut when it stops before one of the `columns` in use, or in the middle of such a cell.
+    """
+    if not table.cells:
+        return table, 0
+    last = table.cells[-1]
+    short = len(last) <= max(columns)
+    ragged = not table.ended and len(last) - 1 in columns and not _is_number(last[-1])
+    if not (short or ragged):
+        return table, 0
+    return Lines(table.path, table.names, table.cells[:-1], table.numbers[:-1]), 1
+
+
+def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
+    """Places of the wanted columns among `names`.
+
+    Raises:
+        BadInput: one is missing, or named twice.
+    """
+    for name in wanted:
+        if names.count(name) > 1:
+            raise BadInput(
+                f"two columns are named '{name}'",
+                where=path,
+                expected="every column named once",
+                remedy="Rename or remove one of them.",
+            )
+        if name not in names:
+            others = [other for other in names if other not in wanted]
+            raise BadInput(
+                f"no column '{name}', but {', '.join(names)}",
+                where=path,
+                expected=f"the columns {', '.join(wanted)}",
+                remedy=nearest(name, others) if others else "Export again with that column.",
+            )
+    return [names.index(name) for name in wanted]
+
+
+def numbers(table: Lines, columns: list[int]) -> Array:
+    """Numbers (lines, columns) of those columns; an empty cell is NaN.
+
+    Raises:
+        BadInput: a cell is missing or holds no number.
+    """
+    try:
+        picked = [[row[c] for c in columns] for row in table.cells]
+        return np.array(picked, dtype=float).reshape(len(picked), len(columns))
+    except (IndexError, ValueError):
+        rows = zip(table.cells, table.numbers, strict=True)
+        return np.array([[_number(table, row, n, c) for c in columns] for row, n in rows])
+
+
+def times(table: Lines, column: int) -> Array:
+    """Times (lines,) of one column.
+
+    Raises:
+        BadInput: a time is no finite number.
+    """
+    time = numbers(table, [column])[:, 0]
+    bad = np.flatnonzero(~np.isfinite(time))
+    if bad.size:
+        cell = table.cells[bad[0]][column].strip()
+        raise _bad_cell(table, table.numbers[bad[0]], column, cell, "a finite time in s")
+    return time
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return not cell.strip()
+    return True
+
+
+def _number(table: Lines, row: list[str], line: int, column: int) -> float:
+    if column >= len(row):
+        raise BadInput(
+            f"the line has {len(row)} cells and stops before '{table.names[column]}'",
+            where=f"{table.path}, line {line}",
+            expected=f"{len(table.names)} cells",
+            remedy="Export the run again, or remove that line.",
+        )
+    cell = row[column].strip()
+    if not cell:
+        return float("nan")
+    try:
+        return float(cell)
+    except ValueError:
+        raise _bad_cell(table, line, column, cell, "a number") from None
+
+
+def _bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) -> BadInput:
+    place = f"{table.path}, line {line}, column '{table.names[column]}'"
+    if re.fullmatch(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?", cell):
+        return BadInput(
+            f"{cell!r} is written with a decimal comma",
+            where=place,
+            expected="a decimal point",
+            remedy="Export again with decimal points.",
+        )
+    return BadInput(
+        f"the cell holds {cell!r}" if cell else "the cell is empty",
+        where=place,
+        expected=expected,
+        remedy="Correct or remove that line.",
+    )

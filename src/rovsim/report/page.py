@@ -1,0 +1,132 @@
+"""Put the numbers, sentences and figures of a study into one self-contained HTML page."""
+
+from base64 import b64encode
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from rovsim.errors import BadInput
+from rovsim.figures import SECTIONS, kind
+from rovsim.figures.inference_time import RATES
+from rovsim.figures.marks import AXES, number, significant
+from rovsim.files import write_text
+from rovsim.report.sentences import summary
+from rovsim.tables import Table, errors_table, ladder_table
+
+# What the Compare section tabulates: horizon and quantity.
+COMPARED = (
+    ("2", "velocity_rmse"),
+    ("2", "acceleration_rmse"),
+    ("2", "velocity_mae"),
+    ("open_loop", "velocity_rmse"),
+)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawn figure: its registered name, the PNG and what it shows ("run 6dof-2, 2 s windows")."""
+
+    name: str
+    png: bytes
+    about: str = ""
+
+    @staticmethod
+    def read(path: Path, name: str, about: str = "") -> "Picture":
+        """Read a PNG that `rovsim.figures.style.save` wrote.
+
+        Raises:
+            BadInput: the file cannot be read or is no PNG.
+        """
+        try:
+            png = path.read_bytes()
+        except OSError as error:
+            found = f"cannot be read ({error.strerror})"
+        else:
+            if png.startswith(b"\x89PNG"):
+                return Picture(name, png, about)
+            found = "is not a PNG picture"
+        remedy = "Draw the figure again."
+        raise BadInput(found, where=path, expected="a figure of the study", remedy=remedy)
+
+    @property
+    def source(self) -> str:
+        """The picture as a data address."""
+        return f"data:image/png;base64,{b64encode(self.png).decode()}"
+
+    @property
+    def caption(self) -> str:
+        """What is seen, and of which run."""
+        text = kind(self.name).caption
+        return f"{self.about[0].upper()}{self.about[1:]}. {text}" if self.about else text
+
+
+@dataclass(frozen=True)
+class ReportInputs:
+    """Everything the report shows; what is empty is said to be missing, not left out silently.
+
+    `comparison`, `ladder`, `timing`: contents of the JSON files of those names. `quality`: the
+    quality reports by run. `pictures`: in the order of appearance. `provenance`: nested plain
+    values (settings, code digest, versions).
+    """
+
+    campaign: str
+    comparison: Mapping[str, Any]
+    ladder: Mapping[str, Any] = field(default_factory=dict)
+    timing: Mapping[str, Any] = field(default_factory=dict)
+    quality: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    pictures: Sequence[Picture] = ()
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+
+def render(inputs: ReportInputs) -> str:
+    """Return the report as HTML: no script, nothing from the network, every name escaped."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["significant"] = lambda value: significant(number(value))
+    environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
+    return environment.get_template("report.html").render(
+        campaign=inputs.campaign,
+        summary=summary(inputs.comparison, inputs.ladder, inputs.timing, inputs.quality),
+        errors=_errors(inputs.comparison),
+        ladder=ladder_table(inputs.ladder),
+        timing=inputs.timing.get("inference", {}),
+        rates=RATES,
+        quality=inputs.quality,
+        axes=AXES,
+        pictures=_by_section(inputs.pictures),
+        provenance=flattened(inputs.provenance),
+    )
+
+
+def write(path: Path, inputs: ReportInputs) -> None:
+    """Write the report, whole or not at all."""
+    write_text(path, render(inputs))
+
+
+def flattened(content: Mapping[str, Any], above: str = "") -> list[tuple[str, str]]:
+    """Return nested values as rows of a dotted name and a text."""
+    rows: list[tuple[str, str]] = []
+    for key, value in content.items():
+        name = f"{above}{key}"
+        if isinstance(value, Mapping) and value:
+            rows += flattened(value, f"{name}.")
+        elif isinstance(value, (list, tuple)):
+            rows.append((name, ", ".join(str(v) for v in value) or "none"))
+        else:
+            rows.append((name, "none" if value is None or value == {} else str(value)))
+    return rows
+
+
+def _errors(comparison: Mapping[str, Any]) -> list[Table]:
+    return [errors_table(comparison, horizon, "test", quantity) for horizon, quantity in COMPARED]
+
+
+def _by_section(pictures: Sequence[Picture]) -> dict[str, list[Picture]]:
+    return {s: [p for p in pictures if kind(p.name).section == s] for s in SECTIONS}

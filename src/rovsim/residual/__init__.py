@@ -1,0 +1,1 @@
+"""Learned residuals: what is left of the acceleration once physics has had its say."""

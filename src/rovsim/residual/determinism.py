@@ -1,0 +1,28 @@
+"""PyTorch made to give the same numbers for the same seed, without touching its global state."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+# The order of sums depends on the number of threads: fixed here, not taken from the machine.
+THREADS = 2
+
+
+@contextmanager
+def seeded_torch(seed: int) -> Iterator[None]:
+    """Float64, own random stream, THREADS threads, exact Cholesky; everything is put back after."""
+    import torch
+    from gpytorch import settings
+
+    threads, dtype = torch.get_num_threads(), torch.get_default_dtype()
+    exact = settings.fast_computations(
+        covar_root_decomposition=False, log_prob=False, solves=False
+    )
+    with torch.random.fork_rng(devices=[]), exact, settings.max_cholesky_size(10**6):
+        torch.manual_seed(seed)
+        torch.set_num_threads(THREADS)
+        torch.set_default_dtype(torch.float64)
+        try:
+            yield
+        finally:
+            torch.set_num_threads(threads)
+            torch.set_default_dtype(dtype)

@@ -1,0 +1,138 @@
+"""What exact and variational Gaussian processes share (GPyTorch): parts, training, export.
+
+Both see scaled features and targets of mean 0 and standard deviation 1, and predict the mean
+mean_j + s_j^2 sum_i w_ij exp(-|(z - z_i) / l_j|^2 / 2): an RBF kernel with one lengthscale per
+feature (Rasmussen & Williams 2006, eqs. 2.25 and 5.1).
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.residual.export import AXES, Kernel, export_expansion
+from rovsim.residual.features import FeatureSettings
+from rovsim.residual.learner import Predict, Progress
+from rovsim.residual.scaling import Scaling, fit_scaling
+
+
+def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:
+    """Scalings of features and targets as arrays, fitted on all training rows."""
+    features, targets = fit_scaling(kind, X), fit_scaling("standard", Y)
+    return {
+        "shift": features.shift,
+        "scale": features.scale,
+        "target_shift": targets.shift,
+        "target_scale": targets.scale,
+    }
+
+
+def scaled_pairs(arrays: Mapping[str, Array], X: Array, Y: Array) -> tuple[Array, Array]:
+    """Scaled features (n, d) and scaled targets (6, n)."""
+    targets = Scaling(arrays["target_shift"], arrays["target_scale"])
+    return _features(arrays).apply(X), np.ascontiguousarray(targets.apply(Y).T)
+
+
+def _features(arrays: Mapping[str, Array]) -> Scaling:
+    return Scaling(arrays["shift"], arrays["scale"])
+
+
+def modules(Z: Array, outputs: int) -> tuple[Any, Any, Any]:
+    """Mean, kernel and likelihood for scaled features Z; `outputs` kernels (1 or 6).
+
+    Lengthscales start at sqrt(d) standard deviations, about the distance between two points: at
+    GPyTorch's own start (0.7) no point of a 12-dimensional set would see another.
+    """
+    import torch
+    from gpytorch.kernels import RBFKernel, ScaleKernel
+    from gpytorch.likelihoods import GaussianLikelihood
+    from gpytorch.means import ConstantMean
+
+    batch, d = torch.Size([] if outputs == 1 else [outputs]), Z.shape[1]
+    kernel = ScaleKernel(RBFKernel(ard_num_dims=d, batch_shape=batch), batch_shape=batch)
+    start = np.sqrt(d) * fit_scaling("standard", Z).scale
+    kernel.base_kernel.lengthscale = torch.as_tensor(start).expand(*batch, 1, d)
+    # its noise stays above 1e-4 of the targets' variance: 1 % of their size, and well conditioned
+    likelihood = GaussianLikelihood(batch_shape=batch)
+    return ConstantMean(batch_shape=torch.Size([AXES])), kernel, likelihood
+
+
+def optimise(
+    parameters: list, loss: Callable[[], Any], rounds: int, rate: float, progress: Progress
+) -> float:
+    """Minimise `loss` with Adam, its rate falling linearly to a tenth; returns the last loss."""
+    import torch
+
+    adam = torch.optim.Adam(parameters, lr=rate)
+    value = float("nan")
+    for done in range(rounds):
+        adam.param_groups[0]["lr"] = rate * (1.0 - 0.9 * done / rounds)
+        adam.zero_grad()
+        now = loss()
+        now.backward()
+        adam.step()
+        value = float(now.detach())
+        progress(done + 1, rounds)
+    return value
+
+
+def hyperparameters(model: Any) -> dict[str, Array]:
+    """Lengthscale (b, d), outputscale (b,), noise (b,) and mean (6,), in scaled units; b 1 or 6."""
+
+    def of(tensor: Any) -> Array:
+        return tensor.detach().numpy().copy()
+
+    lengthscale = of(model.covar.base_kernel.lengthscale)
+    return {
+        "lengthscale": lengthscale.reshape(-1, lengthscale.shape[-1]),
+        "outputscale": of(model.covar.outputscale).reshape(-1),
+        "noise": of(model.likelihood.noise).reshape(-1),
+        "mean": of(model.mean.constant),
+    }
+
+
+def set_hyperparameters(model: Any, arrays: Mapping[str, Array]) -> None:
+    """Give `model` the values that `hyperparameters` returned."""
+    import torch
+
+    def into(name: str, like: Any) -> Any:
+        return torch.as_tensor(arrays[name]).reshape(like.shape)
+
+    kernel = model.covar
+    kernel.base_kernel.lengthscale = into("lengthscale", kernel.base_kernel.lengthscale)
+    kernel.outputscale = into("outputscale", kernel.outputscale)
+    model.likelihood.noise = into("noise", model.likelihood.noise)
+    model.mean.constant.data = into("mean", model.mean.constant)
+
+
+def library_predictor(model: Any, arrays: Mapping[str, Array]) -> Predict:
+    """GPyTorch's own predicted mean, from unscaled features; scaled here and nowhere else."""
+    import torch
+    from gpytorch import settings
+
+    features = _features(arrays)
+    model.eval()
+
+    def predict(X: Array) -> Array:
+        Z = torch.as_tensor(features.apply(X))
+        with torch.no_grad(), settings.debug(False), settings.skip_posterior_variances():
+            mean = model(Z).mean.numpy()
+        return mean.T * arrays["target_scale"] + arrays["target_shift"]
+
+    predict(arrays["shift"][None])  # GPyTorch solves for its weights at the first call
+    return predict
+
+
+def export(
+    features: FeatureSettings, arrays: Mapping[str, Array], Z: Array, weights: Array
+) -> Array:
+    """Kernel expansion around scaled points Z (n, d) with weights (6, n) in scaled units."""
+    mean = arrays["target_shift"] + arrays["target_scale"] * arrays["mean"]
+    scale = arrays["target_scale"] * arrays["outputscale"]
+    columns = np.split((weights * scale[:, None]).T, len(arrays["lengthscale"]), axis=1)
+    kernels = [
+        Kernel(Z, lengthscale, column)
+        for lengthscale, column in zip(arrays["lengthscale"], columns, strict=True)
+    ]
+    return export_expansion(features, _features(arrays), mean, kernels)

@@ -1,0 +1,106 @@
+"""Exact Gaussian process (GPyTorch): a smooth residual, sure of itself only where data is."""
+
+from time import perf_counter
+from typing import Any, Literal, Mapping
+
+from numpy import ndarray as Array
+from pydantic import Field
+
+from rovsim.residual import gaussian
+from rovsim.residual.determinism import seeded_torch
+from rovsim.residual.export import AXES
+from rovsim.residual.learner import Learner, LearnerSettings, Predict, Progress, Trained, spread_rows
+
+
+class GpSettings(LearnerSettings):
+    """Exact multi-output Gaussian process."""
+
+    kind: Literal["gp"] = "gp"
+    # independent: each axis has its own lengthscales and noise. shared: one kernel for all six,
+    # six times cheaper to evaluate
+    kernel: Literal["independent", "shared"] = "independent"
+    max_points: int | None = Field(default=1500, ge=1)  # cost: n^3 to condition, n to evaluate
+    # rows on which hyperparameters are found: a few numbers need fewer rows than the posterior
+    tuning_points: int = Field(default=500, ge=1)
+    iterations: int = Field(default=60, ge=1)  # the likelihood is flat after about 50
+    learning_rate: float = Field(default=0.1, gt=0)  # Adam on log-like parameters of order 1
+
+
+def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress) -> Trained:
+    """Tune on some rows, condition on more. See `rovsim.residual.learner.train`."""
+    start = perf_counter()
+    rows = spread_rows(len(X), settings.max_points, seed)
+    some = rows[spread_rows(len(rows), settings.tuning_points, seed)]
+    arrays = gaussian.scalings(settings.features.scaling, X, Y)
+    with seeded_torch(seed):
+        model = _model(*gaussian.scaled_pairs(arrays, X[some], Y[some]), settings)
+        loss = _tune(model, settings, progress)
+        Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])
+        arrays |= gaussian.hyperparameters(model) | {"points": Z, "targets": T}
+        _condition(model, Z, T)
+        library = gaussian.library_predictor(model, arrays)
+        weights = model.prediction_strategy.mean_cache.numpy()
+    data = gaussian.export(settings.features, arrays, Z, weights)
+    info = {"points": len(rows), "tuning_points": len(some), "loss": loss}
+    info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
+    info["seconds"] = round(perf_counter() - start, 3)
+    return Trained(settings, data, arrays, library, info)
+
+
+def library_from(arrays: Mapping[str, Array], settings: GpSettings) -> Predict:
+    """GPyTorch's own model, with its hyperparameters and the data it is conditioned on."""
+    with seeded_torch(0):
+        model = _model(arrays["points"], arrays["targets"], settings)
+        gaussian.set_hyperparameters(model, arrays)
+        return gaussian.library_predictor(model, arrays)
+
+
+def _model(Z: Array, T: Array, settings: GpSettings) -> Any:
+    import torch
+    from gpytorch.distributions import MultivariateNormal
+    from gpytorch.models import ExactGP
+
+    mean, kernel, likelihood = gaussian.modules(Z, 1 if settings.kernel == "shared" else AXES)
+
+    class Model(ExactGP):
+        def __init__(self) -> None:
+            super().__init__(torch.as_tensor(Z), torch.as_tensor(T), likelihood)
+            self.mean, self.covar = mean, kernel
+
+        def forward(self, z: Any) -> Any:
+            return MultivariateNormal(self.mean(z), self.covar(z))
+
+    return Model()
+
+
+def _tune(model: Any, settings: GpSettings, progress: Progress) -> float:
+    """Maximise the marginal likelihood, summed over the axes; returns minus it per row."""
+    from gpytorch.mlls import ExactMarginalLogLikelihood
+
+    model.train()
+    (Z,), T = model.train_inputs, model.train_targets
+    likelihood = ExactMarginalLogLikelihood(model.likelihood, model)
+
+    def independent() -> Any:
+        return -likelihood(model(Z), T).sum()
+
+    def shared() -> Any:
+        # one factorisation serves all axes; GPyTorch's own class would repeat it six times
+        prior = model(Z)
+        K = prior.lazy_covariance_matrix.add_diagonal(model.likelihood.noise)
+        error = (T - prior.mean).mT
+        square, determinant = K.inv_quad_logdet(error, logdet=True)
+        return 0.5 * (square + AXES * determinant) / len(Z)
+
+    loss = shared if settings.kernel == "shared" else independent
+    rounds, rate = settings.iterations, settings.learning_rate
+    return gaussian.optimise(list(model.parameters()), loss, rounds, rate, progress)
+
+
+def _condition(model: Any, Z: Array, T: Array) -> None:
+    import torch
+
+    model.set_train_data(torch.as_tensor(Z), torch.as_tensor(T), strict=False)
+
+
+LEARNER = Learner(GpSettings, fit, library_from)

@@ -1,0 +1,108 @@
+"""From a recording to a motion: outliers, resampling, filter, derivatives.
+
+Recordings that bring their own bin-mean velocities pass the first stages unchanged.
+"""
+
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.files import read_arrays
+from rovsim.recording.recording import Recording
+from rovsim.signals.binned import bin_motion
+from rovsim.signals.clock import stretches, time_step, without_margins
+from rovsim.signals.differentiate import (
+    Differentiation,
+    Spline,
+    differentiate_eta,
+)
+from rovsim.signals.filter import (
+    Butterworth,
+    Filter,
+    filter_eta,
+    filter_poses,
+)
+from rovsim.signals.motion import Motion, Poses
+from rovsim.signals.outliers import Outliers, VelocityGate
+from rovsim.signals.resample import Linear, Resampling, resample
+from rovsim.strict import Section
+
+# What a stage hands on: poses, or a binned recording that passes unchanged.
+Stage: TypeAlias = Poses | Recording
+
+
+class SignalSettings(Section):
+    """The whole chain; each part has a `kind` and that kind's own keys."""
+
+    outliers: Outliers = VelocityGate()
+    resample: Resampling = Linear()
+    filter: Filter = Butterworth()
+    differentiate: Differentiation = Spline()
+
+
+def clean(recording: Recording, settings: SignalSettings) -> Motion:
+    """Turn a recording into a motion.
+
+    Raises:
+        BadInput: the settings do not suit the recording's rate, or a binned one is too short.
+    """
+    return differentiated(filtered(resampled(recording, settings), settings), settings)
+
+
+def resampled(recording: Recording, settings: SignalSettings) -> Stage:
+    """First stage: poses on a uniform clock. A binned recording passes unchanged."""
+    if recording.nu is not None:
+        return recording
+    return resample(recording, settings.resample, settings.outliers)
+
+
+def filtered(stage: Stage, settings: SignalSettings) -> Stage:
+    """Second stage: filtered poses. A binned recording passes unchanged."""
+    return stage if isinstance(stage, Recording) else filter_poses(stage, settings.filter)
+
+
+def differentiated(stage: Stage, settings: SignalSettings) -> Motion:
+    """Third stage: a motion, of either sort."""
+    if isinstance(stage, Recording):
+        return bin_motion(stage)
+    return differentiate_poses(stage, settings)
+
+
+def read_stage(path: Path) -> Stage:
+    """Read what a stage wrote with its own `write`: poses or a binned recording."""
+    return Recording.read(path) if "found" in read_arrays(path) else Poses.read(path)
+
+
+def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
+    """Motion of poses that are filtered already; NaN velocities where they are not usable.
+
+    `margin` seconds at either end of every stretch are no longer usable.
+    """
+    nu = np.full((len(poses.time), 6), np.nan)
+    nu_dot = nu.copy()
+    dt = time_step(poses.time) if len(poses.time) > 1 else 1.0
+    for first, last in stretches(poses.usable):
+        nu[first:last], nu_dot[first:last] = differentiate_eta(
+            poses.eta[first:last], dt, settings.differentiate
+        )
+    usable = without_margins(poses.usable, round(settings.differentiate.margin / dt))
+    usable &= np.isfinite(nu).all(axis=1)
+    return Motion(
+        poses.run, poses.site, poses.time, poses.eta, nu, nu_dot, nu, usable,
+        poses.commands, binned=False, end=float(poses.time[-1]),
+    )  # fmt: skip
+
+
+def velocities(eta: Array, dt: float, settings: SignalSettings) -> tuple[Array, Array]:
+    """Body velocity and acceleration (..., n, 6) of model poses (..., n, 7), `dt` s apart.
+
+    The same filter and derivative that the measurement went through. Quaternions must be
+    sign-continuous.
+
+    Raises:
+        BadInput: the filter cannot work at this sampling rate.
+    """
+    smooth = filter_eta(eta, dt, settings.filter)
+    return differentiate_eta(smooth, dt, settings.differentiate)

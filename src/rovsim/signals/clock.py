@@ -1,0 +1,36 @@
+"""Uniform clocks and the usable stretches on them."""
+
+import numpy as np
+from numpy import ndarray as Array
+
+
+def uniform_clock(first: float, last: float, rate: float) -> Array:
+    """Times from `first`, 1 / `rate` apart, none after `last`."""
+    return first + np.arange(int((last - first) * rate + 1e-6) + 1) / rate
+
+
+def time_step(time: Array) -> float:
+    """Step in s of a uniform clock (n,), n > 1."""
+    return float((time[-1] - time[0]) / (len(time) - 1))
+
+
+def stretches(usable: Array) -> list[tuple[int, int]]:
+    """Stretches [first, last) of True in `usable` (n,), in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], usable, [0]]).astype(int)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def without_short(usable: Array, length: int) -> Array:
+    """`usable` (n,) without its stretches of fewer than `length` samples."""
+    kept = usable.copy()
+    for first, last in stretches(usable):
+        kept[first:last] = last - first >= length
+    return kept
+
+
+def without_margins(usable: Array, samples: int) -> Array:
+    """`usable` (n,) with `samples` fewer at either end of every stretch."""
+    kept = np.zeros_like(usable)
+    for first, last in stretches(usable):
+        kept[first + samples : max(last - samples, first + samples)] = True
+    return kept

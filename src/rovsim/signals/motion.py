@@ -1,0 +1,91 @@
+"""A run on a clean clock: poses, then velocities and accelerations."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.files import read_arrays, write_arrays
+from rovsim.recording.recording import Commands, RunInfo, Site, labels, unlabelled
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Poses on a uniform clock.
+
+    `time` (n,) s; `eta` (n, 7): position NED m and unit quaternion (w, x, y, z), sign-continuous;
+    `usable` (n,): False in and beside gaps too long to bridge (`eta` there is a placeholder).
+    """
+
+    run: RunInfo
+    site: Site
+    time: Array
+    eta: Array
+    usable: Array
+    commands: Commands
+
+    def write(self, path: Path) -> None:
+        """Write to `.npz`."""
+        arrays = {"time": self.time, "eta": self.eta, "usable": self.usable}
+        write_arrays(path, **labels(self.run, self.site, self.commands), **arrays)
+
+    @staticmethod
+    def read(path: Path) -> "Poses":
+        """Read what `write` wrote."""
+        a = read_arrays(path)
+        run, site, commands = unlabelled(a)
+        return Poses(run, site, a["time"], a["eta"], a["usable"], commands)
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A measured run, ready to be compared with a model.
+
+    `time` (n,) s; `eta` (n, 7) as in `Poses`; `nu`, `nu_dot` (n, 6) body velocity and acceleration
+    at CO in FRD (m/s, rad/s); `usable` (n,).
+
+    Sampled (`binned` False): a uniform clock, everything holds at time[k] and `state_nu` is `nu`.
+    Binned: `nu` is the mean over time[k] .. time[k+1] (the last bin ends at `end`), `nu_dot` the
+    backward difference (NaN at k = 0), `time` may be uneven; `eta` and `state_nu` (n, 6) are the
+    instantaneous pose and velocity at time[k], from which a replay may start.
+    """
+
+    run: RunInfo
+    site: Site
+    time: Array
+    eta: Array
+    nu: Array
+    nu_dot: Array
+    state_nu: Array
+    usable: Array
+    commands: Commands
+    binned: bool
+    end: float
+
+    @property
+    def state(self) -> Array:
+        """Instantaneous state (n, 13): position, quaternion, velocity."""
+        return np.concatenate([self.eta, self.state_nu], axis=1)
+
+    def segments(self) -> list[tuple[int, int]]:
+        """Stretches [first, last) of usable samples, in order."""
+        padded = np.concatenate([[False], self.usable, [False]])
+        changes = np.flatnonzero(padded[1:] != padded[:-1])
+        return [(int(a), int(b)) for a, b in zip(changes[::2], changes[1::2], strict=True)]
+
+    def write(self, path: Path) -> None:
+        """Write to `.npz`."""
+        names = ("time", "eta", "nu", "nu_dot", "state_nu", "usable")
+        arrays = {name: getattr(self, name) for name in names}
+        arrays |= {"binned": np.array(self.binned), "end": np.array(self.end)}
+        write_arrays(path, **labels(self.run, self.site, self.commands), **arrays)
+
+    @staticmethod
+    def read(path: Path) -> "Motion":
+        """Read what `write` wrote."""
+        a = read_arrays(path)
+        run, site, commands = unlabelled(a)
+        names = ("time", "eta", "nu", "nu_dot", "state_nu", "usable")
+        fields = [a[name] for name in names]
+        return Motion(run, site, *fields, commands, bool(a["binned"]), float(a["end"]))

@@ -1,0 +1,175 @@
+"""Frames that cannot be true: the MoCap swapped markers and the body jumped for a moment."""
+
+from typing import Annotated, Literal, TypeAlias
+
+import numpy as np
+from numpy import ndarray as Array
+from pydantic import Field
+
+from rovsim import frames
+from rovsim.recording.recording import Recording
+from rovsim.strict import Section
+
+# How far back the gate looks for a stretch to continue from; bounds the work on hopeless runs.
+LOOK_BACK = 1000
+# Leaving found frames out has to be worth more than this many frames, so that a frame of a burst
+# that happens to be within reach is left out with the rest of the burst.
+DETOUR = 3.0
+
+
+class VelocityGate(Section):
+    """Keep the longest chain of stretches that the body can travel at a plausible speed.
+
+    Stretches are cut at every implausible step and at every dropout. Two stretches belong
+    together when the second is within reach of the first. A jump that stays below `max_speed` x
+    step + `tolerance` passes, and so does a lone frame between dropouts that is within reach.
+    """
+
+    kind: Literal["velocity_gate"] = "velocity_gate"
+    # m/s: a BlueROV2 reaches about 1.5 m/s (3 knots, Blue Robotics' data sheet)
+    max_speed: float = Field(default=1.5, gt=0)
+    # rad/s: twice what a BlueROV2 Heavy turns at in a tank
+    max_rate: float = Field(default=5.0, gt=0)
+    # m: five standard deviations of a step's length at 0.5 to 0.7 mm noise per axis
+    tolerance: float = Field(default=0.005, ge=0)
+    # rad: five standard deviations of a step's angle at 2 mrad noise per axis
+    angle_tolerance: float = Field(default=0.02, ge=0)
+
+    def rejected(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
+        """Mask (n,) of the found frames, `step` s apart, that are not in the chain."""
+        starts, ends = _stretches(self, time, position, attitude, step)
+        mask = np.ones(len(time), bool)
+        for piece in _longest_chain(self, time, position, attitude, step, starts, ends):
+            mask[starts[piece] : ends[piece] + 1] = False
+        return mask
+
+
+class Hampel(Section):
+    """Reject frames far from the median of their neighbourhood (Hampel 1974; Pearson 2002).
+
+    The median slope of the neighbourhood is taken out first, or a fast motion would hide
+    outliers. Blind to a burst that fills half of its window, less
+    sensitive beside dropouts. Repeated until nothing is found.
+    """
+
+    kind: Literal["hampel"] = "hampel"
+    # frames to either side: outvotes bursts of up to five frames (0.05 s at 100 Hz)
+    half_window: int = Field(default=7, ge=1)
+    # robust standard deviations: a normal deviate passes 6 once in 5e8 frames
+    threshold: float = Field(default=6.0, gt=0)
+    # m, rad: lower bound of that deviation, the usual noise of a tank MoCap
+    noise: float = Field(default=0.001, gt=0)
+    angle_noise: float = Field(default=0.004, gt=0)
+
+    def rejected(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
+        """Mask (n,) of the found frames that differ from the median of their neighbours."""
+        # Rotation matrices have no sign to agree on; |R1 - R2| / sqrt(2) is the angle when small.
+        rotation = frames.matrix(attitude).reshape(len(time), 9) / np.sqrt(2.0)
+        kept = np.arange(len(time))
+        while len(kept) > 2:
+            far = self._far(time[kept], position[kept], self.noise)
+            far |= self._far(time[kept], rotation[kept], self.angle_noise)
+            if not far.any():
+                break
+            kept = kept[~far]
+        return ~np.isin(np.arange(len(time)), kept)
+
+    def _far(self, time: Array, x: Array, noise: float) -> Array:
+        n = len(x)
+        width = min(2 * self.half_window + 1, n)
+        first = np.clip(np.arange(n) - width // 2, 0, n - width)
+        nearby = first[:, None] + np.arange(width)
+        window, ago = x[nearby], (time[nearby] - time[:, None])[..., None]
+        slope = np.median(np.diff(window, axis=1) / np.diff(ago, axis=1), axis=1)
+        window = window - slope[:, None] * ago
+        middle = np.median(window, axis=1)
+        spread = 1.4826 * np.median(np.linalg.norm(window - middle[:, None], axis=2), axis=1)
+        return np.linalg.norm(x - middle, axis=1) > self.threshold * np.maximum(spread, noise)
+
+
+class KeepAll(Section):
+    """Believe every frame."""
+
+    kind: Literal["none"] = "none"
+
+    def rejected(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
+        """Mask (n,), all False."""
+        return np.zeros(len(time), bool)
+
+
+Outliers: TypeAlias = Annotated[VelocityGate | Hampel | KeepAll, Field(discriminator="kind")]
+
+
+def find_outliers(recording: Recording, settings: VelocityGate | Hampel | KeepAll) -> Array:
+    """Mask (n,) of the frames that were found but cannot be true.
+
+    Run again on what it leaves, it finds nothing more.
+    """
+    mask = np.zeros(len(recording.time), bool)
+    found = np.flatnonzero(recording.found)
+    if len(found) > 1:
+        time = recording.time[found]
+        step = max(1.0 / recording.rate, float(np.median(np.diff(recording.time))))
+        mask[found] = settings.rejected(
+            time, recording.position[found], recording.attitude[found], step
+        )
+    return mask
+
+
+def _stretches(
+    gate: VelocityGate, time: Array, position: Array, attitude: Array, step: float
+) -> tuple[Array, Array]:
+    """First and last index of every stretch without a dropout or an implausible step."""
+    near = _within_reach(
+        gate, np.diff(time), position[1:] - position[:-1], attitude[:-1], attitude[1:], step
+    )
+    cut = np.flatnonzero(~near | (np.diff(time) > 1.5 * step))
+    return np.concatenate([[0], cut + 1]), np.concatenate([cut, [len(time) - 1]])
+
+
+def _within_reach(
+    gate: VelocityGate, elapsed: Array, moved: Array, q0: Array, q1: Array, step: float
+) -> Array:
+    # Jittered stamps can be closer than a step although the exposures were not.
+    elapsed = np.maximum(elapsed, step)
+    angle = 2.0 * np.arccos(np.clip(np.abs(np.sum(q0 * q1, axis=-1)), 0.0, 1.0))
+    near = np.linalg.norm(moved, axis=-1) <= gate.max_speed * elapsed + gate.tolerance
+    return near & (angle <= gate.max_rate * elapsed + gate.angle_tolerance)
+
+
+def _longest_chain(
+    gate: VelocityGate,
+    time: Array,
+    position: Array,
+    attitude: Array,
+    step: float,
+    starts: Array,
+    ends: Array,
+) -> list[int]:
+    """Stretches, in order, that hold the most frames and are each within reach of the last.
+
+    Dynamic programming over the stretches: best[j] = frames of j + max over the reachable
+    i < j of best[i] - `DETOUR` if found frames between i and j are left out.
+    """
+    size = (ends - starts + 1).astype(float)
+    best, before = size.copy(), np.full(len(size), -1)
+    best[1:] -= DETOUR  # starting late leaves frames out as well
+    for j in range(1, len(size)):
+        i = np.arange(max(0, j - LOOK_BACK), j)
+        last, first = ends[i], starts[j]
+        near = _within_reach(
+            gate,
+            time[first] - time[last],
+            position[first] - position[last],
+            attitude[last],
+            attitude[first],
+            step,
+        )
+        score = np.where(near, best[i] - DETOUR * (i < j - 1), -np.inf)
+        k = int(np.argmax(score))
+        if size[j] + score[k] > best[j]:
+            best[j], before[j] = size[j] + score[k], i[k]
+    chain = [int(np.argmax(best - DETOUR * (np.arange(len(size)) < len(size) - 1)))]
+    while before[chain[-1]] >= 0:
+        chain.append(int(before[chain[-1]]))
+    return chain[::-1]

@@ -1,0 +1,90 @@
+"""Typed sections read from YAML: an unknown key is an error that names the nearest known one."""
+
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from rovsim.errors import BadInput, nearest
+
+
+class Section(BaseModel):
+    """A section of a file or of the configuration: typed, immutable, no unknown keys."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+S = TypeVar("S", bound=Section)
+
+
+def checked(kind: type[S], content: Any, where: Path | str) -> S:
+    """Build a section from plain values.
+
+    Raises:
+        BadInput: names the file, the place in it, what was found there and the remedy.
+    """
+    if not isinstance(content, dict):
+        raise BadInput(
+            f"holds {type(content).__name__} instead of keys and values",
+            where=where,
+            expected=f"the keys {', '.join(kind.model_fields)}",
+            remedy="See docs/formats.md for an example.",
+        )
+    try:
+        return kind.model_validate(content)
+    except ValidationError as error:
+        raise _explained(error, kind, content, where) from None
+
+
+def _explained(error: ValidationError, kind: type[Section], content: Any, where: Any) -> BadInput:
+    first = error.errors(include_url=False)[0]
+    place = ".".join(str(part) for part in first["loc"])
+    if first["type"] == "extra_forbidden":
+        key = str(first["loc"][-1])
+        known = _known_keys(kind, first["loc"][:-1])
+        return BadInput(
+            f"unknown key '{place}'",
+            where=where,
+            expected=f"one of {', '.join(known)}",
+            remedy=nearest(key, known),
+        )
+    if first["type"] == "missing":
+        return BadInput(
+            f"'{place}' is missing",
+            where=where,
+            expected=f"a value for '{place}'",
+            remedy="Add it; docs/formats.md has an example.",
+        )
+    return BadInput(
+        f"'{place}' is {first.get('input')!r}",
+        where=where,
+        expected=_sentence(first["msg"]),
+        remedy="Correct that value.",
+    )
+
+
+def _sentence(message: str) -> str:
+    for prefix in ("Value error, ", "Input should be "):
+        message = message.removeprefix(prefix)
+    return message.rstrip(".")
+
+
+def _known_keys(kind: type[BaseModel], place: tuple[Any, ...]) -> list[str]:
+    """Keys of the section found by walking `place` down from `kind`."""
+    for part in place:
+        if isinstance(part, int) or part not in kind.model_fields:
+            continue
+        inner = _section_in(kind.model_fields[part].annotation)
+        if inner is not None:
+            kind = inner
+    return list(kind.model_fields)
+
+
+def _section_in(annotation: Any) -> type[BaseModel] | None:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    for inner in getattr(annotation, "__args__", ()):
+        found = _section_in(inner)
+        if found is not None:
+            return found
+    return None

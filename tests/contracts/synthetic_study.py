@@ -1,0 +1,162 @@
+"""A small made-up study: the inputs of every figure, table and report, by argument name."""
+
+from typing import Any
+
+import numpy as np
+
+AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+MODELS = (
+    "nominal", "knn_3dof", "knn_6dof", "gp_3dof", "gp_6dof", "svgp_3dof", "svgp_6dof",
+    "zero_acceleration",
+)  # fmt: skip
+RUNS = {"3dof-1": "train", "6dof-1": "train", "3dof-2": "test", "6dof-2": "test"}
+
+
+def study(
+    models: tuple[str, ...] = MODELS, runs: dict[str, str] = RUNS, duration: float = 40.0,
+    seed: int = 0,
+) -> dict[str, Any]:  # fmt: skip
+    """Everything a figure may ask for by argument name."""
+    rng = np.random.default_rng(seed)
+    motion = _motion(duration, rng)
+    ladder = _ladder(models, rng)
+    return {
+        **motion,
+        "predicted_nu": {m: motion["nu"] + _drift(m, motion, rng) for m in models},
+        "predicted_nu_dot": {m: motion["nu_dot"] + 2 * _drift(m, motion, rng) for m in models},
+        "predicted_eta": {m: _path(m, motion, rng) for m in models[:3]},
+        "tank": np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]]),
+        "comparison": _comparison(models, runs, rng),
+        "growth": _growth(models, rng),
+        "timing": _timing(models, rng),
+        "ladder": ladder,
+        "quality": {run: _quality(run, split, rng) for run, split in runs.items()},
+    }
+
+
+def _level(model: str) -> float:
+    return {"nominal": 1.0, "zero_acceleration": 1.6}.get(model, 0.2 + 0.06 * len(model))
+
+
+def _motion(duration: float, rng: np.random.Generator) -> dict[str, Any]:
+    time = np.arange(0.0, duration, 0.02)
+    phase = rng.uniform(0, 6, 6)
+    scale = np.array([0.4, 0.3, 0.2, 0.3, 0.2, 0.6])
+    rate = np.array([0.5, 0.7, 0.4, 1.1, 0.9, 0.6])
+    nu = scale * np.sin(rate * time[:, None] + phase)
+    nu_dot = scale * rate * np.cos(rate * time[:, None] + phase)
+    nu_dot = nu_dot + 0.03 * rng.standard_normal(nu.shape)
+    usable = (time < 0.4 * duration) | (time > 0.47 * duration)
+    position = np.stack(
+        [5 + 3 * np.sin(0.2 * time), -2.5 - 1.6 * np.cos(0.31 * time), -1.5 + np.sin(0.1 * time)], 1
+    )
+    eta = np.hstack([position, np.tile([1.0, 0, 0, 0], (len(time), 1))])
+    return {"time": time, "nu": nu, "nu_dot": nu_dot, "usable": usable, "eta": eta}
+
+
+def _drift(model: str, motion: dict[str, Any], rng: np.random.Generator) -> np.ndarray:
+    time = motion["time"]
+    shape = np.sin(0.8 * time[:, None] + rng.uniform(0, 6, 6))
+    return 0.1 * _level(model) * shape * np.array([1, 1, 0.6, 1.5, 1, 2])
+
+
+def _path(model: str, motion: dict[str, Any], rng: np.random.Generator) -> np.ndarray:
+    away = np.linspace(0, 1.2 * _level(model), len(motion["time"]))[:, None]
+    eta = motion["eta"].copy()
+    eta[:, :3] += away * rng.uniform(-1, 1, 3)
+    return eta
+
+
+def metrics(level: float, rng: np.random.Generator) -> dict[str, Any]:
+    """One M of the contract, section 3."""
+
+    def axes(scale: float) -> dict[str, float]:
+        return {a: float(scale * level * rng.uniform(0.7, 1.3)) for a in AXES}
+
+    return {
+        "acceleration_rmse": axes(0.12), "velocity_mae": axes(0.04), "velocity_rmse": axes(0.06),
+        "position_rmse_m": 0.1 * level, "attitude_rmse_rad": 0.05 * level,
+    }  # fmt: skip
+
+
+def _comparison(models: tuple[str, ...], runs: dict[str, str], rng: Any) -> dict[str, Any]:
+    return {
+        "schema": "rovsim.comparison/1",
+        "models": {
+            m: {
+                "runs": {
+                    run: {
+                        "split": split,
+                        "control": run[:4],
+                        "open_loop": metrics(3 * _level(m), rng),
+                        "windows": {h: metrics(_level(m), rng) for h in ("0.5", "2", "5")},
+                    }
+                    for run, split in runs.items()
+                }
+            }
+            for m in models
+        },
+    }
+
+
+def _growth(models: tuple[str, ...], rng: Any) -> dict[str, Any]:
+    horizon = np.arange(0.25, 5.01, 0.25)
+    curve = {m: {a: _level(m) * rng.uniform(0.02, 0.05) for a in AXES} for m in models}
+    return {
+        "models": {
+            m: {
+                "horizon_s": horizon.tolist(),
+                "velocity_rmse": {a: (c * np.sqrt(horizon)).tolist() for a, c in axes.items()},
+            }
+            for m, axes in curve.items()
+        }
+    }
+
+
+def stats(median: float) -> dict[str, Any]:
+    """STATS of one predictor."""
+    worst = 9 * median
+    return {
+        "points": 2000, "features": 14, "outputs": 6, "median_us": median, "p99_us": 2 * median,
+        "p999_us": 4 * median, "max_us": worst,
+        "misses": {str(r): int(4 * median > 1e6 / r) * 12 for r in (50, 100, 250, 1000)},
+    }  # fmt: skip
+
+
+def _timing(models: tuple[str, ...], rng: Any) -> dict[str, Any]:
+    timed = [m for m in models if "dof" in m]
+    return {
+        "inference": {
+            m: {"library": stats(150.0 * (k + 1)), "exported": stats(4.0 * (k + 1))}
+            for k, m in enumerate(timed)
+        }
+    }
+
+
+def _ladder(models: tuple[str, ...], rng: Any) -> dict[str, Any]:
+    names = [*sorted(models, key=_level, reverse=True), "noise_floor"]
+    steps = []
+    for name in names:
+        m = metrics(0.1 if name == "noise_floor" else _level(name), rng)
+        step = {"model": name, "split": "test", "acceleration_rmse": m["acceleration_rmse"]}
+        level = 0.1 if name == "noise_floor" else _level(name)
+        steps.append({**step, "velocity_mae": m["velocity_mae"], "windows_2s": 0.31 * level})
+    return {"schema": "rovsim.ladder/1", "steps": steps}
+
+
+def _quality(run: str, split: str, rng: Any) -> dict[str, Any]:
+    std = 0.5 * rng.uniform(0.0, 1.0, 6)
+    gaps = [{"start_s": 12.0, "duration_s": 0.31}, {"start_s": 30.0, "duration_s": 2.5}]
+    return {
+        "schema": "rovsim.quality/1", "run": run, "split": split, "control": run[:4],
+        "rate_hz": {"nominal": 100.0, "median": 99.98}, "duration_s": 59.99, "frames": 6000,
+        "not_found": 281, "longest_gap_s": 2.5, "gaps": gaps, "outliers": 7,
+        "repairs": {"duplicates": 3, "unsorted": 2, "command_duplicates": 1},
+        "commands": {"kind": "thruster", "lines": 3000},
+        "excitation": {
+            a: {"std": float(s), "unit": "m/s" if k < 3 else "rad/s", "excited": bool(s > 0.1)}
+            for k, (a, s) in enumerate(zip(AXES, std, strict=True))
+        },
+        "noise": {"position_m": 0.0012, "attitude_rad": 0.004}, "unusable": None,
+        "remarks": ["The longest gap is 2.50 s; motion across it is not rebuilt."],
+    }  # fmt: skip

@@ -1,0 +1,146 @@
+"""Every bad recording gets one message that names the file, the place in it and the remedy."""
+
+import pytest
+
+from recordings import (
+    campaign_content,
+    csv_lines,
+    qtm_lines,
+    write_campaign,
+    write_lines,
+    write_run,
+)
+from rovsim.campaign import load_campaign
+from rovsim.errors import BadInput
+from rovsim.recording import read_run
+
+COLUMNS = 8  # index of the column line in the QTM files written here
+
+
+def cell(line, column, text, separator="\t"):
+    """Write `text` into one cell."""
+
+    def edit(lines):
+        cells = lines[line].split(separator)
+        cells[column] = text
+        return [*lines[:line], separator.join(cells), *lines[line + 1 :]]
+
+    return edit
+
+
+def replaced(old, new):
+    return lambda lines: [line.replace(old, new) for line in lines]
+
+
+def unseen(lines):
+    return [
+        line if k <= COLUMNS else "\t".join([*line.split("\t")[:2], *["0"] * 16])
+        for k, line in enumerate(lines)
+    ]
+
+
+# format -> file -> case -> (edit, words of the message: place, finding, remedy)
+QTM = {
+    "empty": (lambda lines: [], ["the file is empty", "Export"]),
+    "header only": (lambda lines: lines[: COLUMNS + 1], ["no frames", "Export the run again"]),
+    "no column line": (lambda lines: lines[:COLUMNS] + lines[COLUMNS + 1 :],
+                       ["no line of column names", "column header included"]),
+    "wrong body": (replaced("BlueROV2", "BlueROV"),
+                   ["line 9", "no rigid body 'BlueROV2'", "'BlueROV'"]),
+    "missing column": (replaced("Rot[4]", "Extra"), ["line 9", "no column Rot[4]", "BlueROV2"]),
+    "no X": (replaced("BlueROV2 X", "BlueROV2"), ["line 9", "no column X", "6D"]),
+    "missing rotation": (replaced("Rot[", "Q["), ["no line of column names", "Rot[0]", "6D"]),
+    "3D export": (replaced("DATA_INCLUDED\t6D", "DATA_INCLUDED\t3D"),
+                  ["DATA_INCLUDED", "3D data", "data type 6D"]),
+    "decimal comma": (cell(20, 2, "4737,035"),
+                      ["line 21", "'BlueROV2 X'", "decimal comma", "Export again"]),
+    "word": (cell(20, 3, "far"), ["line 21", "column 'Y'", "'far'", "Correct or remove"]),
+    "NaN time": (cell(20, 1, "nan"), ["line 21", "column 'Time'", "'nan'", "Correct or remove"]),
+    "word as time": (cell(20, 1, "soon"), ["line 21", "column 'Time'", "'soon'", "Correct"]),
+    "empty time": (cell(20, 1, ""), ["line 21", "column 'Time'", "cell is empty", "Correct"]),
+    "cut in the middle": (lambda lines: [*lines[:20], lines[20][:40], *lines[21:]],
+                          ["line 21", "stops before", "Export the run again"]),
+    "never found": (unseen, ["no frame in which the body was found", "'runs'"]),
+    "one time": (lambda lines: [*lines[:10], lines[9]], ["no frames", "Export the run again"]),
+    "frequency": (replaced("FREQUENCY\t100", "FREQUENCY\tfast"), ["'fast'", "Correct"]),
+}  # fmt: skip
+CSV = {
+    "empty": (lambda lines: [], ["the file is empty", "Export"]),
+    "header only": (lambda lines: lines[:1], ["no frames", "Export the run again"]),
+    "missing column": (replaced("yaw_rad", "yaw"), ["no column 'yaw_rad'", "Did you mean 'yaw'"]),
+    "twice": (replaced("y_m", "x_m"), ["two columns are named 'x_m'", "Rename"]),
+    "some velocities": (replaced("roll_rad,pitch_rad,yaw_rad", "roll_rad,pitch_rad,yaw_rad,u_m_s"),
+                        ["no column v_m_s", "all six", "Add"]),
+    "semicolons": (replaced(",", ";"), ["line 1", "semicolons", "Save it again with commas"]),
+    "word": (cell(7, 2, "far", ","), ["line 8", "column 'y_m'", "'far'", "Correct"]),
+    "NaN time": (cell(7, 0, "nan", ","), ["line 8", "column 'time_s'", "'nan'", "Correct"]),
+    "infinite time": (cell(7, 0, "inf", ","), ["line 8", "column 'time_s'", "'inf'", "Correct"]),
+}  # fmt: skip
+COMMANDS = {
+    "empty": (lambda lines: [], ["the file is empty", "Export"]),
+    "header only": (lambda lines: lines[:1], ["no commands", "Export the commands again"]),
+    "missing column": (replaced("t2", "m2"), ["no column 't2'", "Did you mean 'm2'"]),
+    "word": (cell(7, 2, "stop", ","), ["line 8", "column 't2'", "'stop'", "Correct"]),
+    "NaN time": (cell(7, 0, "nan", ","), ["line 8", "column 'time_s'", "'nan'", "Correct"]),
+    "no time": (cell(0, 0, "stamp", ","), ["no column 'time_s'", "Known: stamp"]),
+    "out of range": (cell(7, 1, "0.3", ","),
+                     ["line 8", "column 't1'", "0.3", "pwm", "commands.kind"]),
+    "infinite": (cell(7, 1, "inf", ","), ["line 8", "column 't1'", "inf", "commands.kind"]),
+    "other clock": (lambda lines: [lines[0], "1000.0,1500,1500", "1001.0,1500,1500"],
+                    ["1000 to 1001 s", "clock of the motion capture", "Shift"]),
+    "all empty": (lambda lines: [lines[0], "0,,", "1,,"],
+                  ["no commands (2 lines without a value)", "Export the commands again"]),
+}  # fmt: skip
+CASES = [("qtm_tsv", "poses.tsv", case, *QTM[case]) for case in QTM]
+CASES += [("csv", "poses.csv", case, *CSV[case]) for case in CSV]
+CASES += [("csv", "commands.csv", case, *COMMANDS[case]) for case in COMMANDS]
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "edit", "words"),
+    [(name, file, edit, words) for name, file, _, edit, words in CASES],
+    ids=[f"{file}-{case}" for _, file, case, _, _ in CASES],
+)
+def test_a_bad_recording_is_refused_in_words(tmp_path, name, file, edit, words):
+    folder = write_run(tmp_path, name)
+    lines = (folder / file).read_text().splitlines()
+    write_lines(folder / file, edit(lines))
+    campaign = load_campaign(folder)
+    with pytest.raises(BadInput) as refusal:
+        read_run(campaign, "one")
+    for word in [str(folder / file), *words]:
+        assert word in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("section", "name", "words"),
+    [
+        ("mocap", "motive_csv", ["mocap.format", "not readable in this version", "Convert"]),
+        ("mocap", "rosbag2", ["mocap.format", "not readable in this version", "Write its poses"]),
+        ("mocap", "qtm_tvs", ["mocap.format", "not known", "Did you mean 'qtm_tsv'"]),
+        ("commands", "rosbag2", ["commands.format", "not readable in this version", "csv"]),
+    ],
+)
+def test_a_format_without_reader_is_refused_in_words(tmp_path, section, name, words):
+    folder = write_run(tmp_path)
+    content = campaign_content()
+    content[section]["format"] = name
+    campaign = load_campaign(write_campaign(folder, content))
+    with pytest.raises(BadInput) as refusal:
+        read_run(campaign, "one")
+    for word in [str(folder / "campaign.yaml"), *words]:
+        assert word in str(refusal.value)
+
+
+def test_the_builders_write_good_files(tmp_path):
+    # otherwise every refusal above could have another cause
+    for name in ("qtm_tsv", "csv"):
+        recording, _ = read_run(load_campaign(write_run(tmp_path / name, name)), "one")
+        assert recording.found.all()
+
+
+def test_the_column_line_is_where_the_cases_say():
+    from recordings import Swim
+
+    assert "Rot[0]" in qtm_lines(Swim.ned(2))[COLUMNS]
+    assert csv_lines(Swim.ned(2))[0].startswith("time_s")

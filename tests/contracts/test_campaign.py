@@ -1,0 +1,144 @@
+"""campaign.yaml: what is accepted, and what is refused with which words."""
+
+import copy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recordings import campaign_content, write_campaign, write_run
+from rovsim.campaign import load_campaign
+from rovsim.errors import BadInput
+
+
+def test_a_campaign_gives_absolute_paths_and_the_tank_in_ned(tmp_path, monkeypatch):
+    write_run(tmp_path / "c")
+    monkeypatch.chdir(tmp_path)
+    campaign = load_campaign(Path("c"))
+    run = campaign.run("one")
+    assert campaign.mocap_path(run) == tmp_path / "c" / "poses.tsv"
+    assert campaign.commands_path(run).is_absolute()
+    np.testing.assert_array_equal(campaign.tank_ned(), [[0, 10], [-5, 0], [-3, 0]])
+    assert load_campaign(Path("c/campaign.yaml")) == campaign
+
+
+def test_a_tank_may_be_absent_or_partial(tmp_path):
+    folder = write_run(tmp_path)
+    content = campaign_content()
+    del content["tank"]
+    assert np.isnan(load_campaign(write_campaign(folder, content)).tank_ned()).all()
+    content["tank"] = {"z": [0, 3]}
+    tank = load_campaign(write_campaign(folder, content)).tank_ned()
+    np.testing.assert_array_equal(tank, [[np.nan] * 2, [np.nan] * 2, [-3, 0]])
+
+
+def test_numbers_are_names(tmp_path):
+    folder = write_run(tmp_path)
+    content = campaign_content()
+    content["runs"][0]["id"] = 115750
+    content["name"] = 2025
+    campaign = load_campaign(write_campaign(folder, content))
+    assert campaign.run("115750").id == "115750"
+    assert campaign.name == "2025"
+
+
+@pytest.mark.parametrize("name", ["mätning 3, a=b (ny)", "水槽", "with space"])
+def test_unusual_paths_work(tmp_path, name):
+    folder = write_run(tmp_path / name)
+    content = campaign_content()
+    content["name"] = content["runs"][0]["id"] = name
+    assert load_campaign(write_campaign(folder, content)).run(name).id == name
+
+
+def test_recordings_may_lie_elsewhere(tmp_path, monkeypatch):
+    write_run(tmp_path / "raw data")
+    content = campaign_content()
+    monkeypatch.delenv("SOME_DATA", raising=False)
+    content["folder"] = "${SOME_DATA:-../nowhere}/raw data"
+    folder = write_campaign(tmp_path / "described", content)
+    with pytest.raises(BadInput, match=r"run 'one' is missing: .*nowhere.*set 'folder'"):
+        load_campaign(folder)
+    monkeypatch.setenv("SOME_DATA", str(tmp_path))
+    assert load_campaign(folder).folder == tmp_path / "raw data"
+    content["folder"] = "$SOME_DATA/raw data"
+    assert load_campaign(write_campaign(folder, content)).folder == tmp_path / "raw data"
+    content["folder"] = "../raw data"
+    assert load_campaign(write_campaign(folder, content)).folder == tmp_path / "raw data"
+
+
+# what is changed in a good file -> words the message must hold
+REFUSED = {
+    "unknown key": ({"vehicel": "x"}, ["vehicel", "Did you mean 'vehicle'"]),
+    "unknown key in a run": ({"runs.0.splitt": "x"}, ["runs.0.splitt", "'split'"]),
+    "unknown key in mocap": ({"mocap.world_axis": "ned"}, ["mocap.world_axis", "'world_axes'"]),
+    "missing key": ({"vehicle": None}, ["'vehicle' is missing", "Add it"]),
+    "missing key in a run": ({"runs.0.mocap": None}, ["'runs.0.mocap' is missing", "Add it"]),
+    "world axes": ({"mocap.world_axes": "nwu"}, ["mocap.world_axes", "'nwu'", "'ned'"]),
+    "kind": ({"commands.kind": "rpm"}, ["commands.kind", "'rpm'", "'demand'"]),
+    "split": ({"runs.0.split": "validate"}, ["runs.0.split", "'train'"]),
+    "control": ({"runs.0.control": "4dof"}, ["runs.0.control", "'6dof'"]),
+    "tank": ({"tank.y": [5, 0]}, ["tank.y", "low below high", "Correct"]),
+    "tank number": ({"tank.y": [0, "deep"]}, ["tank.y", "number"]),
+    "no runs": ({"runs": []}, ["'runs'", "at least 1"]),
+    "id with a slash": ({"runs.0.id": "a/b"}, ["runs.0.id", "'a/b'", "file name"]),
+    "id that leaves": ({"runs.0.id": ".."}, ["runs.0.id", "'..'", "file name"]),
+    "empty id": ({"runs.0.id": ""}, ["runs.0.id", "file name"]),
+    "name with a slash": ({"name": "../x"}, ["'name'", "file name"]),
+    "no columns": ({"commands.columns": []}, ["commands.columns", "at least 1"]),
+    "same column": ({"commands.columns": ["t1", "t1"]}, ["commands.columns", "once"]),
+    "few axes": (
+        {"commands.kind": "demand", "commands.columns": ["a", "b"]},
+        ["commands.columns", "2 columns", "surge", "List all six"],
+    ),
+    "no such file": ({"runs.0.commands": "x.csv"}, ["run 'one'", "x.csv", "Put it there"]),
+    "variable": ({"folder": "$NOT_SET_ANYWHERE"}, ["folder", "NOT_SET_ANYWHERE", "Set it"]),
+}
+
+
+def changed(content: dict, changes: dict) -> dict:
+    content = copy.deepcopy(content)
+    for place, value in changes.items():
+        *parents, key = place.split(".")
+        inner = content
+        for parent in parents:
+            inner = inner[int(parent)] if parent.isdigit() else inner[parent]
+        if value is None:
+            del inner[key]
+        else:
+            inner[key] = value
+    return content
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_a_bad_campaign_is_refused_in_words(tmp_path, what):
+    changes, words = REFUSED[what]
+    folder = write_campaign(write_run(tmp_path), changed(campaign_content(), changes))
+    with pytest.raises(BadInput) as refusal:
+        load_campaign(folder)
+    for word in [str(folder / "campaign.yaml"), *words]:
+        assert word in str(refusal.value)
+
+
+@pytest.mark.parametrize("other", ["one", "ONE"])
+def test_two_runs_cannot_share_an_id(tmp_path, other):
+    folder = write_run(tmp_path)
+    content = campaign_content()
+    content["runs"].append({**content["runs"][0], "id": other})
+    with pytest.raises(BadInput, match=r"runs\.1\.id.*'one'.*Rename"):
+        load_campaign(write_campaign(folder, content))
+
+
+@pytest.mark.parametrize("text", ["", "- a\n- b\n", "name: [\n"])
+def test_a_file_that_is_no_campaign(tmp_path, text):
+    (tmp_path / "campaign.yaml").write_text(text)
+    with pytest.raises(BadInput, match=r"campaign\.yaml.*Expected"):
+        load_campaign(tmp_path)
+
+
+def test_a_folder_without_campaign_and_an_unknown_run(tmp_path):
+    with pytest.raises(BadInput, match=r"no campaign\.yaml.*formats\.md"):
+        load_campaign(tmp_path)
+    with pytest.raises(BadInput, match=r"no such file or folder.*Check the path"):
+        load_campaign(tmp_path / "nowhere")
+    with pytest.raises(BadInput, match=r"no run 'ons'.*Did you mean 'one'"):
+        load_campaign(write_run(tmp_path)).run("ons")

@@ -1,0 +1,63 @@
+"""Latency: every call counted, one at a time, with the collector out of the way."""
+
+import gc
+import time
+
+import numpy as np
+import pytest
+
+from rovsim.latency import RATES, latency
+
+QUERIES = np.arange(12.0).reshape(4, 3)
+
+
+def test_each_call_sees_one_query_and_all_are_used_in_turn():
+    seen = []
+
+    def call(row):
+        seen.append((row.shape, row[0, 0]))
+        return np.zeros((1, 6))
+
+    stats = latency(call, QUERIES, calls=6, warmup=2, points=5)
+    assert seen == [((1, 3), q) for q in (0, 3, 0, 3, 6, 9, 0, 3)]
+    assert (stats["points"], stats["features"], stats["outputs"], stats["calls"]) == (5, 3, 6, 6)
+    assert stats["misses"] == {str(rate): 0 for rate in RATES}
+
+
+def test_slow_calls_are_misses_at_the_rates_they_miss():
+    pauses = iter([0.0] + [0.0, 0.0, 0.0, 0.005] * 5)  # 5 ms: too late for 250 Hz, not for 100 Hz
+
+    def call(row):
+        time.sleep(next(pauses))
+        return row
+
+    stats = latency(call, QUERIES, calls=20, warmup=1, points=1)
+    assert stats["misses"]["250"] == 5
+    assert stats["misses"]["1000"] >= 5
+    assert stats["misses"]["50"] == 0
+    assert 5e3 <= stats["p99_us"] <= stats["p999_us"] <= stats["max_us"]
+    assert stats["median_us"] < 4e3
+
+
+def test_time_is_bounded():
+    def call(row):
+        time.sleep(0.01)
+        return row
+
+    start = time.perf_counter()
+    stats = latency(call, QUERIES, calls=10**6, warmup=1, points=1, seconds=0.05)
+    assert 1 <= stats["calls"] <= 10
+    assert time.perf_counter() - start < 2.0
+    assert latency(call, QUERIES, calls=9, warmup=0, points=1, seconds=0.0)["calls"] == 1
+
+
+def test_the_collector_rests_during_the_calls_and_is_put_back():
+    during = []
+    assert gc.isenabled()
+    latency(lambda row: during.append(gc.isenabled()) or row, QUERIES, 3, 2, points=1)
+    assert during == [True, True, False, False, False]
+    assert gc.isenabled()
+    with pytest.raises(ZeroDivisionError):
+        calls = iter([1.0, 1.0])
+        latency(lambda row: row / next(calls, 1 / 0), QUERIES, 3, 1, points=1)
+    assert gc.isenabled()

@@ -1,0 +1,145 @@
+"""What every registered reader owes: the same swim, whatever the format and the axes."""
+
+import time
+
+import numpy as np
+import pytest
+
+from recordings import (
+    FORMATS,
+    Swim,
+    campaign_content,
+    command_lines,
+    pose_lines,
+    write_campaign,
+    write_lines,
+    write_run,
+)
+from rovsim.campaign import load_campaign
+from rovsim.frames import matrix
+from rovsim.recording import Recording, quality_report, read_run, usable_reason
+from rovsim.recording.readers import command_readers, mocap_readers
+
+every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
+
+
+def test_the_formats_of_this_version_are_registered():
+    assert set(mocap_readers()) >= {"qtm_tsv", "csv"}
+    assert set(command_readers()) >= {"csv"}
+
+
+@every_format
+@pytest.mark.parametrize("world", ["z_up", "ned"])
+@pytest.mark.parametrize("body", ["flu", "frd"])
+def test_every_format_gives_the_swim_in_ned_and_frd(tmp_path, name, world, body):
+    content = campaign_content(name)
+    content["mocap"] |= {"world_axes": world, "body_axes": body}
+    swim = Swim.ned()
+    write_lines(tmp_path / FORMATS[name], pose_lines(name, swim.along(world, body)))
+    write_lines(tmp_path / "commands.csv", command_lines())
+    recording, anomalies = read_run(load_campaign(write_campaign(tmp_path, content)), "one")
+    np.testing.assert_allclose(recording.time, swim.time, atol=1e-9)
+    np.testing.assert_allclose(recording.position, swim.position, atol=1e-6)
+    np.testing.assert_allclose(matrix(recording.attitude), swim.rotation, atol=3e-6)
+    assert recording.found.all()
+    assert recording.rate == pytest.approx(100.0)
+    assert not any(vars(anomalies).values())
+    assert usable_reason(recording) is None
+
+
+@every_format
+def test_windows_line_ends_and_a_byte_order_mark_change_nothing(tmp_path, name):
+    plain, _ = read_run(load_campaign(write_run(tmp_path / "a", name)), "one")
+    folder = write_run(tmp_path / "b", name)
+    for file in (FORMATS[name], "commands.csv"):
+        raw = (folder / file).read_bytes().replace(b"\n", b"\r\n")
+        (folder / file).write_bytes(b"\xef\xbb\xbf" + raw)
+    other, _ = read_run(load_campaign(folder), "one")
+    np.testing.assert_array_equal(other.position, plain.position)
+    np.testing.assert_array_equal(other.commands.value, plain.commands.value)
+
+
+@every_format
+def test_disorder_is_sorted_and_duplicates_dropped_and_counted(tmp_path, name):
+    folder = write_run(tmp_path, name)
+    lines = (folder / FORMATS[name]).read_text().splitlines()
+    lines[-5], lines[-9] = lines[-9], lines[-5]
+    lines.insert(len(lines) - 20, lines[-20])
+    write_lines(folder / FORMATS[name], lines)
+    recording, anomalies = read_run(load_campaign(folder), "one")
+    np.testing.assert_allclose(recording.time, Swim.ned().time, atol=1e-9)
+    np.testing.assert_allclose(recording.position, Swim.ned().position, atol=1e-6)
+    assert (anomalies.duplicates, anomalies.unsorted) == (1, 2)
+
+
+@every_format
+def test_a_cut_last_line_is_counted_not_fatal(tmp_path, name):
+    folder = write_run(tmp_path, name)
+    text = (folder / FORMATS[name]).read_text()
+    (folder / FORMATS[name]).write_text(text[:-25])
+    recording, anomalies = read_run(load_campaign(folder), "one")
+    assert len(recording.time) == len(Swim.ned().time) - 1
+    assert anomalies.cut_lines == 1
+    assert any("cut short" in r for r in quality_report(recording, anomalies)["remarks"])
+
+
+@every_format
+def test_a_recording_survives_its_file(tmp_path, name):
+    recording, _ = read_run(load_campaign(write_run(tmp_path, name)), "one")
+    recording.write(tmp_path / "one.npz")
+    again = Recording.read(tmp_path / "one.npz")
+    np.testing.assert_array_equal(again.attitude, recording.attitude)
+    np.testing.assert_array_equal(again.site.tank, [[0, 10], [-5, 0], [-3, 0]])
+    assert again.run == recording.run
+
+
+@every_format
+def test_reading_a_minute_at_100_hz_is_quick(tmp_path, name):
+    folder = write_run(tmp_path, name, Swim.ned(frames=6000))
+    campaign = load_campaign(folder)
+    durations = []
+    for _ in range(3):
+        start = time.perf_counter()
+        read_run(campaign, "one")
+        durations.append(time.perf_counter() - start)
+    assert min(durations) < 0.2
+
+
+def test_a_short_run_and_a_still_one_are_flagged_not_fatal(tmp_path):
+    short, anomalies = read_run(
+        load_campaign(write_run(tmp_path / "short", swim=Swim.ned(frames=150))), "one"
+    )
+    report = quality_report(short, anomalies)
+    assert usable_reason(short) == report["unusable"]
+    assert "too short" in report["unusable"]
+    assert "Record it again" in report["remarks"][0]
+    tiny, anomalies = read_run(
+        load_campaign(write_run(tmp_path / "tiny", swim=Swim.ned(frames=3))), "one"
+    )
+    assert quality_report(tiny, anomalies)["noise"]["position_m"] is None
+    swim = Swim.ned()
+    still = Swim(swim.time, np.ones_like(swim.position), np.tile(np.eye(3), (400, 1, 1)))
+    recording, _ = read_run(load_campaign(write_run(tmp_path / "still", swim=still)), "one")
+    assert "motionless" in usable_reason(recording)
+
+
+def test_the_quality_report_knows_gaps_noise_and_quiet_axes(tmp_path):
+    rng = np.random.default_rng(1)
+    t = np.arange(6000) / 100.0
+    position = np.stack([1 + np.sin(t), np.full_like(t, 2.0), np.full_like(t, 1.0)], axis=1)
+    noisy = position + 1e-3 * rng.standard_normal(position.shape)
+    swim = Swim(t, noisy, np.tile(np.eye(3), (6000, 1, 1)))
+    folder = write_run(tmp_path, swim=swim)
+    lines = (folder / FORMATS["qtm_tsv"]).read_text().splitlines()
+    first = len(lines) - 6000
+    write_lines(folder / FORMATS["qtm_tsv"], lines[: first + 1000] + lines[first + 1030 :])
+    report = quality_report(*read_run(load_campaign(folder), "one"), outliers=7)
+    assert [g["start_s"] for g in report["gaps"]] == pytest.approx([9.99])
+    assert report["longest_gap_s"] == pytest.approx(0.31)
+    assert report["noise"]["position_m"] == pytest.approx(1e-3, rel=0.05)
+    assert report["noise"]["attitude_rad"] == pytest.approx(0.0, abs=1e-5)
+    surge = report["excitation"]["surge"]
+    assert surge["std"] == pytest.approx(np.sqrt(0.5), rel=0.03)
+    assert [axis for axis, e in report["excitation"].items() if e["excited"]] == ["surge"]
+    assert report["outliers"] == 7
+    assert any("sway, heave, roll" in remark for remark in report["remarks"])

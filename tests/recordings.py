@@ -1,0 +1,141 @@
+"""Hand-written exports for tests: a short swim, written in any format and any axes."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import yaml
+from numpy import ndarray as Array
+
+from rovsim.frames import axes_signs, from_euler, from_matrix, matrix, to_euler
+
+FORMATS = {"qtm_tsv": "poses.tsv", "csv": "poses.csv"}
+
+
+@dataclass(frozen=True, eq=False)
+class Swim:
+    """Poses in the axes of a file: time (n,), position (n, 3) m, rotation (n, 3, 3)."""
+
+    time: Array
+    position: Array
+    rotation: Array
+
+    @staticmethod
+    def ned(frames: int = 400, rate: float = 100.0) -> "Swim":
+        """A smooth swim in NED and FRD that turns about every axis."""
+        t = np.arange(frames) / rate
+        position = np.stack([1 + 0.5 * np.sin(t), 2 + 0.4 * np.cos(t), 1 + 0.2 * np.sin(2 * t)], 1)
+        q = from_euler(0.3 * np.sin(2 * t), 0.2 * np.cos(t), t - 1.0)
+        return Swim(t, position, matrix(q))
+
+    def along(self, world_axes: str, body_axes: str) -> "Swim":
+        """The same swim in other axes, by plain matrices."""
+        world, body = np.diag(axes_signs(world_axes)), np.diag(axes_signs(body_axes))
+        return replace(self, position=self.position @ world, rotation=world @ self.rotation @ body)
+
+
+def qtm_header(swim: Swim, bodies: list[str]) -> list[str]:
+    """Header lines as QTM writes them."""
+    return [
+        f"NO_OF_FRAMES\t{len(swim.time)}",
+        "NO_OF_CAMERAS\t12",
+        f"NO_OF_BODIES\t{len(bodies)}",
+        "FREQUENCY\t100",
+        "DESCRIPTION\t--",
+        "TIME_STAMP\t2026-05-12, 10:14:07.250\t81234.55012340",
+        "DATA_INCLUDED\t6D",
+        "\t".join(["BODY_NAMES", *bodies]),
+    ]
+
+
+def qtm_columns(bodies: list[str]) -> list[str]:
+    """Column names of the bodies, without Frame and Time."""
+    rest = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
+    return [column for body in bodies for column in [f"{body} X", *rest]]
+
+
+def qtm_cells(position: Array, rotation: Array) -> list[str]:
+    """Cells of one body in one frame. The Euler angles are nonsense on purpose."""
+    euler = ["111.000", "22.000", "33.000"]
+    stored = [f"{r:.6f}" for r in rotation.T.ravel()]  # column by column
+    return [*(f"{1e3 * p:.3f}" for p in position), *euler, "0.350", *stored]
+
+
+def qtm_lines(swim: Swim, body: str = "BlueROV2") -> list[str]:
+    """All lines of a one-body export."""
+    lines = [*qtm_header(swim, [body]), "\t".join(["Frame", "Time", *qtm_columns([body])])]
+    for k, t in enumerate(swim.time):
+        cells = [str(k + 1), f"{t:.5f}", *qtm_cells(swim.position[k], swim.rotation[k])]
+        lines.append("\t".join(cells))
+    return lines
+
+
+def csv_lines(swim: Swim) -> list[str]:
+    """All lines of a csv with Euler angles."""
+    angles = to_euler(from_matrix(swim.rotation))
+    rows = np.column_stack([swim.time, swim.position, angles])
+    names = "time_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad"
+    return [names, *(",".join(f"{x:.7f}" for x in row) for row in rows)]
+
+
+def pose_lines(name: str, swim: Swim) -> list[str]:
+    """Lines of the swim in the format `name`; every registered format needs one here."""
+    return {"qtm_tsv": qtm_lines, "csv": csv_lines}[name](swim)
+
+
+def command_lines(seconds: float = 4.0) -> list[str]:
+    """Two PWM columns at 50 Hz."""
+    t = np.arange(0.0, seconds, 0.02)
+    value = np.round(1500 + 200 * np.sin(3 * t))
+    pairs = zip(t, value, strict=True)
+    return ["time_s,t1,t2", *(f"{a:.4f},{b:.0f},{3000 - b:.0f}" for a, b in pairs)]
+
+
+def write_lines(path: Path, lines: list[str], end: str = "\n") -> Path:
+    """Write text lines with that line end."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes("".join(line + end for line in lines).encode())
+    return path
+
+
+def campaign_content(name: str = "qtm_tsv") -> dict:
+    """Keys of a one-run campaign with poses in the format `name`."""
+    return {
+        "name": "hand-written",
+        "vehicle": "bluerov2_heavy",
+        "tank": {"x": [0, 10], "y": [0, 5], "z": [0, 3]},
+        "mocap": {
+            "format": name,
+            "body": "BlueROV2",
+            "world_axes": "z_up",
+            "body_axes": "flu",
+        },
+        "commands": {"format": "csv", "kind": "pwm", "columns": ["t1", "t2"]},
+        "runs": [
+            {
+                "id": "one",
+                "control": "6dof",
+                "split": "train",
+                "mocap": FORMATS.get(name, "poses.any"),
+                "commands": "commands.csv",
+            }
+        ],
+    }
+
+
+def write_campaign(folder: Path, content: dict) -> Path:
+    """Write `campaign.yaml` and return its folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    text = yaml.safe_dump(content, allow_unicode=True)
+    (folder / "campaign.yaml").write_text(text, encoding="utf-8")
+    return folder
+
+
+def write_run(folder: Path, name: str = "qtm_tsv", swim: Swim | None = None) -> Path:
+    """A whole campaign of one run in that format; returns its folder."""
+    content = campaign_content(name)
+    axes = content["mocap"]["world_axes"], content["mocap"]["body_axes"]
+    swim = (swim or Swim.ned()).along(*axes)
+    write_lines(folder / FORMATS[name], pose_lines(name, swim))
+    write_lines(folder / "commands.csv", command_lines())
+    return write_campaign(folder, content)
