@@ -7,9 +7,9 @@ from scipy.signal import lfilter
 from rovsim.residual.features import assemble
 from rovsim.residual.learner import learner_settings, learners, train
 
-# the share of the hidden residual's RMS that may remain per axis on a held-out run. Neighbours
-# average the noise of a few points in 12 dimensions; a Gaussian process sees the smooth function.
-REMAINS = {"knn": 0.75, "gp": 0.4, "svgp": 0.4}
+# the share of the hidden residual's RMS that may remain per axis on a held-out run. In 12
+# dimensions the nearest neighbours are far; a Gaussian process sees which features matter.
+REMAINS = {"knn": 0.9, "gp": 0.4, "svgp": 0.4}
 
 
 def smooth(rng, n, width):

@@ -254,6 +254,27 @@ def integrate_parallel(jobs, h, stride, bodies, inputs, p, data, site, out):
 
 
 @compiled
+def heun(state, t, h, pushes, bodies, inputs, p, data, site, out):
+    """Heun's method over the steps of the inputs, each with an extra acceleration pushes (k, 6).
+
+    For the synthetic tank, whose truth must not share the replay's integrator.
+    """
+    x, body, place = state_of(state), constants_of(bodies, 0), site_of(site)
+    features, a_res, none = np.empty(FEATURES), np.empty(6), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for n in range(pushes.shape[0]):
+        step, now, push = step_of(inputs, 0, n), t + n * h, vector6(pushes[n])
+        if data.size:
+            a_learned = learned(now, x, body, p, step, data, place, features, a_res)
+            push = add6(push, 1.0, a_learned)
+        else:
+            push = add6(push, 1.0, none)
+        k1 = slope(now, x, body, p, step, push, place)
+        k2 = slope(now + h, moved(x, h, k1), body, p, step, push, place)
+        x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
+        store(x, out[n])
+
+
+@compiled
 def accelerations(times, states, bodies, inputs, p, data, site, out):
     """nu_dot (n, 6) of parameter set 0 at each state (n, 13) under the commands of step n."""
     body, own, place = constants_of(bodies, 0), p[0], site_of(site)

@@ -73,6 +73,14 @@ def assemble(
 
 
 @njit(cache=True)
+def _append(values, x, at):
+    """Write values into x from `at` on; returns where the next block starts."""
+    for i in range(values.size):
+        x[at + i] = values[i]
+    return at + values.size
+
+
+@njit(cache=True)
 def assemble_one(data, nu, nu_dot, wrench, R, x):
     """Write the features of one sample into x (at least d long), as `assemble` would.
 
@@ -80,17 +88,10 @@ def assemble_one(data, nu, nu_dot, wrench, R, x):
     """
     code, at = int(data[BLOCKS]), 0
     if code & VELOCITY:
-        for i in range(6):
-            x[at + i] = nu[i]
-        at += 6
+        at = _append(nu, x, at)
     if code & WRENCH:
-        for i in range(6):
-            x[at + i] = wrench[i]
-        at += 6
+        at = _append(wrench, x, at)
     if code & ACCELERATION:
-        for i in range(6):
-            x[at + i] = nu_dot[i]
-        at += 6
+        at = _append(nu_dot, x, at)
     if code & GRAVITY:
-        for i in range(3):
-            x[at + i] = R[2][i]
+        _append(R[2], x, at)  # the world's down axis, in body axes

@@ -14,23 +14,27 @@ from numpy import ndarray as Array
 from rovsim.residual.export import AXES, Kernel, export_expansion
 from rovsim.residual.features import FeatureSettings
 from rovsim.residual.learner import Predict, Progress
-from rovsim.residual.scaling import Scaling, fit_scaling
+from rovsim.residual.scaling import CONSTANT, Scaling, fit_scaling
 
 
 def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:
-    """Scalings of features and targets as arrays, fitted on all training rows."""
+    """Scalings of features and targets as arrays, fitted on all training rows.
+
+    A constant target has scale 0: it is predicted as that constant, whatever the process thinks.
+    """
     features, targets = fit_scaling(kind, X), fit_scaling("standard", Y)
     return {
         "shift": features.shift,
         "scale": features.scale,
         "target_shift": targets.shift,
-        "target_scale": targets.scale,
+        "target_scale": np.where(np.ptp(Y, axis=0) > CONSTANT, targets.scale, 0.0),
     }
 
 
 def scaled_pairs(arrays: Mapping[str, Array], X: Array, Y: Array) -> tuple[Array, Array]:
     """Scaled features (n, d) and scaled targets (6, n)."""
-    targets = Scaling(arrays["target_shift"], arrays["target_scale"])
+    scale = arrays["target_scale"]
+    targets = Scaling(arrays["target_shift"], np.where(scale > 0.0, scale, 1.0))
     return _features(arrays).apply(X), np.ascontiguousarray(targets.apply(Y).T)
 
 

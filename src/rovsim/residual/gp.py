@@ -9,7 +9,14 @@ from pydantic import Field
 from rovsim.residual import gaussian
 from rovsim.residual.determinism import seeded_torch
 from rovsim.residual.export import AXES
-from rovsim.residual.learner import Learner, LearnerSettings, Predict, Progress, Trained, spread_rows
+from rovsim.residual.learner import (
+    Learner,
+    LearnerSettings,
+    Predict,
+    Progress,
+    Trained,
+    spread_rows,
+)
 
 
 class GpSettings(LearnerSettings):

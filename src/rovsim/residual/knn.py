@@ -9,7 +9,14 @@ from pydantic import Field
 
 from rovsim.errors import BadInput
 from rovsim.residual.export import export_neighbours
-from rovsim.residual.learner import Learner, LearnerSettings, Predict, Progress, Trained, spread_rows
+from rovsim.residual.learner import (
+    Learner,
+    LearnerSettings,
+    Predict,
+    Progress,
+    Trained,
+    spread_rows,
+)
 from rovsim.residual.predictor import MOST_NEIGHBOURS
 from rovsim.residual.scaling import Scaling, fit_scaling
 

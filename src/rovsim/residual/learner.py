@@ -145,7 +145,8 @@ def checked_rows(X: Array, features: FeatureSettings, finite: bool = False) -> A
     """
     X = np.ascontiguousarray(X, dtype=np.float64)
     d = len(feature_names(features))
-    if X.ndim == 2 and X.shape[1] == d and not (finite and (not len(X) or np.isnan(X.sum()))):
+    usable = not finite or (len(X) > 0 and np.isfinite(X).all())
+    if X.ndim == 2 and X.shape[1] == d and usable:
         return X
     raise BadInput(
         f"features of shape {X.shape}, {np.sum(~np.isfinite(X))} not finite",
@@ -163,6 +164,5 @@ def spread_rows(rows: int, most: int | None, seed: int) -> Array:
     """
     if most is None or rows <= most:
         return np.arange(rows)
-    edges = np.linspace(0, rows, most + 1)
-    drawn = edges[:-1] + np.random.default_rng(seed).random(most) * np.diff(edges)
-    return np.minimum(drawn.astype(np.int64), rows - 1)
+    edges = np.linspace(0, rows, most + 1).astype(np.int64)
+    return np.random.default_rng(seed).integers(edges[:-1], edges[1:])

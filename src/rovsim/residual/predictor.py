@@ -167,7 +167,7 @@ def evaluate(data, x, out):
 
     x may be longer than the residual's features: the rest is not read. Not finite in, NaN out.
     """
-    scratch = carray(_stack(), (_SCRATCH,))
+    scratch = carray(_stack(), (_SCRATCH,))  # type: ignore[call-arg]
     if data[KIND] == NEIGHBOURS:
         _neighbours(data, x, scratch, out)
     else:

@@ -10,7 +10,14 @@ from pydantic import Field
 from rovsim.residual import gaussian
 from rovsim.residual.determinism import seeded_torch
 from rovsim.residual.export import AXES
-from rovsim.residual.learner import Learner, LearnerSettings, Predict, Progress, Trained, spread_rows
+from rovsim.residual.learner import (
+    Learner,
+    LearnerSettings,
+    Predict,
+    Progress,
+    Trained,
+    spread_rows,
+)
 
 
 class SvgpSettings(LearnerSettings):

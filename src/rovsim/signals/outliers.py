@@ -15,6 +15,8 @@ LOOK_BACK = 1000
 # Leaving found frames out has to be worth more than this many frames, so that a frame of a burst
 # that happens to be within reach is left out with the rest of the burst.
 DETOUR = 3.0
+# Likewise for leaving out an end of the run, where a swap can be judged from one side only.
+CUT_END = 1.0
 
 
 class VelocityGate(Section):
@@ -150,10 +152,11 @@ def _longest_chain(
 
     Dynamic programming over the stretches: best[j] = frames of j + max over the reachable
     i < j of best[i] - `DETOUR` if found frames between i and j are left out.
+    Starting late and ending early cost `CUT_END` each.
     """
     size = (ends - starts + 1).astype(float)
     best, before = size.copy(), np.full(len(size), -1)
-    best[1:] -= DETOUR  # starting late leaves frames out as well
+    best[1:] -= CUT_END
     for j in range(1, len(size)):
         i = np.arange(max(0, j - LOOK_BACK), j)
         last, first = ends[i], starts[j]
@@ -169,7 +172,8 @@ def _longest_chain(
         k = int(np.argmax(score))
         if size[j] + score[k] > best[j]:
             best[j], before[j] = size[j] + score[k], i[k]
-    chain = [int(np.argmax(best - DETOUR * (np.arange(len(size)) < len(size) - 1)))]
+    cut_short = CUT_END * (np.arange(len(size)) < len(size) - 1)
+    chain = [int(np.argmax(best - cut_short))]
     while before[chain[-1]] >= 0:
         chain.append(int(before[chain[-1]]))
     return chain[::-1]

@@ -1,0 +1,1 @@
+"""Synthetic campaigns, written as raw exports with the truth sealed beside them."""

@@ -1,0 +1,99 @@
+"""A whole synthetic campaign: a folder that appears complete or not at all."""
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+
+from rovsim.errors import BadInput
+from rovsim.files import write_text, write_yaml
+from rovsim.frames import HALF_TURN_X
+from rovsim.model import Model
+from rovsim.tank.exports import BODY, commands_csv, qtm_tsv
+from rovsim.tank.settings import TankRun, TankSettings
+from rovsim.tank.simulate import simulate
+from rovsim.vehicle import load_vehicle
+
+SEALED = "truth.yaml"  # nothing that reads a campaign may open it
+
+
+def describe(settings: TankSettings) -> dict[str, Any]:
+    """The content of `campaign.yaml`, without simulating anything."""
+    thrusters = load_vehicle(settings.vehicle).thrusters.units
+    return {
+        "name": settings.name,
+        "vehicle": settings.vehicle,
+        "tank": {axis: list(getattr(settings.tank, axis)) for axis in "xyz"},
+        "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
+        "commands": {"format": "csv", "kind": "pwm", "columns": [t.name for t in thrusters]},
+        "runs": [
+            {**run.model_dump(), "mocap": f"{run.id}_6D.tsv", "commands": f"{run.id}_commands.csv"}
+            for run in settings.runs
+        ],
+    }
+
+
+def true_model(settings: TankSettings) -> Model:
+    """The vehicle in the tank: nominal physics and the hidden effects."""
+    return Model("truth", load_vehicle(settings.vehicle), settings.effects)
+
+
+def make_campaign(
+    settings: TankSettings, out: Path, progress: Callable[[int, int], None] = lambda a, b: None
+) -> None:
+    """Fly all runs and write the campaign to the folder `out`.
+
+    Raises:
+        BadInput: `out` holds something that is not a tank campaign, or a run left the tank.
+    """
+    _replaceable(out)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}-"))
+    try:
+        _fill(settings, folder, progress)
+        folder.chmod(0o755)
+        shutil.rmtree(out, ignore_errors=True)
+        os.replace(folder, out)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _replaceable(out: Path) -> None:
+    if out.exists() and not (out.is_dir() and (not any(out.iterdir()) or (out / SEALED).exists())):
+        raise BadInput(
+            "holds files that no tank wrote",
+            where=out,
+            expected="a new folder, an empty one or an earlier tank campaign",
+            remedy="Choose another folder with out=…",
+        )
+
+
+def _fill(settings: TankSettings, folder: Path, progress: Callable[[int, int], None]) -> None:
+    model, runs = true_model(settings), settings.runs
+    seeds = np.random.SeedSequence(settings.seed).spawn(len(runs))
+    for k, (run, seed) in enumerate(zip(runs, seeds, strict=True)):
+        progress(k, len(runs))
+        _record(model, settings, run, folder, np.random.default_rng(seed))
+    progress(len(runs), len(runs))
+    write_yaml(folder / "campaign.yaml", describe(settings))
+    write_yaml(folder / SEALED, sealed(settings))
+
+
+def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, random) -> None:
+    box = np.array([getattr(settings.tank, axis) for axis in "xyz"])
+    tank = np.sort(box * HALF_TURN_X[:, None], axis=1)
+    truth = simulate(model, settings, run.control, tank, random)
+    write_text(folder / f"{run.id}_6D.tsv", qtm_tsv(truth, settings.camera, random))
+    write_text(folder / f"{run.id}_commands.csv", commands_csv(truth, settings.log, random))
+
+
+def sealed(settings: TankSettings) -> dict[str, Any]:
+    """The answer, in the terms of the diagnosis, and how to make the campaign again."""
+    effects = [
+        {"effect": e.effect, "parameters": e.build().given()} for e in settings.effects
+    ]
+    verdict = "missing_effects" if effects else "adequate"
+    return {"verdict": verdict, "effects": effects, "settings": settings.model_dump(mode="json")}

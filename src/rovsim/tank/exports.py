@@ -1,0 +1,90 @@
+"""Raw exports of a true run, as the laboratory's own software would write them."""
+
+import io
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.frames import HALF_TURN_X, exp, matrix, multiply, to_euler
+from rovsim.tank.settings import Camera, Log
+from rovsim.tank.simulate import Truth
+
+BODY = "BlueROV2"
+COLUMNS = "X Y Z Roll Pitch Yaw Residual Rot[0] Rot[1] Rot[2] Rot[3] Rot[4] Rot[5] Rot[6] Rot[7] Rot[8]"
+
+
+def qtm_tsv(truth: Truth, camera: Camera, random) -> str:
+    """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras."""
+    stride = round(1.0 / (camera.rate * (truth.time[1] - truth.time[0])))
+    time, state = truth.time[:-1:stride], truth.state[:-1:stride]
+    position, attitude = _measured(state, camera, random)
+    rows = _rows(position, attitude, random)
+    rows[_hidden(len(time), camera, random)] = [0.0] * 6 + [-1.0] + [0.0] * 9
+    text = io.StringIO()
+    text.write(_header(len(time), camera.rate))
+    table = np.column_stack([np.arange(1, len(time) + 1), time, rows])
+    shape = ["%d", "%.5f", *["%.3f"] * 7, *["%.6f"] * 9]
+    np.savetxt(text, table, fmt="\t".join(shape))
+    return text.getvalue()
+
+
+def _measured(state: Array, camera: Camera, random) -> tuple[Array, Array]:
+    """Noisy poses in the MoCap's own axes. What a sensing effect would change belongs here."""
+    n, flip = len(state), np.concatenate([[1.0], HALF_TURN_X])
+    attitude = multiply(state[:, 3:7], exp(camera.attitude_noise * random.normal(size=(n, 3))))
+    position = state[:, :3] + camera.position_noise * random.normal(size=(n, 3))
+    for k in np.flatnonzero(random.random(n) < camera.outliers_per_minute / (60 * camera.rate)):
+        direction = random.normal(size=3)
+        size = random.uniform(*camera.outlier_size)
+        position[k] += size * direction / np.linalg.norm(direction)
+    # R_raw = S R S with S = diag(1, -1, -1): the quaternion's y and z change sign
+    return position * HALF_TURN_X, attitude * flip
+
+
+def _rows(position: Array, attitude: Array, random) -> Array:
+    """Millimetres, degrees, marker residual, and the rotation matrix column by column."""
+    angles = np.degrees(to_euler(attitude))
+    columns = np.swapaxes(matrix(attitude), -1, -2).reshape(-1, 9)
+    residual = random.uniform(0.2, 0.7, size=(len(position), 1))
+    return np.hstack([1000.0 * position, angles, residual, columns])
+
+
+def _hidden(frames: int, camera: Camera, random) -> Array:
+    """Frames in which the body was not found: bursts of random length."""
+    hidden = np.zeros(frames, dtype=bool)
+    starts = np.flatnonzero(random.random(frames) < camera.bursts_per_minute / (60 * camera.rate))
+    for start in starts:
+        hidden[start : start + random.integers(1, camera.longest_burst + 1)] = True
+    return hidden
+
+
+def _header(frames: int, rate: float) -> str:
+    lines = {
+        "NO_OF_FRAMES": frames,
+        "NO_OF_CAMERAS": 12,
+        "NO_OF_BODIES": 1,
+        "FREQUENCY": f"{rate:g}",
+        "NO_OF_ANALOG": 0,
+        "ANALOG_FREQUENCY": 0,
+        "DESCRIPTION": "--",
+        "TIME_STAMP": "2026-01-01, 12:00:00.000\t0.0",
+        "DATA_INCLUDED": "6D",
+        "BODY_NAMES": BODY,
+    }
+    names = COLUMNS.split()
+    column_line = "\t".join(["Frame", "Time", f"{BODY} {names[0]}", *names[1:]])
+    return "".join(f"{key}\t{value}\n" for key, value in lines.items()) + column_line + "\n"
+
+
+def commands_csv(truth: Truth, log: Log, random) -> str:
+    """Thruster PWM in us, one line a tick; some lines are lost."""
+    commands = truth.commands
+    time = commands.time + log.jitter * random.normal(size=len(commands.time))
+    kept = random.random(len(time)) >= log.missing
+    kept[0] = True
+    table = np.column_stack([time, np.round(1500.0 + 400.0 * commands.value)])[kept]
+    text = io.StringIO()
+    names = ",".join(f"t{i + 1}" for i in range(commands.value.shape[1]))
+    text.write(f"time_s,{names}\n")
+    np.savetxt(text, table, fmt=",".join(["%.4f", *["%d"] * commands.value.shape[1]]))
+    return text.getvalue()

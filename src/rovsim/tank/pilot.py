@@ -1,0 +1,78 @@
+"""A pilot who looks at the vehicle and moves the sticks, late and never quite still."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.frames import to_euler, unrotate
+
+REACTION = 0.2  # s, human visual reaction time
+WANDER_TIME = 1.5  # s, how long a stick movement lasts
+
+# Standard deviation of the stick movements, per axis: what excites each axis to some 0.2 m/s or
+# 0.4 rad/s on this class of vehicle without saturating a thruster.
+WANDER = {
+    "3dof": np.array([0.16, 0.16, 0.12, 0.0, 0.0, 0.0]),
+    "6dof": np.array([0.15, 0.15, 0.11, 0.10, 0.14, 0.13]),
+}
+LARGEST = 0.40  # of one axis' demand; the axes share the thrusters
+
+POSITION_GAIN, SPEED_GAIN, INTEGRAL_GAIN = 0.22, 0.25, 0.03  # per m, per m/s, per m s
+HOLD = {"3dof": (0.25, 0.15), "6dof": (0.05, 0.02)}  # roll and pitch: per rad, per rad/s
+NEAR = 0.6  # share of the half tank (clear of walls) in which the pilot chooses set-points
+REACH = np.array([1.5, 1.2, 0.5])  # m, how far from the middle set-points lie at most
+CLEARANCE = 0.5  # m, kept from walls, floor and surface
+SET_POINT_TIME = 8.0  # s
+
+
+@dataclass(frozen=True)
+class Wander:
+    """Smooth random stick movements (k, 6) of unit variance, one row a tick."""
+
+    values: Array
+
+    @staticmethod
+    def drawn(ticks: int, dt: float, random: np.random.Generator) -> "Wander":
+        """Two first-order lags in a row on white noise, scaled to unit variance."""
+        a, x = np.exp(-2.0 * dt / WANDER_TIME), np.zeros((2, 6))
+        rows = np.empty((ticks + 400, 6))
+        for row, kick in zip(rows, random.normal(size=rows.shape), strict=True):
+            x[0] = a * x[0] + (1 - a) * kick
+            x[1] = a * x[1] + (1 - a) * x[0]
+            row[:] = x[1]
+        rows = rows[400:]
+        return Wander(rows / np.maximum(rows.std(axis=0), 1e-12))
+
+
+class Pilot:
+    """Wanders between set-points inside the tank; sees the vehicle with a delay."""
+
+    def __init__(self, control: str, tank: Array, ticks: int, dt: float, random) -> None:
+        self.control, self.dt, self.delay = control, dt, max(1, round(REACTION / dt))
+        self.middle = tank.mean(axis=1)
+        half = np.minimum(NEAR * (0.5 * np.ptp(tank, axis=1) - CLEARANCE), REACH)
+        count = int(ticks * dt / SET_POINT_TIME) + 2
+        self.set_points = self.middle + half * random.uniform(-1, 1, (count, 3))
+        self.wander = Wander.drawn(ticks, dt, random).values * WANDER[control]
+        self.seen: list[Array] = []
+        self.drift = np.zeros(3)
+
+    def start(self, random) -> Array:
+        """State (13,) to start from: at rest near the first set-point, any heading."""
+        heading = random.uniform(-np.pi, np.pi)
+        attitude = [np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)]
+        return np.concatenate([self.set_points[0], attitude, np.zeros(6)])
+
+    def demand(self, tick: int, state: Array) -> Array:
+        """Demand (6,) per axis after seeing this state (13,)."""
+        self.seen.append(state.copy())
+        seen = self.seen[max(0, tick - self.delay)]
+        goal = self.set_points[int(tick * self.dt / SET_POINT_TIME)]
+        self.drift = np.clip(self.drift + INTEGRAL_GAIN * self.dt * (goal - seen[:3]), -0.3, 0.3)
+        towards = POSITION_GAIN * (goal - seen[:3]) + self.drift
+        demand = self.wander[tick].copy()
+        demand[:3] += unrotate(seen[3:7], towards) - SPEED_GAIN * seen[7:10]
+        angle, rate = HOLD[self.control]
+        demand[3:5] -= angle * to_euler(seen[3:7])[:2] + rate * seen[10:12]
+        return np.clip(demand, -LARGEST, LARGEST)

@@ -1,0 +1,76 @@
+"""What a synthetic campaign is made of."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, NonNegativeFloat, PositiveFloat
+
+from rovsim.model import EffectEntry
+from rovsim.strict import Section
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Interval = tuple[float, float]
+
+
+class TankRun(Section):
+    """One run to record."""
+
+    id: str
+    control: Literal["3dof", "6dof"]
+    split: Literal["train", "test"]
+
+
+class Box(Section):
+    """Walls, floor and surface in MoCap world axes (z up), m."""
+
+    x: Interval = (0.0, 10.0)
+    y: Interval = (0.0, 5.0)
+    z: Interval = (0.0, 3.0)
+
+
+class Camera(Section):
+    """What the motion capture adds to the truth."""
+
+    rate: PositiveFloat = 100.0  # Hz, the usual setting for slow vehicles
+    position_noise: NonNegativeFloat = 0.7e-3  # m, as in the practice exports
+    attitude_noise: NonNegativeFloat = 2.0e-3  # rad, the same over a marker spread of 0.4 m
+    bursts_per_minute: NonNegativeFloat = 3.0  # bubbles and legs of the frame hide markers
+    longest_burst: Annotated[int, Field(ge=1)] = 35  # frames
+    outliers_per_minute: NonNegativeFloat = 3.0  # swapped markers, one frame each
+    outlier_size: Interval = (0.05, 0.2)  # m, the distance between two markers
+
+
+class Log(Section):
+    """How the commands are logged."""
+
+    rate: PositiveFloat = 50.0  # Hz, what an autopilot streams
+    jitter: NonNegativeFloat = 0.0  # s, standard deviation of a line's time stamp
+    missing: Share = 0.01  # share of lines lost
+
+
+class Turbulence(Section):
+    """A Gauss-Markov force nobody logged: what no model can predict."""
+
+    force: NonNegativeFloat = 0.2  # N, makes a perfect model err by some 6 mm/s after 2 s
+    moment: NonNegativeFloat = 0.008  # N m, likewise some 15 mrad/s
+    time_constant: PositiveFloat = 1.0  # s, eddies of 0.3 m passing at 0.3 m/s
+
+
+class TankSettings(Section):
+    """A campaign: its runs, its hidden effects, and everything random."""
+
+    name: str = "tank"
+    seed: Annotated[int, Field(ge=0)] = 0
+    vehicle: str = "bluerov2_heavy"
+    duration: PositiveFloat = 60.0  # s a run
+    runs: Annotated[tuple[TankRun, ...], Field(min_length=1)] = (
+        TankRun(id="3dof-1", control="3dof", split="train"),
+        TankRun(id="3dof-2", control="3dof", split="test"),
+        TankRun(id="6dof-1", control="6dof", split="train"),
+        TankRun(id="6dof-2", control="6dof", split="test"),
+    )
+    tank: Box = Box()
+    camera: Camera = Camera()
+    log: Log = Log()
+    turbulence: Turbulence = Turbulence()
+    effects: tuple[EffectEntry, ...] = ()  # hidden
+    step: PositiveFloat = 0.001  # s; Heun's error is then far below the noise

@@ -1,0 +1,119 @@
+"""One run in the tank: pilot, thrusters, vehicle and turbulence, in closed loop.
+
+The replay's integrator is Runge-Kutta 4 at 10 ms; this is Heun's method at 1 ms, so that the truth
+is not made by what will be compared with it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.engine.at import Inputs, Place
+from rovsim.engine.compiled import engine
+from rovsim.errors import BadInput
+from rovsim.model import Model
+from rovsim.recording.recording import Commands
+from rovsim.tank.pilot import Pilot
+from rovsim.tank.settings import TankSettings, Turbulence
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What happened: `time` (n,) s and `state` (n, 13) in NED; `commands` as the pilot sent them."""
+
+    time: Array
+    state: Array
+    commands: Commands
+
+
+def simulate(model: Model, settings: TankSettings, control: str, tank: Array, random) -> Truth:
+    """Fly one run.
+
+    Args:
+        model: the true vehicle, hidden effects included.
+        settings: the campaign.
+        control: 3dof or 6dof.
+        tank: walls (3, 2) in NED, m.
+        random: generator of this run.
+
+    Raises:
+        BadInput: the vehicle left the tank: the hidden effects are stronger than the pilot.
+    """
+    h, tick = settings.step, 1.0 / settings.log.rate
+    ticks, per_tick = round(settings.duration / tick), round(tick / h)
+    pilot = Pilot(control, tank, ticks, tick, random)
+    pushes = disturbance(settings.turbulence, ticks * per_tick, h, random)
+    pushes = np.ascontiguousarray(pushes @ model.constants.M_inv[0].T)
+    vehicle = _Vehicle(model, tank, settings.duration, tick, h)
+    states = np.empty((ticks * per_tick + 1, 13))
+    states[0] = pilot.start(random)
+    for k in range(ticks):
+        first = k * per_tick
+        command = _as_logged(model, pilot.demand(k, states[first]))
+        rows = slice(first, first + per_tick)
+        vehicle.advance(k, command, states[first], pushes[rows], states[first + 1 :][:per_tick])
+        _stay_inside(states[first + per_tick], tank, (k + 1) * tick)
+    time = np.arange(len(states)) * h
+    return Truth(time, states, Commands(vehicle.times, vehicle.commands, "thruster"))
+
+
+def _as_logged(model: Model, demand: Array) -> Array:
+    """Thruster commands (n,) of a demand (6,), rounded to whole microseconds of PWM."""
+    limit = model.vehicle.thrusters.command_limit
+    command = np.clip(model.thrust_path.thrusters.mixing @ demand, -limit, limit)
+    return np.round(400.0 * command) / 400.0  # PWM = 1500 us + 400 us c (vehicle file)
+
+
+class _Vehicle:
+    """The true vehicle, tick by tick; remembers the commands and the thrusters' state."""
+
+    def __init__(self, model: Model, tank: Array, duration: float, tick: float, h: float) -> None:
+        self.model, self.duration, self.tick, self.h = model, duration, tick, h
+        self.place = Place(np.ascontiguousarray(tank), np.array([1.0, -1.0, -1.0]))
+        self.times, self.commands = np.empty(0), np.empty((0, len(model.body.directions)))
+        self.lag: list | None = None
+        self.heun = engine([type(w) for w in model.wrenches]).heun
+
+    def advance(self, k: int, command: Array, state: Array, pushes: Array, out: Array) -> None:
+        """Take the command of tick k and move on to the next tick."""
+        self.times = np.append(self.times, k * self.tick)
+        self.commands = np.vstack([self.commands, command])
+        path, t = self.model.thrust_path, k * self.tick
+        middle = t + self.h * (0.5 + np.arange(len(out)))
+        arrival = path.arrival(self.times)
+        held = self.commands[np.clip(np.searchsorted(arrival, middle, "right") - 1, 0, None)]
+        static = path.static(held, middle, self.duration)
+        force, self.lag = path.respond(static, self.h, self.lag)
+        steps, none = len(out), np.full((len(out), 6), np.nan)
+        inputs = Inputs(
+            (force @ self.model.body.B.T)[None], force[None], none, np.zeros(1, np.int64),
+            np.full(steps, self.duration),
+        )  # fmt: skip
+        self.heun(
+            state, t, self.h, pushes, self.model.constants, inputs,
+            self.model.wrench_parameters(), np.empty(0), self.place, out,
+        )  # fmt: skip
+
+
+def disturbance(settings: Turbulence, steps: int, h: float, random) -> Array:
+    """Gauss-Markov wrench (steps, 6) in body axes, stationary from the start."""
+    level = np.repeat([settings.force, settings.moment], 3)
+    a = np.exp(-h / settings.time_constant)
+    kicks = random.normal(size=(steps, 6)) * np.sqrt(1.0 - a * a)
+    wrench, x = np.empty((steps, 6)), random.normal(size=6)
+    for row, kick in zip(wrench, kicks, strict=True):
+        x = a * x + kick
+        row[:] = x
+    return wrench * level
+
+
+def _stay_inside(state: Array, tank: Array, t: float) -> None:
+    if np.all((state[:3] > tank[:, 0]) & (state[:3] < tank[:, 1])):
+        return
+    raise BadInput(
+        f"the vehicle left the tank after {t:.1f} s",
+        where="tank",
+        expected="a run that stays between walls, floor and surface",
+        remedy="Hide weaker effects, or make the tank larger.",
+    )
