@@ -66,7 +66,7 @@ def test_swapped_markers_are_found_and_nothing_else(method, seed, size, turn, le
     found[500:520] = False
     planted = np.zeros(len(t), bool)
     # the ends too; only the gate can judge the first frames after a dropout
-    places = [0, 300, 520 if method.kind == "velocity_gate" else 600, 700, 800, 996]
+    places = [0, 300, 520 if method.kind == "velocity_gate" else 600, 700, 800, 1000 - lengths[-1]]
     for at, length in zip(places, lengths, strict=False):
         planted[swap_markers(eta, at, length, size, turn, rng)] = True
     mask = find_outliers(record(t, eta, found), method)

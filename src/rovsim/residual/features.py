@@ -75,9 +75,9 @@ def assemble(
 @njit(cache=True)
 def _append(values, x, at):
     """Write values into x from `at` on; returns where the next block starts."""
-    for i in range(values.size):
+    for i in range(len(values)):
         x[at + i] = values[i]
-    return at + values.size
+    return at + len(values)
 
 
 @njit(cache=True)

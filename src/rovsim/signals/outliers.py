@@ -24,7 +24,8 @@ class VelocityGate(Section):
 
     Stretches are cut at every implausible step and at every dropout. Two stretches belong
     together when the second is within reach of the first. A jump that stays below `max_speed` x
-    step + `tolerance` passes, and so does a lone frame between dropouts that is within reach.
+    step + `tolerance` passes, and so does a lone frame between dropouts that is within reach. One
+    or two good frames between a swap and the end of the run are rejected with the swap.
     """
 
     kind: Literal["velocity_gate"] = "velocity_gate"

@@ -14,7 +14,7 @@ WANDER_TIME = 1.5  # s, how long a stick movement lasts
 # 0.4 rad/s on this class of vehicle without saturating a thruster.
 WANDER = {
     "3dof": np.array([0.16, 0.16, 0.12, 0.0, 0.0, 0.0]),
-    "6dof": np.array([0.15, 0.15, 0.11, 0.10, 0.14, 0.13]),
+    "6dof": np.array([0.15, 0.15, 0.11, 0.05, 0.08, 0.13]),
 }
 LARGEST = 0.40  # of one axis' demand; the axes share the thrusters
 

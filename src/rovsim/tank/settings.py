@@ -50,8 +50,8 @@ class Log(Section):
 class Turbulence(Section):
     """A Gauss-Markov force nobody logged: what no model can predict."""
 
-    force: NonNegativeFloat = 0.2  # N, makes a perfect model err by some 6 mm/s after 2 s
-    moment: NonNegativeFloat = 0.008  # N m, likewise some 15 mrad/s
+    force: NonNegativeFloat = 0.35  # N, makes a perfect model err by some 8 mm/s after 2 s
+    moment: NonNegativeFloat = 0.015  # N m, likewise some 20 mrad/s
     time_constant: PositiveFloat = 1.0  # s, eddies of 0.3 m passing at 0.3 m/s
 
 

@@ -1,0 +1,122 @@
+"""`rovsim COMMAND key=value …`: one message and exit code 2 for input that cannot be used."""
+
+import importlib
+import pkgutil
+import sys
+from pathlib import Path
+from typing import Any, Sequence
+
+from rovsim.errors import BadInput, RovsimError, nearest
+
+# Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
+PLAIN = ("campaign", "model", "effects", "out", "diagnosis", "to")
+COMMANDS = Path(__file__).with_name("commands")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run one command; exits with 0, or with 2 and one message for input that cannot be used."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        _main(words)
+    except RovsimError as error:
+        print(f"rovsim: {error}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("rovsim: interrupted; what was finished is kept.", file=sys.stderr)
+        sys.exit(130)
+    except BrokenPipeError:
+        sys.exit(141)
+
+
+def _main(words: list[str]) -> None:
+    names = sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS)]))
+    if not words or words[0] in ("-h", "--help", "help"):
+        print(_help(names))
+        return
+    command, rest = words[0], words[1:]
+    if command not in names:
+        raise BadInput(
+            f"unknown command '{command}'",
+            where="rovsim",
+            expected=f"one of {', '.join(names)}",
+            remedy=nearest(command, names),
+        )
+    if {"-h", "--help"} & set(rest):
+        print(_command(command).__doc__)
+        return
+    sweep = bool({"-m", "--multirun"} & set(rest))
+    overrides = [override(word) for word in rest if word not in ("-m", "--multirun")]
+    if sweep:
+        _sweep([f"command={command}", *overrides])
+    else:
+        from rovsim.config import compose
+
+        _command(command).run(compose([f"command={command}", *overrides]))
+
+
+def _help(names: Sequence[str]) -> str:
+    import ast
+
+    lines = ["rovsim COMMAND key=value …", ""]
+    for name in names:
+        source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
+        text = ast.get_docstring(ast.parse(source)) or ""
+        lines.append(f"  {name:<9} {text.splitlines()[0]}")
+    lines += ["", "rovsim COMMAND --help tells more; keys and their values stand in conf/."]
+    return "\n".join(lines)
+
+
+def _command(name: str) -> Any:
+    return importlib.import_module(f"rovsim.commands.{name}")
+
+
+def override(word: str) -> str:
+    """One word of the command line as a Hydra override; plain values are quoted.
+
+    Raises:
+        BadInput: the word has no `=`.
+    """
+    key, equals, value = word.partition("=")
+    if not equals:
+        raise BadInput(
+            f"'{word}' has no '='",
+            where="command line",
+            expected="key=value",
+            remedy="Quote values that hold spaces, for example campaign='my tank'.",
+        )
+    if key not in PLAIN:
+        return word
+    if value.startswith("[") and value.endswith("]"):
+        return f"{key}=[{','.join(quoted(item) for item in listed(value[1:-1]))}]"
+    return f"{key}={quoted(value)}"
+
+
+def listed(text: str) -> list[str]:
+    """Items of a comma-separated list; a comma that belongs to an existing path stays in it."""
+    pieces, items = text.split(","), []
+    while pieces:
+        count = next(
+            (n for n in range(len(pieces), 1, -1) if Path(",".join(pieces[:n]).strip()).exists()), 1
+        )
+        items.append(",".join(pieces[:count]).strip())
+        pieces = pieces[count:]
+    return [item for item in items if item]
+
+
+def quoted(value: str) -> str:
+    """A string that Hydra and OmegaConf take literally."""
+    if value in ("null", "None", ""):
+        return "null"
+    literal = value.replace("'", "\\'").replace("${", "\\${")
+    return f"'{literal}'"
+
+
+def _sweep(overrides: list[str]) -> None:
+    """Let Hydra run a command once for every combination of the given values."""
+    import hydra
+
+    from rovsim.config import CONF
+    from rovsim.sweep import job
+
+    sys.argv = ["rovsim", "--multirun", *overrides]
+    hydra.main(version_base="1.3", config_path=str(CONF), config_name="config")(job)()

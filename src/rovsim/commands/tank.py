@@ -1,0 +1,21 @@
+"""Make a synthetic campaign of raw exports, its truth sealed beside it.
+
+rovsim tank out=DIR [tank=default|tiny] [tank.seed=1] [tank.name=NAME]
+            [tank.effects='[{effect: thruster_lag, parameters: {time_constant: 0.2}}]']
+
+DIR gets campaign.yaml, a QTM export and a command log per run, and truth.yaml.
+"""
+
+from pathlib import Path
+
+from rovsim.config import Settings
+from rovsim.progress import reported
+from rovsim.tank.campaign import make_campaign
+
+
+def run(settings: Settings) -> None:
+    """Fly the runs and write the folder."""
+    out = Path(settings.out or f"results/{settings.tank.name}/raw")
+    with reported("flying") as progress:
+        make_campaign(settings.tank, out, progress)
+    print(out)

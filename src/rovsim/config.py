@@ -1,0 +1,93 @@
+"""Settings: Hydra composes them from conf/ once, here; the library gets plain typed values."""
+
+from pathlib import Path
+from typing import Any, Literal, Sequence
+
+from pydantic import Field, PositiveFloat, PositiveInt
+
+from rovsim.errors import BadInput
+from rovsim.replay import ReplaySettings
+from rovsim.residual.learner import LearnerSettings, learner_settings
+from rovsim.signals.chain import SignalSettings
+from rovsim.strict import Section, checked
+from rovsim.tank.settings import TankSettings
+
+CONF = Path(__file__).parents[2] / "conf"
+
+
+class StudySettings(Section):
+    """Which residuals the workflow trains, on which runs."""
+
+    residuals: tuple[str, ...] = ("knn", "gp", "svgp")
+    controls: tuple[Literal["3dof", "6dof"], ...] = ("3dof", "6dof")
+
+
+class TimingSettings(Section):
+    """How long inference is measured."""
+
+    calls: PositiveInt = 10000
+    warmup: PositiveInt = 200
+    seconds: PositiveFloat = 10.0
+
+
+class TrackingSettings(Section):
+    """Where MLflow keeps runs (`uri`) and their files (`artifacts`, for a local database)."""
+
+    uri: str
+    artifacts: str
+
+
+class Settings(Section):
+    """conf/config.yaml, composed and checked."""
+
+    command: str | None = None
+    campaign: str | None
+    model: str | list[str]
+    out: str | None
+    control: Literal["3dof", "6dof"]
+    seed: int = Field(ge=0)
+    signals: SignalSettings
+    replay: ReplaySettings
+    residual: dict[str, Any]
+    tank: TankSettings
+    study: StudySettings
+    timing: TimingSettings
+    tracking: TrackingSettings
+
+    @property
+    def learner(self) -> LearnerSettings:
+        """The chosen residual's own settings."""
+        return learner_settings(self.residual, "conf/residual")
+
+
+def compose(overrides: Sequence[str]) -> Settings:
+    """Compose conf/config.yaml with Hydra overrides.
+
+    Raises:
+        BadInput: an override Hydra does not understand, or a value that does not fit.
+    """
+    from hydra import compose as hydra_compose
+    from hydra import initialize_config_dir
+    from hydra.errors import HydraException
+    from omegaconf.errors import OmegaConfBaseException
+
+    try:
+        with initialize_config_dir(str(CONF), version_base="1.3"):
+            return settings_of(hydra_compose("config", overrides=list(overrides)))
+    except (HydraException, OmegaConfBaseException) as error:
+        raise BadInput(
+            str(error).split("\n")[0].rstrip("."),
+            where=f"overrides {' '.join(overrides)}",
+            expected="key=value with keys of conf/config.yaml and options of its groups",
+            remedy="See docs/configuration.md for the keys.",
+        ) from None
+
+
+def settings_of(composed: Any) -> Settings:
+    """Typed settings of a composed Hydra configuration."""
+    from omegaconf import OmegaConf
+
+    plain = OmegaConf.to_container(composed, resolve=True)
+    if isinstance(plain, dict):
+        plain.pop("hydra", None)
+    return checked(Settings, plain, "configuration")

@@ -1,0 +1,66 @@
+"""What figures and reports draw from: measured and predicted, by run and model."""
+
+from dataclasses import dataclass, field
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from rovsim.replay import OPEN_LOOP, Replay
+from rovsim.signals.motion import Motion
+
+SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Motions by run, replays by model and run, and the JSON contents made from them."""
+
+    motions: Mapping[str, Motion]
+    replays: Mapping[str, Mapping[str, Replay]]
+    comparison: Mapping[str, Any] = field(default_factory=dict)
+    growth: Mapping[str, Any] = field(default_factory=dict)
+    ladder: Mapping[str, Any] = field(default_factory=dict)
+    timing: Mapping[str, Any] = field(default_factory=dict)
+    quality: Mapping[str, Any] = field(default_factory=dict)
+
+    def predicted(self, run: str, horizon: str, name: str, models: Sequence[str]) -> dict:
+        """One predicted quantity by model."""
+        return {
+            model: getattr(self.replays[model][run].horizons[horizon], name)
+            for model in models
+            if run in self.replays.get(model, {})
+        }
+
+
+# Figures drawn once, from the JSON contents of those names; and those drawn for every run.
+ONCE = {
+    "error_by_axis": "comparison",
+    "error_growth": "growth",
+    "ladder": "ladder",
+    "inference_time": "timing",
+    "excitation": "quality",
+}
+PER_RUN = ("velocities", "residual_series", "path_3d")
+
+
+def arguments(figure: str, evidence: Evidence, run: str = "", models: Sequence[str] = ()) -> dict:
+    """Keyword arguments of a figure's `draw`."""
+    if figure in ONCE:
+        return {ONCE[figure]: getattr(evidence, ONCE[figure])}
+    motion = evidence.motions[run]
+    common = {"time": motion.time, "usable": motion.usable}
+    if figure == "velocities":
+        nu = evidence.predicted(run, SHOWN, "nu", models)
+        return {**common, "nu": motion.nu, "predicted_nu": nu}
+    if figure == "residual_series":
+        nu_dot = evidence.predicted(run, SHOWN, "nu_dot", models)
+        return {**common, "nu_dot": motion.nu_dot, "predicted_nu_dot": nu_dot}
+    eta = evidence.predicted(run, OPEN_LOOP, "eta", models)
+    tank = motion.site.tank if np.isfinite(motion.site.tank).all() else None
+    return {**common, "eta": motion.eta, "predicted_eta": eta, "tank": tank}
+
+
+def about(figure: str, run: str) -> str:
+    """What a figure of one run shows, in a few words."""
+    span = "open loop" if figure == "path_3d" else f"{SHOWN} s windows"
+    return f"run {run}, {span}" if run else ""

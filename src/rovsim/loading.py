@@ -1,0 +1,98 @@
+"""What most commands begin with: a campaign's motions and quality, and the models to compare."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rovsim.campaign import Campaign, load_campaign
+from rovsim.config import Settings
+from rovsim.errors import BadInput
+from rovsim.model import Model, load_model
+from rovsim.recording import quality_report, read_run, usable_reason
+from rovsim.recording.recording import Recording
+from rovsim.signals.chain import SignalSettings, clean
+from rovsim.signals.motion import Motion
+from rovsim.signals.outliers import find_outliers
+from rovsim.vehicle import Vehicle, load_vehicle
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A campaign as measured: its motions by run, and the quality report of each run."""
+
+    campaign: Campaign
+    vehicle: Vehicle
+    motions: dict[str, Motion]
+    quality: dict[str, dict[str, Any]]
+
+
+def given_campaign(settings: Settings) -> Campaign:
+    """The campaign of the settings.
+
+    Raises:
+        BadInput: none was given, or it cannot be read.
+    """
+    if settings.campaign is None:
+        raise BadInput(
+            "no campaign was given",
+            where="command line",
+            expected="campaign=DIR, a folder that holds campaign.yaml",
+            remedy="`rovsim tank out=DIR` makes a synthetic one to try.",
+        )
+    return load_campaign(Path(settings.campaign))
+
+
+def quality_of(recording: Recording, anomalies: Any, signals: SignalSettings) -> dict[str, Any]:
+    """Quality report of one run, outliers included."""
+    found = None if recording.nu is not None else find_outliers(recording, signals.outliers)
+    count = None if found is None else int(found.sum())
+    return quality_report(recording, anomalies, count)
+
+
+def measured(settings: Settings) -> Measured:
+    """Read, check and clean all usable runs of the campaign.
+
+    Raises:
+        BadInput: the campaign cannot be read, or no run of it can be used.
+    """
+    campaign = given_campaign(settings)
+    motions, quality = {}, {}
+    for run in campaign.runs:
+        recording, anomalies = read_run(campaign, run.id)
+        quality[run.id] = quality_of(recording, anomalies, settings.signals)
+        if usable_reason(recording) is None:
+            motions[run.id] = clean(recording, settings.signals)
+    if not motions:
+        reasons = "; ".join(f"{run}: {q['unusable']}" for run, q in quality.items())
+        raise BadInput(
+            f"no run can be used ({reasons})",
+            where=campaign.file,
+            expected="at least one run that moves and is long enough",
+            remedy="Record longer runs in which the vehicle moves.",
+        )
+    return Measured(campaign, campaign_vehicle(campaign), motions, quality)
+
+
+def campaign_vehicle(campaign: Campaign) -> Vehicle:
+    """The campaign's vehicle."""
+    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
+
+
+def models(settings: Settings, vehicle: Vehicle) -> list[Model]:
+    """The models named in the settings, each once.
+
+    Raises:
+        BadInput: one cannot be loaded, or two files have the same stem.
+    """
+    specs = [settings.model] if isinstance(settings.model, str) else settings.model
+    loaded = [load_model(spec, vehicle) for spec in dict.fromkeys(specs)]
+    names = [model.name for model in loaded]
+    twice = {name for name in names if names.count(name) > 1}
+    if twice:
+        raise BadInput(
+            f"two models are called '{twice.pop()}'",
+            where="model",
+            expected="different names (a model is called by its file's stem)",
+            remedy="Rename one of the files.",
+        )
+    return loaded

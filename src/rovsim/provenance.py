@@ -1,0 +1,59 @@
+"""Where a result came from: code, settings, versions. No clock, so equal inputs give equal files."""
+
+import hashlib
+import platform
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import rovsim
+from rovsim.strict import Section
+
+SOURCE = Path(rovsim.__file__).parent
+PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch")
+
+
+def digest(*names: str) -> str:
+    """Digest of modules of rovsim and of all they import, however deep.
+
+    A package stands for all its modules: what is found by looking has no import to follow.
+    """
+    graph = _graph()
+    wanted: set[str] = set()
+    for name in names:
+        wanted |= {name, *graph.find_descendants(name)}
+    for name in list(wanted):
+        wanted |= graph.find_upstream_modules(name)
+    for package in _discovered(wanted):
+        wanted |= graph.find_descendants(package)
+    content = hashlib.sha256()
+    for name in sorted(wanted):
+        content.update(_file(name).read_bytes())
+    return content.hexdigest()[:16]
+
+
+def _discovered(modules: set[str]) -> set[str]:
+    """Packages whose members are found by looking into their folder."""
+    found = {"rovsim.effects", "rovsim.recording", "rovsim.residual", "rovsim.figures"}
+    return {package for package in found if package in modules}
+
+
+@cache
+def _graph():
+    import grimp
+
+    return grimp.build_graph("rovsim", cache_dir=None)
+
+
+def _file(module: str) -> Path:
+    path = SOURCE.joinpath(*module.split(".")[1:])
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def provenance(settings: Section) -> dict[str, Any]:
+    """Settings, code and versions behind a result."""
+    packages = {name: version(name) for name in PACKAGES}
+    versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
+    chosen = settings.model_dump(mode="json", exclude={"command", "tracking", "timing"})
+    return {"settings": chosen, "code": digest("rovsim"), "versions": versions}

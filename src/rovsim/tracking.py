@@ -1,0 +1,112 @@
+"""MLflow: one experiment a campaign, one run a trained model. Written after results, never read.
+
+Runs are written under a lock, one writer at a time, so parallel jobs never find a locked database.
+"""
+
+import os
+from pathlib import Path
+from typing import Any, Iterable, Mapping
+
+import numpy as np
+from filelock import FileLock
+
+from rovsim.config import TrackingSettings
+
+HORIZONS = ("open_loop", "0.5", "2", "5")
+
+
+def track(
+    settings: TrackingSettings,
+    *,
+    experiment: str,
+    name: str,
+    tags: Mapping[str, str],
+    params: Mapping[str, Any],
+    scores: Mapping[str, Any],
+    files: Iterable[Path],
+    parent: str | None = None,
+    metrics: Mapping[str, float] | None = None,
+) -> str:
+    """Log one run and return its id.
+
+    Args:
+        settings: where.
+        experiment: the campaign.
+        name: of the run.
+        tags: model, residual, control.
+        params: hyperparameters.
+        scores: the model's part of comparison.json, by run.
+        files: kept as artifacts.
+        parent: id of the run this one belongs to.
+        metrics: further numbers.
+    """
+    with FileLock(_lock(settings.uri)):
+        client = _client(settings)
+        number = _experiment(client, settings, experiment)
+        labels = {**tags, "mlflow.runName": name}
+        run = client.create_run(
+            number, tags=labels | ({"mlflow.parentRunId": parent} if parent else {})
+        )
+        _log(client, run.info.run_id, params, metrics_of(scores) | dict(metrics or {}), files)
+        client.set_terminated(run.info.run_id)
+        return run.info.run_id
+
+
+def metrics_of(scores: Mapping[str, Any]) -> dict[str, float]:
+    """Metrics by split, horizon, quantity and axis: the mean over runs of comparison.json."""
+    found: dict[str, list[float]] = {}
+    for run in scores.values():
+        for horizon in HORIZONS:
+            numbers = run["open_loop"] if horizon == "open_loop" else run["windows"].get(horizon)
+            for key, value in _flat(numbers or {}):
+                if value is not None:
+                    found.setdefault(f"{run['split']}/{horizon}/{key}", []).append(value)
+    return {key: float(np.mean(values)) for key, values in found.items()}
+
+
+def _flat(numbers: Mapping[str, Any]) -> Iterable[tuple[str, float | None]]:
+    for quantity, value in numbers.items():
+        if isinstance(value, Mapping):
+            yield from ((f"{quantity}/{axis}", v) for axis, v in value.items())
+        else:
+            yield quantity, value
+
+
+def _log(client, run_id: str, params: Mapping, metrics: Mapping, files: Iterable[Path]) -> None:
+    from mlflow.entities import Metric, Param
+
+    values = [Param(key, str(value)[:500]) for key, value in params.items()]
+    client.log_batch(run_id, params=values)
+    found = [Metric(key, value, 0, 0) for key, value in metrics.items()]
+    for first in range(0, len(found), 900):  # MLflow takes at most 1000 metrics a batch
+        client.log_batch(run_id, metrics=found[first : first + 900])
+    for file in files:
+        client.log_artifact(run_id, str(file))
+
+
+def _client(settings: TrackingSettings):
+    os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")
+    import logging
+
+    from mlflow.tracking import MlflowClient
+
+    logging.getLogger("alembic").setLevel(logging.WARNING)
+    logging.getLogger("mlflow").setLevel(logging.WARNING)
+    return MlflowClient(tracking_uri=settings.uri)
+
+
+def _experiment(client, settings: TrackingSettings, name: str) -> str:
+    known = client.get_experiment_by_name(name)
+    if known is not None:
+        return known.experiment_id
+    local = settings.uri.startswith("sqlite:")
+    place = Path(settings.artifacts, name).absolute().as_uri() if local else None
+    return client.create_experiment(name, artifact_location=place)
+
+
+def _lock(uri: str) -> Path:
+    """Beside a local database; for a server, one lock a user is enough."""
+    path = Path(uri.removeprefix("sqlite:///")) if uri.startswith("sqlite:///") else None
+    place = path.with_suffix(".lock") if path else Path(".rovsim-tracking.lock")
+    place.parent.mkdir(parents=True, exist_ok=True)
+    return place
