@@ -81,3 +81,17 @@ def _no_collection() -> Iterator[None]:
     finally:
         if was:
             gc.enable()
+
+
+def both_ways(
+    residual: Any, queries: Array, calls: int, warmup: int, seconds: float
+) -> dict[str, Any]:
+    """Latency of a trained residual's library call and of its exported predictor, side by side."""
+    from rovsim.residual.predictor import evaluate_many
+
+    data, points = residual.data, residual.points
+    ways = {"library": residual.library(), "exported": lambda x: evaluate_many(data, x)}
+    return {
+        way: latency(call, queries, calls, warmup, points=points, seconds=seconds)
+        for way, call in ways.items()
+    }

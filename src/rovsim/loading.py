@@ -8,12 +8,11 @@ from rovsim.campaign import Campaign, load_campaign
 from rovsim.config import Settings
 from rovsim.errors import BadInput
 from rovsim.model import Model, load_model
-from rovsim.recording import quality_report, read_run, usable_reason
-from rovsim.recording.recording import Recording
-from rovsim.signals.chain import SignalSettings, clean
+from rovsim.quality import quality_of
+from rovsim.recording import read_run, usable_reason
+from rovsim.signals.chain import clean
 from rovsim.signals.motion import Motion
-from rovsim.signals.outliers import find_outliers
-from rovsim.vehicle import Vehicle, load_vehicle
+from rovsim.vehicle import Vehicle, campaign_vehicle
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +41,6 @@ def given_campaign(settings: Settings) -> Campaign:
     return load_campaign(Path(settings.campaign))
 
 
-def quality_of(recording: Recording, anomalies: Any, signals: SignalSettings) -> dict[str, Any]:
-    """Quality report of one run, outliers included."""
-    found = None if recording.nu is not None else find_outliers(recording, signals.outliers)
-    count = None if found is None else int(found.sum())
-    return quality_report(recording, anomalies, count)
-
-
 def measured(settings: Settings) -> Measured:
     """Read, check and clean all usable runs of the campaign.
 
@@ -59,7 +51,7 @@ def measured(settings: Settings) -> Measured:
     motions, quality = {}, {}
     for run in campaign.runs:
         recording, anomalies = read_run(campaign, run.id)
-        quality[run.id] = quality_of(recording, anomalies, settings.signals)
+        quality[run.id] = quality_of(recording, anomalies, settings.signals.outliers)
         if usable_reason(recording) is None:
             motions[run.id] = clean(recording, settings.signals)
     if not motions:
@@ -71,11 +63,6 @@ def measured(settings: Settings) -> Measured:
             remedy="Record longer runs in which the vehicle moves.",
         )
     return Measured(campaign, campaign_vehicle(campaign), motions, quality)
-
-
-def campaign_vehicle(campaign: Campaign) -> Vehicle:
-    """The campaign's vehicle."""
-    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
 
 
 def models(settings: Settings, vehicle: Vehicle) -> list[Model]:

@@ -68,6 +68,10 @@ class Model:
         entry = EffectEntry(effect=added.id, parameters=added.given())
         return replace(self, entries=(*self.entries, entry))
 
+    def called(self, name: str) -> "Model":
+        """The same model under another name."""
+        return replace(self, name=name)
+
     @cached_property
     def effects(self) -> list[Effect]:
         """All effects: the nominal ones of the vehicle, then the added ones."""

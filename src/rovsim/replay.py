@@ -14,7 +14,6 @@ from pydantic import PositiveFloat
 
 from rovsim.engine.at import Inputs, Jobs, Place
 from rovsim.engine.compiled import engine
-from rovsim.errors import BadInput
 from rovsim.files import read_arrays, write_arrays
 from rovsim.frames import normalized
 from rovsim.model import Model
@@ -73,9 +72,7 @@ class Replay:
         a = read_arrays(path)
         model, *run = (str(s) for s in a["label"])
         names = dict.fromkeys(key.split("/")[0] for key in a if "/" in key)
-        horizons = {
-            h: Prediction(a[f"{h}/eta"], a[f"{h}/nu"], a[f"{h}/nu_dot"]) for h in names
-        }
+        horizons = {h: Prediction(a[f"{h}/eta"], a[f"{h}/nu"], a[f"{h}/nu_dot"]) for h in names}
         return Replay(model, RunInfo(*run), a["time"], horizons)
 
 
@@ -125,7 +122,10 @@ def place(motion: Motion) -> Place:
 
 
 def trajectories(
-    model: Model, motion: Motion, starts: Sequence[tuple[float, int, Array]], settings: ReplaySettings
+    model: Model,
+    motion: Motion,
+    starts: Sequence[tuple[float, int, Array]],
+    settings: ReplaySettings,
 ) -> list[Array]:
     """Simulate from several states of one run.
 
@@ -167,19 +167,8 @@ def residual_data(model: Model) -> Array:
 def replay(
     model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
 ) -> Replay:
-    """Replay one run open loop and in windows of every horizon.
-
-    Raises:
-        BadInput: the run has no usable sample to start from.
-    """
-    if not motion.segments():
-        raise BadInput(
-            "no usable sample",
-            where=f"run {motion.run.id}",
-            expected="at least one stretch of found and connected frames",
-            remedy="See the quality report; leave this run out of the campaign.",
-        )
-    spans = {OPEN_LOOP: [_whole(motion)]}
+    """Replay one run open loop and in windows of every horizon; an unusable run predicts nothing."""
+    spans = {OPEN_LOOP: _whole(motion)}
     for seconds in settings.horizons:
         spans[f"{seconds:g}"] = list(windows(motion, seconds))
     predict = _predict_bins if motion.binned else _predict_samples
@@ -189,9 +178,10 @@ def replay(
     return Replay(model.name, motion.run, motion.time, horizons)
 
 
-def _whole(motion: Motion) -> tuple[int, int]:
-    """From the first usable sample to the last sample."""
-    return motion.segments()[0][0], len(motion.time) - (0 if motion.binned else 1)
+def _whole(motion: Motion) -> list[tuple[int, int]]:
+    """From the first usable sample to the last sample, once."""
+    last = len(motion.time) - (0 if motion.binned else 1)
+    return [(first, last) for first, _ in motion.segments()[:1] if first < last]
 
 
 def windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
@@ -209,7 +199,9 @@ def windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
             yield anchor, anchor + count
 
 
-def _bin_windows(motion: Motion, first: int, last: int, seconds: float) -> Iterator[tuple[int, int]]:
+def _bin_windows(
+    motion: Motion, first: int, last: int, seconds: float
+) -> Iterator[tuple[int, int]]:
     starts = np.append(motion.time, motion.end)[: last + 1]
     anchor = first
     while starts[last] - starts[anchor] >= 0.75 * seconds:

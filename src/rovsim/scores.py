@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.frames import conjugate, log, multiply
 from rovsim.recording.quality import EXCITED
-from rovsim.replay import OPEN_LOOP, Prediction, Replay
+from rovsim.replay import OPEN_LOOP, Prediction, Replay, windows
 from rovsim.signals.motion import Motion
 
 COMPARISON, LADDER = "rovsim.comparison/1", "rovsim.ladder/1"
@@ -31,7 +31,9 @@ class Errors:
 def errors(motion: Motion, prediction: Prediction) -> Errors:
     """Errors of one prediction at usable samples."""
     both = motion.usable & np.isfinite(prediction.nu).all(axis=1)
-    moved = both & np.isfinite(prediction.nu_dot).all(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
+    moved = (
+        both & np.isfinite(prediction.nu_dot).all(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
+    )
     turn = multiply(conjugate(motion.eta[both, 3:]), prediction.eta[both, 3:])
     return Errors(
         prediction.nu[both] - motion.nu[both],
@@ -126,7 +128,9 @@ def normalised(motions: Sequence[Motion], velocity_rmse: Array) -> float | None:
     return number(np.mean(velocity_rmse[moved] / spread[moved])) if moved.any() else None
 
 
-def growth(motions: Sequence[Motion], replays: Sequence[Replay], horizon: str = "5") -> dict[str, Any]:
+def growth(
+    motions: Sequence[Motion], replays: Sequence[Replay], horizon: str = "5"
+) -> dict[str, Any]:
     """Velocity RMSE against time since the anchor, from the windows of one horizon, test runs."""
     ages, found = [], []
     for motion, replay in zip(motions, replays, strict=True):
@@ -135,7 +139,7 @@ def growth(motions: Sequence[Motion], replays: Sequence[Replay], horizon: str = 
             known = motion.usable & np.isfinite(prediction.nu).all(axis=1)
             ages.append(_age(motion, prediction, float(horizon))[known])
             found.append((prediction.nu - motion.nu)[known])
-    age, error = np.concatenate(ages), np.concatenate(found)
+    age, error = np.concatenate([*ages, np.empty(0)]), np.concatenate([*found, np.empty((0, 6))])
     edges = np.linspace(0.0, float(horizon), 26)
     bins = np.digitize(age, edges)
     kept = [b for b in range(1, len(edges)) if np.any(bins == b)]
@@ -148,8 +152,6 @@ def growth(motions: Sequence[Motion], replays: Sequence[Replay], horizon: str = 
 
 def _age(motion: Motion, prediction: Prediction, horizon: float) -> Array:
     """Time since the anchor of the window each sample belongs to, s."""
-    from rovsim.replay import windows
-
     age = np.full(len(motion.time), np.nan)
     for a, b in windows(motion, horizon):
         at = slice(a, b) if motion.binned else slice(a + 1, b + 1)

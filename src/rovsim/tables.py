@@ -9,7 +9,14 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.figures.marks import ACCELERATION_UNITS, AXES, VELOCITY_UNITS, number, significant, vector
+from rovsim.figures.marks import (
+    ACCELERATION_UNITS,
+    AXES,
+    VELOCITY_UNITS,
+    number,
+    significant,
+    vector,
+)
 from rovsim.figures.pooled import horizon_text, pooled
 from rovsim.files import write_text
 

@@ -61,9 +61,7 @@ class ThrustPath:
             after.append(state)
         return force, after
 
-    def over_steps(
-        self, commands: Commands, edges: Array, between: Between = "held"
-    ) -> Thrust:
+    def over_steps(self, commands: Commands, edges: Array, between: Between = "held") -> Thrust:
         """Mean thrust over each step between `edges` (k+1,), s on the MoCap clock.
 
         Before the first line its command holds, after the last one too. The mean is exact for held

@@ -9,6 +9,7 @@ from pydantic import Field, PositiveFloat
 
 from rovsim import AXES
 from rovsim.body import Body
+from rovsim.campaign import Campaign
 from rovsim.effects.added_mass import AddedMass
 from rovsim.effects.base import Coefficients, Effect, Parameter
 from rovsim.effects.buoyancy import BuoyancyCenter, NetBuoyancy
@@ -23,9 +24,7 @@ VEHICLES = Path(__file__).parents[2] / "conf" / "vehicle"
 Triple = tuple[float, float, float]
 Six = tuple[float, float, float, float, float, float]
 NonNegative = Annotated[float, Field(ge=0)]
-SixNonNegative = tuple[
-    NonNegative, NonNegative, NonNegative, NonNegative, NonNegative, NonNegative
-]
+SixNonNegative = tuple[NonNegative, NonNegative, NonNegative, NonNegative, NonNegative, NonNegative]
 
 
 class Fluid(Section):
@@ -182,6 +181,11 @@ def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
     vehicle = checked(Vehicle, read_yaml(path), path)
     _check_layout(vehicle, path)
     return vehicle
+
+
+def campaign_vehicle(campaign: Campaign) -> Vehicle:
+    """The vehicle a campaign was recorded with."""
+    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
 
 
 def _check_layout(vehicle: Vehicle, path: Path) -> None:

@@ -29,9 +29,7 @@ def run(settings: Settings) -> None:
             model, motion, settings.signals, settings.replay
         )
     motions = list(data.motions.values())
-    scores = [
-        score(motion, replays[name][motion.run.id]) for name in replays for motion in motions
-    ]
+    scores = [score(motion, replays[name][motion.run.id]) for name in replays for motion in motions]
     curves = {name: growth(motions, list(runs.values())) for name, runs in replays.items()}
     evidence = Evidence(
         data.motions, replays, comparison(scores), {"models": curves}, quality=data.quality

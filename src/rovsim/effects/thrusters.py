@@ -60,7 +60,9 @@ class ThrusterGain(Strength):
     equation = r"F_i \to g\,g_i\,F_i"
     neglects = "a change of the curve's shape"
     source = "definition"
-    parameters = tuple(Parameter(name, "1", f"g_{name}", default=1.0) for name in (*THRUSTERS, "all"))
+    parameters = tuple(
+        Parameter(name, "1", f"g_{name}", default=1.0) for name in (*THRUSTERS, "all")
+    )
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
         """Forces times each thruster's gain and the common one."""

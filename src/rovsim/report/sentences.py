@@ -44,7 +44,9 @@ def runs_sentences(quality: Mapping[str, Mapping[str, Any]]) -> list[str]:
         return []
     held = [run for run, report in quality.items() if report.get("split") == "test"]
     unusable = {run: r["unusable"] for run, r in quality.items() if r.get("unusable")}
-    text = f"The campaign has {_count(len(quality), 'run')}, {len(held)} of them held out for tests."
+    text = (
+        f"The campaign has {_count(len(quality), 'run')}, {len(held)} of them held out for tests."
+    )
     return [text, *(f"Run {run} is not used: {why}." for run, why in unusable.items())]
 
 
@@ -120,17 +122,24 @@ def _overall(
     if not counted.any():
         return {}, ""
     ratios = {name: float(np.mean(row[counted])) for name, row in rows.items()}
-    return ratios, "the velocity error of 2 s windows, relative to nominal and averaged over the axes"
+    return (
+        ratios,
+        "the velocity error of 2 s windows, relative to nominal and averaged over the axes",
+    )
 
 
 def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
     which = "The learned residual" if count == 1 else f"Of {count} learned residuals,"
     if ratio < 1 - EQUAL:
         verb = "lowers" if count == 1 else "lowers the error most:"
-        tail = f" {measure} by {_percent(1 - ratio)}" if count == 1 else f" by {_percent(1 - ratio)}"
+        tail = (
+            f" {measure} by {_percent(1 - ratio)}" if count == 1 else f" by {_percent(1 - ratio)}"
+        )
         text = f"{which} {best} {verb}{tail}"
         return f"{text}." if count == 1 else f"{text} ({measure})."
-    change = "leaves the error as it is" if ratio <= 1 + EQUAL else f"raises it by {_percent(ratio - 1)}"
+    change = (
+        "leaves the error as it is" if ratio <= 1 + EQUAL else f"raises it by {_percent(ratio - 1)}"
+    )
     if count == 1:
         return f"The learned residual {best} does not help: it {change} ({measure})."
     return f"None of the {count} learned residuals helps; the best, {best}, {change} ({measure})."
@@ -175,7 +184,9 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
 
 def _floor_sentence(ratio: float, floor: float) -> str:
     if ratio <= 1 + EQUAL:
-        return f"It reaches the noise floor, {significant(floor)}: no model can be seen to do better."
+        return (
+            f"It reaches the noise floor, {significant(floor)}: no model can be seen to do better."
+        )
     return (
         f"A perfect model would show about {significant(floor)} (noise floor); "
         f"the best is {significant(ratio, 2)} times that."

@@ -86,6 +86,7 @@ class Motion:
         """Read what `write` wrote."""
         a = read_arrays(path)
         run, site, commands = unlabelled(a)
-        names = ("time", "eta", "nu", "nu_dot", "state_nu", "usable")
-        fields = [a[name] for name in names]
-        return Motion(run, site, *fields, commands, bool(a["binned"]), float(a["end"]))
+        return Motion(
+            run, site, a["time"], a["eta"], a["nu"], a["nu_dot"], a["state_nu"], a["usable"],
+            commands, bool(a["binned"]), float(a["end"]),
+        )  # fmt: skip

@@ -92,8 +92,6 @@ def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, ra
 
 def sealed(settings: TankSettings) -> dict[str, Any]:
     """The answer, in the terms of the diagnosis, and how to make the campaign again."""
-    effects = [
-        {"effect": e.effect, "parameters": e.build().given()} for e in settings.effects
-    ]
+    effects = [{"effect": e.effect, "parameters": e.build().given()} for e in settings.effects]
     verdict = "missing_effects" if effects else "adequate"
     return {"verdict": verdict, "effects": effects, "settings": settings.model_dump(mode="json")}

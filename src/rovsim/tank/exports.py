@@ -10,7 +10,9 @@ from rovsim.tank.settings import Camera, Log
 from rovsim.tank.simulate import Truth
 
 BODY = "BlueROV2"
-COLUMNS = "X Y Z Roll Pitch Yaw Residual Rot[0] Rot[1] Rot[2] Rot[3] Rot[4] Rot[5] Rot[6] Rot[7] Rot[8]"
+COLUMNS = (
+    "X Y Z Roll Pitch Yaw Residual Rot[0] Rot[1] Rot[2] Rot[3] Rot[4] Rot[5] Rot[6] Rot[7] Rot[8]"
+)
 
 
 def qtm_tsv(truth: Truth, camera: Camera, random) -> str:

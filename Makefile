@@ -1,0 +1,45 @@
+# Every target sets itself up on a fresh clone: .venv/ from environment.lock, Python 3.11, pip.
+PYTHON ?= python3.11
+CORES ?= 2
+BIN := .venv/bin
+export PYTHONHASHSEED := 0
+
+.PHONY: help setup study test check bench clean lock
+
+help:
+	@echo "make study   the whole study on the default campaign, into results/"
+	@echo "make test    every test"
+	@echo "make check   formatting, lint, types, layers"
+	@echo "make bench   replay and inference speed, into results/bench.json"
+	@echo "make setup   the environment alone"
+
+.venv/.complete: environment.lock pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv || python3 -m venv .venv
+	$(BIN)/python -c "import sys; assert sys.version_info[:2] == (3, 11), 'Python 3.11 is needed: make PYTHON=/path/to/python3.11'"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r environment.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $@
+
+setup: .venv/.complete
+
+study: setup
+	$(BIN)/snakemake --cores $(CORES)
+
+test: setup
+	$(BIN)/python -m pytest -n $(CORES)
+
+check: setup
+	$(BIN)/ruff format --check src tests workflow
+	$(BIN)/ruff check src tests workflow
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: setup
+	$(BIN)/rovsim bench
+
+clean:
+	rm -rf results/* .snakemake
+
+# After a change of pyproject.toml: exact pins of what is installed now.
+lock:
+	$(BIN)/python -m pip freeze --exclude-editable --exclude rovsim > environment.lock

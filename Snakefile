@@ -1,0 +1,41 @@
+"""The study, from raw exports to figures: `snakemake --cores 2 [--config campaign=DIR]`."""
+
+import sys
+
+from rovsim.errors import RovsimError
+from rovsim.study import Study
+
+study = Study(config)
+try:
+    study.trained
+except RovsimError as error:
+    print(f"rovsim: {error}", file=sys.stderr)
+    sys.exit(2)
+
+R = study.folder
+
+
+wildcard_constraints:
+    run="[^/]+",
+    model="[^/]+",
+
+
+localrules:
+    all,
+
+
+rule all:
+    input:
+        f"{R}/report.html",
+        f"{R}/comparison.json",
+        f"{R}/ladder.json",
+        f"{R}/tables/ladder.tex",
+        f"{R}/tracked.json",
+    default_target: True
+
+
+include: "workflow/rules/recordings.smk"
+include: "workflow/rules/signals.smk"
+include: "workflow/rules/replay.smk"
+include: "workflow/rules/residuals.smk"
+include: "workflow/rules/results.smk"

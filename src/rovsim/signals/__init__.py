@@ -1,0 +1,1 @@
+"""From poses on a camera clock to velocities and accelerations."""

@@ -1,0 +1,150 @@
+"""The study as the workflow sees it: its campaign, runs and models, settings and code digests."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Mapping
+
+from rovsim.campaign import Campaign, CampaignFile, load_campaign
+from rovsim.config import Settings, compose
+from rovsim.errors import BadInput
+from rovsim.evidence import PER_RUN
+from rovsim.provenance import digest, provenance
+from rovsim.residual.learner import learner
+from rovsim.tank.campaign import SEALED, describe
+
+BASELINES = ("zero_acceleration", "nominal")
+DRAWN = ("nominal", "knn_6dof", "gp_6dof")  # few enough to be told apart in a time series
+
+
+@dataclass(frozen=True)
+class Study:
+    """One campaign, one configuration. `config` is Snakemake's: `campaign`, `overrides`."""
+
+    config: Mapping[str, Any]
+
+    @cached_property
+    def settings(self) -> Settings:
+        """conf/, with the overrides given to Snakemake."""
+        return compose(self._overrides)
+
+    @cached_property
+    def _overrides(self) -> list[str]:
+        given = self.config.get("overrides", [])
+        return given.split() if isinstance(given, str) else list(given)
+
+    @cached_property
+    def campaign_path(self) -> str | None:
+        """The user's campaign, None for the synthetic one."""
+        path = self.config.get("campaign", self.settings.campaign)
+        return None if path is None else str(path)
+
+    @cached_property
+    def synthetic(self) -> bool:
+        """Whether the tank makes the campaign."""
+        return self.campaign_path is None
+
+    @cached_property
+    def _campaign(self) -> Campaign | CampaignFile:
+        if self.campaign_path is not None:
+            return load_campaign(Path(self.campaign_path))
+        return CampaignFile.model_validate(describe(self.settings.tank))
+
+    @property
+    def name(self) -> str:
+        """Folder under results/."""
+        return self._campaign.name
+
+    @cached_property
+    def folder(self) -> str:
+        """Where the study writes."""
+        return f"results/{self.name}"
+
+    def raw(self, run: str = "") -> list[str]:
+        """Raw files: of one run, with the campaign file, or all that the tank writes."""
+        if isinstance(self._campaign, Campaign):
+            one = self._campaign.run(run)
+            paths = [self._campaign.mocap_path(one), self._campaign.commands_path(one)]
+            return [str(self._campaign.file), *dict.fromkeys(str(path) for path in paths)]
+        runs = [r for r in self._campaign.runs if run in ("", r.id)]
+        files = [name for r in runs for name in (r.mocap, r.commands)]
+        extra = [] if run else [SEALED]
+        return [f"{self.folder}/raw/{name}" for name in ["campaign.yaml", *extra, *files]]
+
+    @property
+    def campaign_file(self) -> str:
+        """Where a rule finds the campaign."""
+        return self.raw(self.runs()[0])[0]
+
+    def runs(self, split: str = "") -> list[str]:
+        """Ids of the runs, all or of one split."""
+        return [run.id for run in self._campaign.runs if split in ("", run.split)]
+
+    @cached_property
+    def trained(self) -> list[str]:
+        """Names of the trained models: residuals x controls that have a train run.
+
+        Raises:
+            BadInput: no train or no test run, or an unknown residual.
+        """
+        for split in ("train", "test"):
+            if not self.runs(split):
+                raise BadInput(
+                    f"no {split} run",
+                    where=self.campaign_path or "conf/tank",
+                    expected="runs of both splits: train to learn from, test to report on",
+                    remedy="Give each run of campaign.yaml its split.",
+                )
+        found = {run.control for run in self._campaign.runs if run.split == "train"}
+        controls = [c for c in self.settings.study.controls if c in found]
+        kinds = self.settings.study.residuals
+        for kind in kinds:
+            learner(kind, "study.residuals")
+        return [f"{kind}_{control}" for kind in kinds for control in controls]
+
+    @property
+    def models(self) -> list[str]:
+        """Every model of the study, the baselines first."""
+        return [*BASELINES, *self.trained]
+
+    @property
+    def drawn(self) -> list[str]:
+        """Models shown in time series."""
+        return [m for m in DRAWN if m in self.models] or self.models[:3]
+
+    def control_runs(self, control: str) -> list[str]:
+        """Train runs of one control."""
+        return [r.id for r in self._campaign.runs if r.split == "train" and r.control == control]
+
+    def learner(self, kind: str) -> dict[str, Any]:
+        """Settings of one residual, whichever the configuration chose as default."""
+        kept = [word for word in self._overrides if not word.startswith("residual=")]
+        if kind != self.settings.residual["kind"]:
+            kept = [word for word in kept if not word.startswith("residual.")]
+        return compose([*kept, f"residual={kind}"]).residual
+
+    def section(self, *names: str) -> dict[str, Any]:
+        """Parts of the settings as plain values: only what a rule reads."""
+        return {name: getattr(self.settings, name) for name in names} | {
+            name: value.model_dump(mode="json")
+            for name in names
+            if hasattr(value := getattr(self.settings, name), "model_dump")
+        }
+
+    def signal(self, *names: str) -> dict[str, Any]:
+        """Parts of the signal chain as plain values."""
+        dumped = self.settings.signals.model_dump(mode="json")
+        return {name: dumped[name] for name in names}
+
+    @staticmethod
+    def code(*modules: str) -> str:
+        """Digest of modules and all they import: an edit re-runs what it touches."""
+        return digest(*(f"rovsim.{module}" for module in modules))
+
+    def provenance(self) -> dict[str, Any]:
+        """Settings, code and versions behind the study."""
+        return provenance(self.settings)
+
+    def figures(self) -> list[str]:
+        """Figures of single runs, as `figure-run`."""
+        return [f"{figure}-{run}" for run in self.runs("test") for figure in PER_RUN]

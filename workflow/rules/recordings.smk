@@ -1,0 +1,35 @@
+if study.synthetic:
+
+    rule tank:
+        "Fly the synthetic campaign and write its raw exports."
+        output:
+            study.raw(),
+        log:
+            f"{R}/logs/tank.log",
+        benchmark:
+            f"{R}/benchmarks/tank.tsv"
+        params:
+            settings=study.section("tank")["tank"],
+            folder=f"{R}/raw",
+            code=study.code("tank"),
+        script:
+            "../scripts/tank.py"
+
+
+rule read:
+    "Read one raw export: axes to NED and FRD, quality told, nothing filtered."
+    input:
+        lambda wildcards: study.raw(wildcards.run),
+    output:
+        recording=f"{R}/recordings/{{run}}.npz",
+        quality=f"{R}/quality/{{run}}.json",
+    log:
+        f"{R}/logs/read/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/read/{{run}}.tsv"
+    params:
+        campaign=study.campaign_file,
+        outliers=study.signal("outliers"),
+        code=study.code("recording", "campaign", "signals.outliers"),
+    script:
+        "../scripts/read.py"

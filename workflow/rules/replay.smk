@@ -1,0 +1,40 @@
+def model_files(wildcards):
+    """A trained model's file; the baselines have none."""
+    trained = wildcards.model in study.trained
+    return [f"{R}/models/{wildcards.model}/model.yaml"] if trained else []
+
+
+rule replay:
+    "Drive one model with the logged commands of one run: open loop and windows."
+    input:
+        motion=f"{R}/motions/{{run}}.npz",
+        campaign=study.campaign_file,
+        model=model_files,
+    output:
+        f"{R}/replay/{{model}}/{{run}}.npz",
+    log:
+        f"{R}/logs/replay/{{model}}/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/replay/{{model}}/{{run}}.tsv"
+    params:
+        settings=study.section("replay", "signals"),
+        code=study.code("replay", "effects"),
+    script:
+        "../scripts/replay.py"
+
+
+rule score:
+    "Errors of one model on one run."
+    input:
+        motion=f"{R}/motions/{{run}}.npz",
+        replay=f"{R}/replay/{{model}}/{{run}}.npz",
+    output:
+        f"{R}/scores/{{model}}/{{run}}.json",
+    log:
+        f"{R}/logs/score/{{model}}/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/score/{{model}}/{{run}}.tsv"
+    params:
+        code=study.code("scores"),
+    script:
+        "../scripts/score.py"

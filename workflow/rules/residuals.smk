@@ -1,0 +1,38 @@
+rule train:
+    "Learn what the nominal model's acceleration misses, on the train runs of one control."
+    input:
+        motions=lambda w: expand(f"{R}/motions/{{run}}.npz", run=study.control_runs(w.control)),
+        campaign=study.campaign_file,
+    output:
+        model=f"{R}/models/{{residual}}_{{control}}/model.yaml",
+        arrays=f"{R}/models/{{residual}}_{{control}}/residual.npz",
+    log:
+        f"{R}/logs/train/{{residual}}_{{control}}.log",
+    benchmark:
+        f"{R}/benchmarks/train/{{residual}}_{{control}}.tsv"
+    params:
+        settings=study.section("replay", "signals", "seed"),
+        residual=lambda w: study.learner(w.residual),
+        code=study.code("training", "effects", "residual"),
+    script:
+        "../scripts/train.py"
+
+
+rule timing:
+    "Time one prediction after the other, library call and exported predictor, alone on the machine."
+    input:
+        motion=f"{R}/motions/{study.runs('test')[0]}.npz",
+        campaign=study.campaign_file,
+        models=expand(f"{R}/models/{{model}}/model.yaml", model=study.trained),
+    output:
+        f"{R}/timing.json",
+    threads: workflow.cores
+    log:
+        f"{R}/logs/timing.log",
+    benchmark:
+        f"{R}/benchmarks/timing.tsv"
+    params:
+        settings=study.section("replay", "signals", "timing"),
+        code=study.code("latency", "training", "residual"),
+    script:
+        "../scripts/timing.py"

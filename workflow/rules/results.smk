@@ -1,0 +1,148 @@
+def of_models(folder, ending, models):
+    """Files of models and runs, by model and then by run."""
+    return expand(f"{R}/{folder}/{{model}}/{{run}}.{ending}", model=models, run=study.runs())
+
+
+rule compare:
+    "All scores in one file, the ladder, and how errors grow."
+    input:
+        scores=of_models("scores", "json", study.models),
+        replays=of_models("replay", "npz", study.models),
+        motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
+    output:
+        comparison=f"{R}/comparison.json",
+        ladder=f"{R}/ladder.json",
+        growth=f"{R}/growth.json",
+    log:
+        f"{R}/logs/compare.log",
+    benchmark:
+        f"{R}/benchmarks/compare.tsv"
+    params:
+        models=study.models,
+        code=study.code("scores"),
+    script:
+        "../scripts/compare.py"
+
+
+rule figure_of_study:
+    "One figure of the whole study."
+    input:
+        comparison=f"{R}/comparison.json",
+        ladder=f"{R}/ladder.json",
+        growth=f"{R}/growth.json",
+        timing=f"{R}/timing.json",
+        quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
+    output:
+        png=report(
+            f"{R}/figures/{{figure}}.png",
+            caption="../report/{figure}.rst",
+            category="Study",
+            labels={"figure": "{figure}"},
+        ),
+        pdf=f"{R}/figures/{{figure}}.pdf",
+    wildcard_constraints:
+        figure="error_by_axis|error_growth|ladder|inference_time|excitation",
+    log:
+        f"{R}/logs/figures/{{figure}}.log",
+    benchmark:
+        f"{R}/benchmarks/figures/{{figure}}.tsv"
+    params:
+        runs=study.runs(),
+        code=lambda w: study.code(f"figures.{w.figure}", "figures.style", "evidence"),
+    script:
+        "../scripts/figure_of_study.py"
+
+
+rule figure_of_run:
+    "One figure of one run."
+    input:
+        motion=f"{R}/motions/{{run}}.npz",
+        replays=expand(f"{R}/replay/{{model}}/{{{{run}}}}.npz", model=study.drawn),
+    output:
+        png=report(
+            f"{R}/figures/{{figure}}-{{run}}.png",
+            caption="../report/{figure}.rst",
+            category="Runs",
+            labels={"figure": "{figure}", "run": "{run}"},
+        ),
+        pdf=f"{R}/figures/{{figure}}-{{run}}.pdf",
+    wildcard_constraints:
+        figure="velocities|residual_series|path_3d",
+    log:
+        f"{R}/logs/figures/{{figure}}-{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/figures/{{figure}}-{{run}}.tsv"
+    params:
+        code=lambda w: study.code(f"figures.{w.figure}", "figures.style", "evidence"),
+    script:
+        "../scripts/figure_of_run.py"
+
+
+rule tables:
+    "The numbers as LaTeX and CSV."
+    input:
+        comparison=f"{R}/comparison.json",
+        ladder=f"{R}/ladder.json",
+    output:
+        expand(
+            f"{R}/tables/{{table}}.{{kind}}",
+            table=["ladder", "velocity_rmse", "velocity_mae", "acceleration_rmse"],
+            kind=["tex", "csv"],
+        ),
+    log:
+        f"{R}/logs/tables.log",
+    benchmark:
+        f"{R}/benchmarks/tables.tsv"
+    params:
+        folder=f"{R}/tables",
+        code=study.code("tables"),
+    script:
+        "../scripts/tables.py"
+
+
+FIGURES = ["error_by_axis", "error_growth", "ladder", "inference_time", "excitation"]
+
+
+rule report:
+    "Everything on one page."
+    input:
+        comparison=f"{R}/comparison.json",
+        ladder=f"{R}/ladder.json",
+        timing=f"{R}/timing.json",
+        quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
+        figures=expand(f"{R}/figures/{{name}}.png", name=[*FIGURES, *study.figures()]),
+    output:
+        report(f"{R}/report.html", caption="../report/report.rst", category="Study"),
+    log:
+        f"{R}/logs/report.log",
+    benchmark:
+        f"{R}/benchmarks/report.tsv"
+    params:
+        campaign=study.name,
+        runs=study.runs(),
+        provenance=study.provenance(),
+        code=study.code("report", "evidence"),
+    script:
+        "../scripts/report.py"
+
+
+rule track:
+    "Tell MLflow, once, after everything is written."
+    input:
+        comparison=f"{R}/comparison.json",
+        ladder=f"{R}/ladder.json",
+        figures=expand(f"{R}/figures/{{name}}.png", name=FIGURES),
+        report=f"{R}/report.html",
+        models=expand(f"{R}/models/{{model}}/model.yaml", model=study.trained),
+    output:
+        f"{R}/tracked.json",
+    log:
+        f"{R}/logs/track.log",
+    benchmark:
+        f"{R}/benchmarks/track.tsv"
+    params:
+        campaign=study.name,
+        tracking=study.section("tracking")["tracking"],
+        code=study.code("tracking"),
+    script:
+        "../scripts/track.py"

@@ -1,0 +1,50 @@
+rule resample:
+    "Reject outliers and put the poses on a uniform clock; long gaps stay gaps."
+    input:
+        f"{R}/recordings/{{run}}.npz",
+    output:
+        f"{R}/resampled/{{run}}.npz",
+    log:
+        f"{R}/logs/resample/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/resample/{{run}}.tsv"
+    params:
+        signals=study.signal("outliers", "resample"),
+        code=study.code("signals.resample"),
+    script:
+        "../scripts/resample.py"
+
+
+rule filter:
+    "Smooth the poses without delay."
+    input:
+        f"{R}/resampled/{{run}}.npz",
+    output:
+        f"{R}/filtered/{{run}}.npz",
+    log:
+        f"{R}/logs/filter/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/filter/{{run}}.tsv"
+    params:
+        signals=study.signal("filter"),
+        code=study.code("signals.filter"),
+    script:
+        "../scripts/filter.py"
+
+
+rule differentiate:
+    "Velocities and accelerations in body axes."
+    input:
+        poses=f"{R}/filtered/{{run}}.npz",
+        quality=f"{R}/quality/{{run}}.json",
+    output:
+        f"{R}/motions/{{run}}.npz",
+    log:
+        f"{R}/logs/differentiate/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/differentiate/{{run}}.tsv"
+    params:
+        signals=study.signal("differentiate"),
+        code=study.code("signals.chain"),
+    script:
+        "../scripts/differentiate.py"

@@ -1,0 +1,35 @@
+"""Bring all scores together."""
+
+from pathlib import Path
+
+from rovsim.files import read_json, write_json
+from rovsim.jobs import job
+from rovsim.replay import Replay
+from rovsim.scores import LADDER, comparison, growth, step
+from rovsim.signals.motion import Motion
+
+
+def main(
+    *, scores: list[Path], replays: list[Path], motions: list[Path], models: list[str],
+    out: dict[str, Path],
+) -> None:  # fmt: skip
+    measured = [Motion.read(path) for path in motions]
+    steps, curves = [], {}
+    for k, name in enumerate(models):
+        runs = [Replay.read(p) for p in replays[k * len(measured) : (k + 1) * len(measured)]]
+        steps.append(step(name, measured, runs))
+        curves[name] = growth(measured, runs)
+    write_json(out["growth"], {"models": curves})
+    write_json(out["ladder"], {"schema": LADDER, "steps": steps})
+    write_json(out["comparison"], comparison(read_json(path) for path in scores))
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            scores=[Path(path) for path in snakemake.input.scores],
+            replays=[Path(path) for path in snakemake.input.replays],
+            motions=[Path(path) for path in snakemake.input.motions],
+            models=list(snakemake.params.models),
+            out={name: Path(path) for name, path in snakemake.output.items()},
+        )

@@ -1,0 +1,28 @@
+"""Draw one figure of one run."""
+
+from pathlib import Path
+
+from rovsim.evidence import Evidence, arguments
+from rovsim.figures import kind
+from rovsim.figures.style import save
+from rovsim.jobs import job
+from rovsim.replay import Replay
+from rovsim.signals.motion import Motion
+
+
+def main(*, figure: str, motion: Path, replays: list[Path], out: Path) -> None:
+    measured, found = Motion.read(motion), [Replay.read(path) for path in replays]
+    run = measured.run.id
+    evidence = Evidence({run: measured}, {r.model: {run: r} for r in found})
+    drawn = kind(figure).draw(**arguments(figure, evidence, run, [r.model for r in found]))
+    save(drawn, out.parent, out.stem)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            figure=snakemake.wildcards.figure,
+            motion=Path(snakemake.input.motion),
+            replays=[Path(path) for path in snakemake.input.replays],
+            out=Path(snakemake.output.png),
+        )

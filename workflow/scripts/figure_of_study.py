@@ -1,0 +1,31 @@
+"""Draw one figure of the study."""
+
+from pathlib import Path
+
+from rovsim.evidence import Evidence, arguments
+from rovsim.figures import kind
+from rovsim.figures.style import save
+from rovsim.files import read_json
+from rovsim.jobs import job
+
+
+def main(*, figure: str, contents: dict[str, Path], quality: dict[str, Path], out: Path) -> None:
+    found = {name: read_json(path) for name, path in contents.items()}
+    reports = {run: read_json(path) for run, path in quality.items()}
+    evidence = Evidence({}, {}, quality=reports, **found)
+    save(kind(figure).draw(**arguments(figure, evidence)), out.parent, out.stem)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            figure=snakemake.wildcards.figure,
+            contents={
+                name: Path(snakemake.input[name])
+                for name in ("comparison", "ladder", "growth", "timing")
+            },
+            quality=dict(
+                zip(snakemake.params.runs, map(Path, snakemake.input.quality), strict=True)
+            ),
+            out=Path(snakemake.output.png),
+        )

@@ -1,0 +1,20 @@
+"""Smooth poses."""
+
+from pathlib import Path
+
+from rovsim.jobs import job
+from rovsim.signals.chain import SignalSettings, filtered, read_stage
+from rovsim.strict import checked
+
+
+def main(*, source: Path, out: Path, signals: dict) -> None:
+    filtered(read_stage(source), checked(SignalSettings, signals, "conf")).write(out)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            source=Path(snakemake.input[0]),
+            out=Path(snakemake.output[0]),
+            signals=snakemake.params.signals,
+        )

@@ -1,0 +1,29 @@
+"""Read one raw export."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.files import write_json
+from rovsim.jobs import job
+from rovsim.quality import quality_of
+from rovsim.recording import read_run
+from rovsim.signals.chain import SignalSettings
+from rovsim.strict import checked
+
+
+def main(*, campaign: Path, run: str, outliers: dict, recording: Path, quality: Path) -> None:
+    found, anomalies = read_run(load_campaign(campaign), run)
+    settings = checked(SignalSettings, outliers, "conf")
+    write_json(quality, quality_of(found, anomalies, settings.outliers))
+    found.write(recording)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            campaign=Path(snakemake.params.campaign),
+            run=snakemake.wildcards.run,
+            outliers=snakemake.params.outliers,
+            recording=Path(snakemake.output.recording),
+            quality=Path(snakemake.output.quality),
+        )

@@ -1,0 +1,32 @@
+"""Replay one run through one model."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.jobs import job
+from rovsim.model import load_model
+from rovsim.replay import ReplaySettings, replay
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.strict import checked
+from rovsim.vehicle import campaign_vehicle
+
+
+def main(*, motion: Path, campaign: Path, file: str, name: str, out: Path, settings: dict) -> None:
+    vehicle = campaign_vehicle(load_campaign(campaign))
+    model = load_model(file or name, vehicle).called(name)
+    signals = checked(SignalSettings, settings["signals"], "conf")
+    how = checked(ReplaySettings, settings["replay"], "conf")
+    replay(model, Motion.read(motion), signals, how).write(out)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            motion=Path(snakemake.input.motion),
+            campaign=Path(snakemake.input.campaign),
+            file=str(snakemake.input.get("model") or ""),
+            name=snakemake.wildcards.model,
+            out=Path(snakemake.output[0]),
+            settings=snakemake.params.settings,
+        )

@@ -1,0 +1,40 @@
+"""Write the report."""
+
+from pathlib import Path
+
+from rovsim.evidence import ONCE, about
+from rovsim.files import read_json
+from rovsim.jobs import job
+from rovsim.report import page
+
+
+def main(
+    *, campaign: str, contents: dict[str, Path], quality: dict[str, Path], figures: list[Path],
+    provenance: dict, out: Path,
+) -> None:  # fmt: skip
+    pictures = []
+    for path in figures:
+        name, _, run = (path.stem, "", "") if path.stem in ONCE else path.stem.partition("-")
+        pictures.append(page.Picture.read(path, name, about(name, run)))
+    found = {name: read_json(path) for name, path in contents.items()}
+    reports = {run: read_json(path) for run, path in quality.items()}
+    inputs = page.ReportInputs(
+        campaign, quality=reports, pictures=pictures, provenance=provenance, **found
+    )
+    page.write(out, inputs)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            campaign=snakemake.params.campaign,
+            contents={
+                name: Path(snakemake.input[name]) for name in ("comparison", "ladder", "timing")
+            },
+            quality=dict(
+                zip(snakemake.params.runs, map(Path, snakemake.input.quality), strict=True)
+            ),
+            figures=[Path(path) for path in snakemake.input.figures],
+            provenance=snakemake.params.provenance,
+            out=Path(snakemake.output[0]),
+        )

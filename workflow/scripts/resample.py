@@ -1,0 +1,21 @@
+"""Put poses on a uniform clock."""
+
+from pathlib import Path
+
+from rovsim.jobs import job
+from rovsim.recording.recording import Recording
+from rovsim.signals.chain import SignalSettings, resampled
+from rovsim.strict import checked
+
+
+def main(*, source: Path, out: Path, signals: dict) -> None:
+    resampled(Recording.read(source), checked(SignalSettings, signals, "conf")).write(out)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            source=Path(snakemake.input[0]),
+            out=Path(snakemake.output[0]),
+            signals=snakemake.params.signals,
+        )

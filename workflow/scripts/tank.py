@@ -1,0 +1,20 @@
+"""Fly the synthetic campaign."""
+
+from pathlib import Path
+
+from rovsim.jobs import job
+from rovsim.strict import checked
+from rovsim.tank.campaign import make_campaign
+from rovsim.tank.settings import TankSettings
+
+
+def main(*, folder: Path, settings: dict) -> None:
+    make_campaign(checked(TankSettings, settings, "conf/tank"), folder)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            folder=Path(snakemake.params.folder),
+            settings=snakemake.params.settings,
+        )

@@ -1,0 +1,43 @@
+"""Time library call and exported predictor of every trained model."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.config import TimingSettings
+from rovsim.files import write_json
+from rovsim.jobs import job
+from rovsim.latency import both_ways
+from rovsim.model import nominal, read_model
+from rovsim.replay import ReplaySettings
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.strict import checked
+from rovsim.training import samples
+from rovsim.vehicle import campaign_vehicle
+
+
+def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:
+    base = nominal(campaign_vehicle(load_campaign(campaign)))
+    signals = checked(SignalSettings, settings["signals"], "conf")
+    how = checked(ReplaySettings, settings["replay"], "conf")
+    timing = checked(TimingSettings, settings["timing"], "conf")
+    found = samples(base, Motion.read(motion), signals, how)
+    inference = {}
+    for path in models:
+        residual = read_model(path).residual
+        queries = found.features(residual.features)
+        inference[path.parent.name] = both_ways(
+            residual, queries, timing.calls, timing.warmup, timing.seconds
+        )
+    write_json(out, {"inference": inference})
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            motion=Path(snakemake.input.motion),
+            campaign=Path(snakemake.input.campaign),
+            models=[Path(path) for path in snakemake.input.models],
+            out=Path(snakemake.output[0]),
+            settings=snakemake.params.settings,
+        )

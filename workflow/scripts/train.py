@@ -1,0 +1,41 @@
+"""Train one residual on the train runs of one control."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.jobs import job
+from rovsim.model import nominal
+from rovsim.replay import ReplaySettings
+from rovsim.residual.learner import learner_settings
+from rovsim.residual.storage import write_residual
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.strict import checked
+from rovsim.training import train_residual
+from rovsim.vehicle import campaign_vehicle
+
+
+def main(
+    *, motions: list[Path], campaign: Path, control: str, out: Path, residual: dict, settings: dict
+) -> None:
+    base = nominal(campaign_vehicle(load_campaign(campaign)))
+    runs = [Motion.read(path) for path in motions]
+    learner = learner_settings(residual, "conf/residual")
+    signals = checked(SignalSettings, settings["signals"], "conf")
+    how = checked(ReplaySettings, settings["replay"], "conf")
+    trained = train_residual(base, runs, control, learner, signals, how, settings["seed"])
+    description = write_residual(out.parent, trained, control)
+    story = {"base": "nominal", "train_runs": [m.run.id for m in runs], "seed": settings["seed"]}
+    base.write(out, description, story)
+
+
+if __name__ == "__main__":
+    with job(snakemake):  # noqa: F821
+        main(
+            motions=[Path(path) for path in snakemake.input.motions],
+            campaign=Path(snakemake.input.campaign),
+            control=snakemake.wildcards.control,
+            out=Path(snakemake.output.model),
+            residual=snakemake.params.residual,
+            settings=snakemake.params.settings,
+        )
