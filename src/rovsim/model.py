@@ -10,9 +10,9 @@ from numpy import ndarray as Array
 from pydantic import FiniteFloat
 
 from rovsim.body import Body, packed
-from rovsim.engine.at import Constants
 from rovsim.effects import effect
 from rovsim.effects.base import Coefficients, Effect, Wrench
+from rovsim.engine.at import Constants
 from rovsim.files import plain, read_yaml, write_yaml
 from rovsim.residual.storage import Residual, read_residual
 from rovsim.strict import Section, checked
@@ -47,7 +47,7 @@ class EffectEntry(Section):
 class ModelFile(Section):
     """A model file as it stands on disk: data only."""
 
-    schema_: Literal["rovsim.model/1"] = SCHEMA
+    schema_: Literal["rovsim.model/1"] = "rovsim.model/1"
     vehicle: str | Vehicle
     effects: tuple[EffectEntry, ...] = ()
     residual: dict[str, Any] | None = None
@@ -65,7 +65,7 @@ class Model:
     inert: bool = False  # keeps its body velocity whatever pushes: the baseline to beat
 
     def __add__(self, added: Effect) -> "Model":
-        entry = EffectEntry(effect=added.id, parameters=added.given())
+        entry = EffectEntry(effect=added.id, parameters=dict(added.given()))
         return replace(self, entries=(*self.entries, entry))
 
     def called(self, name: str) -> "Model":

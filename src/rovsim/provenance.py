@@ -33,6 +33,14 @@ def digest(*names: str) -> str:
     return content.hexdigest()[:16]
 
 
+def own_digest(package: str) -> str:
+    """Digest of a package's own modules, whatever they import."""
+    content = hashlib.sha256()
+    for name in sorted({package, *_graph().find_descendants(package)}):
+        content.update(_file(name).read_bytes())
+    return content.hexdigest()[:16]
+
+
 def _discovered(modules: set[str]) -> set[str]:
     """Packages whose members are found by looking into their folder."""
     found = {"rovsim.effects", "rovsim.recording", "rovsim.residual", "rovsim.figures"}

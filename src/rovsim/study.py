@@ -9,7 +9,7 @@ from rovsim.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.config import Settings, compose
 from rovsim.errors import BadInput
 from rovsim.evidence import PER_RUN
-from rovsim.provenance import digest, provenance
+from rovsim.provenance import digest, own_digest, provenance
 from rovsim.residual.learner import learner
 from rovsim.tank.campaign import SEALED, describe
 
@@ -140,6 +140,11 @@ class Study:
     def code(*modules: str) -> str:
         """Digest of modules and all they import: an edit re-runs what it touches."""
         return digest(*(f"rovsim.{module}" for module in modules))
+
+    @staticmethod
+    def own_code(package: str) -> str:
+        """Digest of a package alone. A recorded campaign stands when the model is edited."""
+        return own_digest(f"rovsim.{package}")
 
     def provenance(self) -> dict[str, Any]:
         """Settings, code and versions behind the study."""

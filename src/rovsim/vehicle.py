@@ -11,7 +11,7 @@ from rovsim import AXES
 from rovsim.body import Body
 from rovsim.campaign import Campaign
 from rovsim.effects.added_mass import AddedMass
-from rovsim.effects.base import Coefficients, Effect, Parameter
+from rovsim.effects.base import Coefficients, Effect
 from rovsim.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.effects.rigid_body import RigidBody
@@ -136,7 +136,7 @@ class Thrusters(Coefficients):
     equation = r"\tau = B F,\quad F_i = \sum_k a_k c_i^{2k+1}"
     neglects = "dynamics, inflow, reaction torque, interaction"
     source = "the vehicle file"
-    parameters: tuple[Parameter, ...] = ()
+    parameters = ()
 
     def __init__(self, layout: ThrusterSet) -> None:
         super().__init__()

@@ -25,7 +25,7 @@ def main(
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             scores=[Path(path) for path in snakemake.input.scores],
             replays=[Path(path) for path in snakemake.input.replays],

@@ -19,7 +19,7 @@ def main(*, poses: Path, quality: Path, out: Path, signals: dict) -> None:
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             poses=Path(snakemake.input.poses),
             quality=Path(snakemake.input.quality),

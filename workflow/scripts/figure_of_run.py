@@ -19,7 +19,7 @@ def main(*, figure: str, motion: Path, replays: list[Path], out: Path) -> None:
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             figure=snakemake.wildcards.figure,
             motion=Path(snakemake.input.motion),

@@ -17,7 +17,7 @@ def main(*, figure: str, contents: dict[str, Path], quality: dict[str, Path], ou
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             figure=snakemake.wildcards.figure,
             contents={

@@ -12,7 +12,7 @@ def main(*, source: Path, out: Path, signals: dict) -> None:
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             source=Path(snakemake.input[0]),
             out=Path(snakemake.output[0]),

@@ -19,7 +19,7 @@ def main(*, campaign: Path, run: str, outliers: dict, recording: Path, quality: 
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             campaign=Path(snakemake.params.campaign),
             run=snakemake.wildcards.run,

@@ -21,7 +21,7 @@ def main(*, motion: Path, campaign: Path, file: str, name: str, out: Path, setti
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             motion=Path(snakemake.input.motion),
             campaign=Path(snakemake.input.campaign),

@@ -14,7 +14,7 @@ def main(*, motion: Path, replay: Path, out: Path) -> None:
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             motion=Path(snakemake.input.motion),
             replay=Path(snakemake.input.replay),

@@ -16,7 +16,7 @@ def main(*, comparison: Path, ladder: Path, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             comparison=Path(snakemake.input.comparison),
             ladder=Path(snakemake.input.ladder),

@@ -13,7 +13,7 @@ def main(*, folder: Path, settings: dict) -> None:
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             folder=Path(snakemake.params.folder),
             settings=snakemake.params.settings,

@@ -33,7 +33,7 @@ def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, setting
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             motion=Path(snakemake.input.motion),
             campaign=Path(snakemake.input.campaign),

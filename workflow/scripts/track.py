@@ -36,7 +36,7 @@ def main(
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             campaign=snakemake.params.campaign,
             comparison=Path(snakemake.input.comparison),

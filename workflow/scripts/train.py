@@ -30,7 +30,7 @@ def main(
 
 
 if __name__ == "__main__":
-    with job(snakemake):  # noqa: F821
+    with job(snakemake):
         main(
             motions=[Path(path) for path in snakemake.input.motions],
             campaign=Path(snakemake.input.campaign),

@@ -16,8 +16,19 @@ from numba import njit, prange
 
 from rovsim.engine.at import At, Constants, State
 from rovsim.engine.vectors import (
-    add3, add4, add6, compiled, cross, dot3, inlined, into_body, into_world, matrix6, times6,
-    vector3, vector6,
+    add3,
+    add4,
+    add6,
+    compiled,
+    cross,
+    dot3,
+    inlined,
+    into_body,
+    into_world,
+    matrix6,
+    times6,
+    vector3,
+    vector6,
 )  # fmt: skip
 from rovsim.residual.features import assemble_one
 from rovsim.residual.predictor import FEATURES, evaluate

@@ -8,7 +8,14 @@ from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
 from rovsim.figures.marks import (
-    ACCELERATION_UNITS, AXES, VELOCITY_UNITS, legend, note, nothing, patches, significant,
+    ACCELERATION_UNITS,
+    AXES,
+    VELOCITY_UNITS,
+    legend,
+    note,
+    nothing,
+    patches,
+    significant,
 )  # fmt: skip
 from rovsim.figures.palette import Look, looks
 from rovsim.figures.pooled import gaps, horizon_text, pooled, relative

@@ -5,8 +5,7 @@ from typing import Any, Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
-from rovsim.figures.marks import AXES, VELOCITY_UNITS, legend, lines, note, number
-from rovsim.figures.marks import listed, nothing
+from rovsim.figures.marks import AXES, VELOCITY_UNITS, legend, lines, listed, note, nothing, number
 from rovsim.figures.palette import looks
 from rovsim.figures.style import sheet, styled
 

@@ -1,0 +1,152 @@
+"""How fast replay and inference are here: each figure from one honest run, machines differ."""
+
+import platform
+from dataclasses import replace
+from time import perf_counter
+from typing import Any, Callable
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import body as bodies
+from rovsim.engine.at import Inputs, Jobs, Place
+from rovsim.engine.compiled import engine
+from rovsim.latency import latency
+from rovsim.model import Model
+from rovsim.residual.learner import learner_settings, train
+from rovsim.residual.predictor import evaluate_many
+from rovsim.residual.storage import Residual
+
+STEP = 0.01  # s
+REPEATS = 5  # the best of so many: what the machine can do when nothing else runs
+
+
+def steps_per_second(model: Model, jobs: int, steps: int, parallel: bool) -> float:
+    """RK4 steps per second of a model driven by random thrust."""
+    place = Place(np.full((3, 2), np.nan), np.ones(3))
+    random = np.random.default_rng(0)
+    force = random.uniform(-10, 10, (1, steps, len(model.body.directions)))
+    inputs = Inputs(
+        np.ascontiguousarray(force @ model.body.B.T), force, np.full((steps, 6), np.nan),
+        np.zeros(1, np.int64), np.full(steps, steps * STEP),
+    )  # fmt: skip
+    start = np.zeros((jobs, 13))
+    start[:, 3] = 1.0
+    count = np.arange(jobs)
+    batch = Jobs(start, np.zeros(jobs), 0 * count, np.full(jobs, steps), 0 * count, count * steps)
+    data = model.residual.data if model.residual else np.empty(0)
+    module = engine([type(w) for w in model.wrenches])
+    integrate = module.integrate_parallel if parallel else module.integrate
+    out = np.empty((jobs * steps, 13))
+    arguments = (batch, STEP, 1, model.constants, inputs, model.wrench_parameters()[None])
+    return jobs * steps / best(lambda: integrate(*arguments, data, place, out))
+
+
+def best(call: Callable[[], Any]) -> float:
+    """Shortest time in s of a few calls, after one that may compile."""
+    call()
+    took = []
+    for _ in range(REPEATS):
+        start = perf_counter()
+        call()
+        took.append(perf_counter() - start)
+    return min(took)
+
+
+def numpy_steps_per_second(model: Model, steps: int = 300) -> float:
+    """The same equation written with NumPy matrices, as Python simulators usually are."""
+    c, B = model.constants, model.body.B
+    force = np.random.default_rng(0).uniform(-10, 10, (steps, B.shape[1]))
+
+    def coriolis(M: Array, v: Array) -> Array:
+        h = M @ v
+        S = bodies.cross_matrix
+        top = np.hstack([np.zeros((3, 3)), -S(h[:3])])
+        return np.vstack([top, np.hstack([-S(h[:3]), -S(h[3:])])]) @ v
+
+    def slope(x: Array, tau: Array) -> Array:
+        q, nu = x[3:7], x[7:]
+        w, v = q[0], q[1:]
+        R = (
+            np.eye(3)
+            + 2 * w * bodies.cross_matrix(v)
+            + 2 * np.linalg.matrix_power(bodies.cross_matrix(v), 2)
+        )
+        d = (c.linear[0] + c.quadratic[0] * np.abs(nu)) * nu
+        g = np.concatenate([c.heaviness[0] * R[2], np.cross(c.righting[0], R[2])])
+        rest = tau - coriolis(c.M_RB[0], nu) - coriolis(c.M_A[0], nu) - d + g
+        turn = 0.5 * np.concatenate([[-v @ nu[3:]], w * nu[3:] + np.cross(v, nu[3:])])
+        return np.concatenate([R @ nu[:3], turn, c.M_inv[0] @ rest])
+
+    def drive() -> None:
+        x = np.zeros(13)
+        x[3] = 1.0
+        for f in force:
+            tau = B @ f
+            k1 = slope(x, tau)
+            k2 = slope(x + 0.5 * STEP * k1, tau)
+            k3 = slope(x + 0.5 * STEP * k2, tau)
+            k4 = slope(x + STEP * k3, tau)
+            x = x + STEP / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+            x[3:7] /= np.linalg.norm(x[3:7])
+
+    return steps / best(drive)
+
+
+def fitted(kind: str, X: Array, Y: Array, **more: Any) -> tuple[Residual, Any]:
+    """A residual of that kind, and the library's own prediction."""
+    trained = train(X, Y, learner_settings({"kind": kind, **more}), seed=0)
+    residual = Residual("6dof", trained.settings, trained.data, trained.arrays, trained.info)
+    return residual, trained.library_predict
+
+
+def replay_speeds(model: Model, X: Array, Y: Array) -> dict[str, float]:
+    """Replay speed of the nominal model and with residuals in the loop."""
+    knn, _ = fitted("knn", X[:2235], Y[:2235])
+    gp, _ = fitted("gp", X[:2000], Y[:2000], kernel="shared", max_points=2000, iterations=5)
+    return {
+        "single_steps_per_s": steps_per_second(model, 1, 200_000, False),
+        "batch_steps_per_s": steps_per_second(model, 400, 2_000, True),
+        "knn_in_loop_steps_per_s": steps_per_second(replace(model, residual=knn), 1, 5_000, False),
+        "gp_in_loop_steps_per_s": steps_per_second(replace(model, residual=gp), 1, 5_000, False),
+        "numpy_steps_per_s": numpy_steps_per_second(model),
+    }
+
+
+# Name of our path and of the library's, the learner, its settings, and the training sizes.
+CASES = (
+    ("knn", "sklearn_knn", "knn", {}, (2_000, 10_000)),
+    ("gp_mean", "gpytorch_mean", "gp", {"kernel": "shared", "iterations": 5}, (500, 2_000)),
+    ("svgp", "gpytorch_svgp", "svgp", {"iterations": 20}, (2_000,)),
+)
+
+
+def inference(X: Array, Y: Array, queries: Array, calls: int, seconds: float) -> dict[str, Any]:
+    """Latency of each predictor and of its library, one call at a time, by size."""
+    found: dict[str, Any] = {}
+    for ours, library, kind, more, sizes in CASES:
+        for size in sizes:
+            settings = more | ({"max_points": size} if kind == "gp" else {})
+            residual, theirs = fitted(kind, X[:size], Y[:size], **settings)
+            data, points = residual.data, residual.points
+            ways = {ours: lambda x, data=data: evaluate_many(data, x), library: theirs}
+            for name, call in ways.items():
+                found[f"{name}@{size}"] = latency(
+                    call, queries, calls, 200, points=points, seconds=seconds
+                )
+            gap = np.abs(residual.predict(queries[:500]) - theirs(queries[:500])).max()
+            found[f"{ours}@{size}"]["largest_difference"] = float(gap)
+    return found
+
+
+def machine() -> str:
+    """Processor, cores and Python."""
+    import os
+
+    name = platform.processor() or platform.machine()
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as info:
+            name = next(line.split(":")[1].strip() for line in info if "model name" in line)
+    except (OSError, StopIteration):
+        pass
+    return f"{name}, {os.cpu_count()} cores, Python {platform.python_version()}"
