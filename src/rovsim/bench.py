@@ -10,7 +10,6 @@ from numpy import ndarray as Array
 
 from rovsim import body as bodies
 from rovsim.engine.at import Inputs, Jobs, Place
-from rovsim.engine.compiled import engine
 from rovsim.latency import latency
 from rovsim.model import Model
 from rovsim.residual.learner import learner_settings, train
@@ -35,8 +34,7 @@ def steps_per_second(model: Model, jobs: int, steps: int, parallel: bool) -> flo
     count = np.arange(jobs)
     batch = Jobs(start, np.zeros(jobs), 0 * count, np.full(jobs, steps), 0 * count, count * steps)
     data = model.residual.data if model.residual else np.empty(0)
-    module = engine([type(w) for w in model.wrenches])
-    integrate = module.integrate_parallel if parallel else module.integrate
+    integrate = model.engine.integrate_parallel if parallel else model.engine.integrate
     out = np.empty((jobs * steps, 13))
     arguments = (batch, STEP, 1, model.constants, inputs, model.wrench_parameters()[None])
     return jobs * steps / best(lambda: integrate(*arguments, data, place, out))
@@ -114,7 +112,7 @@ def replay_speeds(model: Model, X: Array, Y: Array) -> dict[str, float]:
 
 
 # Name of our path and of the library's, the learner, its settings, and the training sizes.
-CASES = (
+CASES: tuple[tuple[str, str, str, dict[str, Any], tuple[int, ...]], ...] = (
     ("knn", "sklearn_knn", "knn", {}, (2_000, 10_000)),
     ("gp_mean", "gpytorch_mean", "gp", {"kernel": "shared", "iterations": 5}, (500, 2_000)),
     ("svgp", "gpytorch_svgp", "svgp", {"iterations": 20}, (2_000,)),

@@ -23,10 +23,6 @@ def inertia_at(mass: float, r: Array, inertia: Array) -> Array:
     return np.vstack([top, np.hstack([mass * S, inertia - mass * S @ S])])
 
 
-def _zeros(*shape: int):
-    return field(default_factory=lambda: np.zeros(shape))
-
-
 @dataclass
 class Body:
     """An empty body in still water; effects add to it.
@@ -38,18 +34,18 @@ class Body:
     """
 
     gravity: float
-    M_RB: Array = _zeros(6, 6)
-    M_A: Array = _zeros(6, 6)
-    linear: Array = _zeros(6)
-    quadratic: Array = _zeros(6)
+    M_RB: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    M_A: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    linear: Array = field(default_factory=lambda: np.zeros(6))
+    quadratic: Array = field(default_factory=lambda: np.zeros(6))
     weight: float = 0.0
-    weight_moment: Array = _zeros(3)
+    weight_moment: Array = field(default_factory=lambda: np.zeros(3))
     buoyancy: float = 0.0
-    center_of_buoyancy: Array = _zeros(3)
-    current: Array = _zeros(3)
-    B: Array = _zeros(6, 0)
-    directions: Array = _zeros(0, 3)
-    spin: Array = _zeros(0)
+    center_of_buoyancy: Array = field(default_factory=lambda: np.zeros(3))
+    current: Array = field(default_factory=lambda: np.zeros(3))
+    B: Array = field(default_factory=lambda: np.zeros((6, 0)))
+    directions: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    spin: Array = field(default_factory=lambda: np.zeros(0))
     advance: float = 0.0
 
     def add_mass(self, mass: float, place: Array, inertia: Array) -> None:

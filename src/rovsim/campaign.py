@@ -10,12 +10,11 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from rovsim import AXES
 from rovsim.errors import BadInput, nearest
 from rovsim.files import read_yaml
 from rovsim.frames import BodyAxes, WorldAxes, axes_signs
 from rovsim.strict import Section, checked
-
-AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
 
 def _as_text(value: Any) -> Any:

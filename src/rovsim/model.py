@@ -3,16 +3,18 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 from typing import Any, Literal
 
 import numpy as np
 from numpy import ndarray as Array
-from pydantic import FiniteFloat
+from pydantic import Field, FiniteFloat
 
 from rovsim.body import Body, packed
 from rovsim.effects import effect
 from rovsim.effects.base import Coefficients, Effect, Wrench
 from rovsim.engine.at import Constants
+from rovsim.engine.compiled import engine
 from rovsim.files import plain, read_yaml, write_yaml
 from rovsim.residual.storage import Residual, read_residual
 from rovsim.strict import Section, checked
@@ -34,7 +36,7 @@ class EffectEntry(Section):
     """One effect of a model file."""
 
     effect: str
-    parameters: dict[str, Value | FiniteFloat] = {}
+    parameters: dict[str, Value | FiniteFloat] = Field(default_factory=dict)
 
     def build(self) -> Effect:
         """The effect with these values."""
@@ -102,6 +104,11 @@ class Model:
     def wrenches(self) -> list[Wrench]:
         """Effects evaluated at every instant."""
         return [e for e in self.effects if isinstance(e, Wrench)]
+
+    @cached_property
+    def engine(self) -> ModuleType:
+        """The compiled equation of motion with these wrench effects."""
+        return engine([type(wrench) for wrench in self.wrenches])
 
     def wrench_parameters(self) -> Array:
         """Their parameters (k,), one after the other."""

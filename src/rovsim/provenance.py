@@ -1,4 +1,4 @@
-"""Where a result came from: code, settings, versions. No clock, so equal inputs give equal files."""
+"""Where a result came from: code, settings, versions. No clock: equal inputs, equal files."""
 
 import hashlib
 import platform

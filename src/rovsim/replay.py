@@ -13,7 +13,6 @@ from numpy import ndarray as Array
 from pydantic import PositiveFloat
 
 from rovsim.engine.at import Inputs, Jobs, Place
-from rovsim.engine.compiled import engine
 from rovsim.files import read_arrays, write_arrays
 from rovsim.frames import normalized
 from rovsim.model import Model
@@ -148,7 +147,7 @@ def trajectories(
         np.zeros(len(starts), np.int64), rows[:-1],
     )  # fmt: skip
     out = np.empty((rows[-1], 13))
-    engine([type(w) for w in model.wrenches]).integrate_parallel(
+    model.engine.integrate_parallel(
         jobs, steps.h, steps.stride, model.constants,
         inputs(model, motion, steps.edges, settings.commands), model.wrench_parameters()[None],
         residual_data(model), place(motion), out,
@@ -167,7 +166,7 @@ def residual_data(model: Model) -> Array:
 def replay(
     model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
 ) -> Replay:
-    """Replay one run open loop and in windows of every horizon; an unusable run predicts nothing."""
+    """Replay one run open loop and in windows; an unusable run predicts nothing."""
     spans = {OPEN_LOOP: _whole(motion)}
     for seconds in settings.horizons:
         spans[f"{seconds:g}"] = list(windows(motion, seconds))

@@ -10,7 +10,6 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.engine.at import Inputs
-from rovsim.engine.compiled import engine
 from rovsim.errors import BadInput
 from rovsim.model import Model
 from rovsim.replay import (
@@ -60,7 +59,7 @@ def samples(
 def accelerations(model: Model, motion: Motion, at: Inputs) -> Array:
     """Acceleration (n, 6) of the model at the measured states, under the thrust of step n."""
     out = np.empty((len(motion.time), 6))
-    engine([type(w) for w in model.wrenches]).accelerations(
+    model.engine.accelerations(
         motion.time - motion.time[0], motion.state, model.constants, at,
         model.wrench_parameters()[None], residual_data(model), place(motion), out,
     )  # fmt: skip

@@ -7,6 +7,7 @@ Writes results/bench.json. The data are residual features of the default tank ca
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -39,7 +40,7 @@ def run(settings: Settings) -> None:
     queries = np.concatenate([s.features(features) for s in found["test"]])
     order = np.random.default_rng(settings.seed).permutation(len(X))
     X, Y = X[order], Y[order]
-    content = {
+    content: dict[str, Any] = {
         "schema": "rovsim.bench/1",
         "machine": bench.machine(),
         "replay": bench.replay_speeds(model, X, Y),

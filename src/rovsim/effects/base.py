@@ -108,7 +108,7 @@ class Effect(ABC):
 
 
 class Coefficients(Effect):
-    """Changes the constants of Fossen's equation: inertia, damping, buoyancy, current, thrusters."""
+    """Changes the constants of Fossen's equation: inertia, damping, buoyancy, current, …"""
 
     @abstractmethod
     def enter(self, body: Body) -> None:
@@ -129,7 +129,7 @@ class Wrench(Effect):
     @classmethod
     def named_parameters(cls) -> type:
         """The named tuple type in which the compiled kernel gets its parameters."""
-        return namedtuple(f"{cls.__name__}Parameters", [p.name for p in cls.parameters])  # type: ignore[misc]
+        return namedtuple(f"{cls.__name__}Parameters", [p.name for p in cls.parameters])
 
 
 class Clock(Effect):

@@ -12,13 +12,12 @@ import sys
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Sequence
+from typing import Any, Sequence
 
 import numba
 from filelock import FileLock
 from platformdirs import user_cache_path
 
-from rovsim.effects.base import Wrench
 from rovsim.files import write_text
 
 TEMPLATE = Path(__file__).with_name("equation.py")
@@ -29,13 +28,13 @@ def cache_folder() -> Path:
     return Path(os.environ.get("ROVSIM_CACHE") or user_cache_path("rovsim")) / "engines"
 
 
-def engine(wrenches: Sequence[type[Wrench]]) -> ModuleType:
+def engine(wrenches: Sequence[Any]) -> ModuleType:
     """The compiled equation of motion with these wrench effects, in this order."""
     return _engine(tuple(wrenches))
 
 
 @cache
-def _engine(wrenches: tuple[type[Wrench], ...]) -> ModuleType:
+def _engine(wrenches: tuple[Any, ...]) -> ModuleType:
     text = TEMPLATE.read_text(encoding="utf-8")
     before, rest = text.split("# <extra>")
     after = rest.split("# </extra>")[1]
@@ -53,7 +52,7 @@ def _made(folder: Path) -> Path:
     return folder
 
 
-def _imported(name: str, path: Path, wrenches: tuple[type[Wrench], ...]) -> ModuleType:
+def _imported(name: str, path: Path, wrenches: tuple[Any, ...]) -> ModuleType:
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None
@@ -64,7 +63,7 @@ def _imported(name: str, path: Path, wrenches: tuple[type[Wrench], ...]) -> Modu
     return module
 
 
-def _chain(wrenches: tuple[type[Wrench], ...]) -> str:
+def _chain(wrenches: tuple[Any, ...]) -> str:
     """Source of `extra`: every kernel gets its slice of p as a named tuple."""
     lines, at = [], 0
     for i, wrench in enumerate(wrenches):
@@ -78,16 +77,17 @@ def _chain(wrenches: tuple[type[Wrench], ...]) -> str:
         for i, wrench in enumerate(wrenches)
     ]
     head = ["", *names, "", "", "@inlined", "def extra(at, p):"]
-    start = '    """Wrench of the model\'s further effects."""\n    tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)'
+    start = "    tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)"
     return "\n".join([*head, start, *lines, "    return tau"])
 
 
-def _digest(source: str, wrenches: tuple[type[Wrench], ...]) -> str:
+def _digest(source: str, wrenches: tuple[Any, ...]) -> str:
     """Digest of the engine's source, of every module its kernels come from, and of Numba."""
     from rovsim.engine import at, vectors
     from rovsim.residual import features, predictor
 
-    files = [inspect.getsourcefile(m) for m in (at, vectors, features, predictor, *wrenches)]
+    files = [inspect.getsourcefile(m) for m in (at, vectors, features, predictor)]
+    files += [inspect.getsourcefile(wrench) for wrench in wrenches]
     content = hashlib.sha256(f"{source}{numba.__version__}".encode())
     for file in files:
         content.update(Path(str(file)).read_bytes())

@@ -1,6 +1,6 @@
 """Error of every model on every axis: velocity and acceleration, absolute and against nominal."""
 
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -62,7 +62,7 @@ def _part(errors: Mapping[str, Array], half: slice) -> dict[str, Array]:
 
 
 def _bars(
-    axes: Axes, errors: Mapping[str, Array], names: tuple[str, ...], style: Mapping[str, Look]
+    axes: Axes, errors: Mapping[str, Array], names: Sequence[str], style: Mapping[str, Look]
 ) -> None:
     width = 0.8 / max(len(errors), 1)
     for k, (name, row) in enumerate(errors.items()):
@@ -91,5 +91,12 @@ def _against_nominal(axes: Axes, ratios: Mapping[str, Array]) -> None:
     for k, row in enumerate(ratios.values()):
         for x in np.flatnonzero(row > TALLEST):
             place = (x + (k + 0.5) * width - 0.4, TALLEST * 1.12)
-            axes.annotate(significant(row[x]), place, ha="center", va="top", fontsize=7, rotation=90,
-                          color="black", bbox={"facecolor": "white", "pad": 0.5, "lw": 0})  # fmt: skip
+            box = {"facecolor": "white", "pad": 0.5, "lw": 0}
+            text: dict[str, Any] = {
+                "ha": "center",
+                "va": "top",
+                "fontsize": 7,
+                "rotation": 90,
+                "color": "black",
+            }
+            axes.annotate(significant(row[x]), place, bbox=box, **text)

@@ -18,7 +18,7 @@ CAPTION = (
 
 @styled()
 def draw(*, growth: Mapping[str, Any]) -> Figure:
-    """Draw `growth.json`: {"models": {NAME: {"horizon_s": [..], "velocity_rmse": {axis: [..]}}}}."""
+    """Draw `growth.json`: by model, `horizon_s` [..] and `velocity_rmse` {axis: [..]}."""
     models = growth.get("models", {})
     style = looks(models)
     figure = sheet(110)

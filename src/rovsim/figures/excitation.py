@@ -46,7 +46,7 @@ def draw(*, quality: Mapping[str, Mapping[str, Any]]) -> Figure:
     if not runs:
         nothing(cells, "no runs")
     labels = ((EXCITED, "excited"), (STILL, "not excited"), (SEEN, "seen"), (GAP, "gap"))
-    edge = {"edgecolor": "#888888", "linewidth": 0.5}
+    edge: dict[str, Any] = {"edgecolor": "#888888", "linewidth": 0.5}
     legend(figure, [Patch(facecolor=color, label=label, **edge) for color, label in labels])
     note(figure, remarks)
     return figure

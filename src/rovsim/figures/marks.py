@@ -12,10 +12,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
+from rovsim import AXES
 from rovsim.figures.palette import Look
 from rovsim.figures.style import FONT_SIZE, MM, WIDTH
 
-AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 VELOCITY = ("u", "v", "w", "p", "q", "r")  # Fossen's letters
 VELOCITY_UNITS = ("m/s",) * 3 + ("rad/s",) * 3
 ACCELERATION_UNITS = ("m/s²",) * 3 + ("rad/s²",) * 3

@@ -30,7 +30,7 @@ def draw(
     *, time: Array, eta: Array, predicted_eta: Mapping[str, Array], usable: Array | None = None,
     tank: Array | None = None,
 ) -> Figure:  # fmt: skip
-    """Draw positions `eta[:, :3]` and {model: (n, >= 3)}, NED in m; `tank` (3, 2) low and high, NED.
+    """Draw positions `eta[:, :3]` and {model: (n, >= 3)}; `tank` (3, 2) low and high; NED, m.
 
     Plotted are north, west and up (NED turned half a turn about x, so nothing is mirrored); for a
     z-up motion capture these are its own axes. What leaves the view is cut and named.
@@ -70,7 +70,8 @@ def _view(measured: Array, tank: Array | None) -> tuple[Array, Array]:
 
 
 def _inside(path: Array, low: Array, high: Array) -> Array:
-    return np.where(((path < low) | (path > high)).any(axis=1)[:, None], np.nan, path)
+    outside = np.logical_or(path < low, path > high).any(axis=1, keepdims=True)
+    return np.where(outside, np.nan, path)
 
 
 def _ends(axes: Axes3D, path: Array, color: str) -> None:

@@ -36,7 +36,7 @@ def pooled(
 
 
 def relative(errors: Mapping[str, Array], base: str = "nominal") -> dict[str, Array]:
-    """Divide every model's errors (6,) by those of `base`; NaN where there is nothing to divide by."""
+    """Divide every model's errors (6,) by those of `base`; NaN where there is nothing to divide."""
     reference = errors.get(base, np.full(len(AXES), np.nan))
     safe = np.where(reference > 0, reference, np.nan)
     return {name: values / safe for name, values in errors.items()}

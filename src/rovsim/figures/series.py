@@ -11,7 +11,7 @@ HEADROOM = 2.5  # a diverging model may use this many times the measured range, 
 
 
 def broken(time: Array, values: Array) -> tuple[Array, Array]:
-    """Put a NaN row into `values` (n, ...) wherever `time` (n,) jumps, so that no line bridges it."""
+    """Put a NaN row into `values` (n, ...) wherever `time` (n,) jumps: no line bridges it."""
     steps = np.diff(time)
     if not len(steps):
         return time, values
@@ -45,7 +45,7 @@ def excerpt(time: Array, values: Array, length: float = EXCERPT) -> slice:
 
 
 def limits(reference: Array, others: Iterable[Array]) -> tuple[float, float, bool]:
-    """Return low and high of an axis that shows `reference` fully, and whether `others` leave it."""
+    """Return low and high of an axis that shows `reference`, and whether `others` leave it."""
     stacked = [a[np.isfinite(a)] for a in (reference, *others)]
     everything = np.concatenate(stacked)
     if not len(everything):

@@ -14,7 +14,7 @@ CommandKind = Literal["thruster", "demand", "wrench"]
 
 @dataclass(frozen=True)
 class RunInfo:
-    """Which run this is: `id` of the run, its `control` (3dof | 6dof) and `split` (train | test)."""
+    """Which run this is: its `id`, `control` (3dof | 6dof) and `split` (train | test)."""
 
     id: str
     control: str

@@ -26,7 +26,7 @@ COMPARED = (
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawn figure: its registered name, the PNG and what it shows ("run 6dof-2, 2 s windows")."""
+    """A drawn figure: registered name, PNG, and what it shows ("run 6dof-2, 2 s windows")."""
 
     name: str
     png: bytes

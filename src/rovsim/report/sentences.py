@@ -77,9 +77,7 @@ def _against_nothing(errors: Mapping[str, Array]) -> list[str]:
         return []
     beaten = [axis for axis, r in zip(AXES, ratio, strict=True) if r >= 1 - EQUAL]
     if beaten:
-        return [
-            f"In {listed(beaten)} it is no better than assuming that the vehicle keeps its velocity."
-        ]
+        return [f"In {listed(beaten)} it is no better than assuming that the velocity is kept."]
     where = "every axis" if np.isfinite(ratio).all() else "every axis with a value"
     return [f"On {where} it is closer than assuming that the vehicle keeps its velocity."]
 

@@ -19,7 +19,8 @@ WANDER = {
 LARGEST = 0.40  # of one axis' demand; the axes share the thrusters
 
 POSITION_GAIN, SPEED_GAIN, INTEGRAL_GAIN = 0.22, 0.25, 0.03  # per m, per m/s, per m s
-HOLD = {"3dof": (0.25, 0.15), "6dof": (0.05, 0.02)}  # roll and pitch: per rad, per rad/s
+# Roll and pitch: per rad, per rad/s. Stronger, and the reaction time makes the vehicle rock.
+HOLD = {"3dof": (0.06, 0.03), "6dof": (0.03, 0.015)}
 NEAR = 0.6  # share of the half tank (clear of walls) in which the pilot chooses set-points
 REACH = np.array([1.5, 1.2, 0.5])  # m, how far from the middle set-points lie at most
 CLEARANCE = 0.5  # m, kept from walls, floor and surface

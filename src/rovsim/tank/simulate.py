@@ -10,7 +10,6 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.engine.at import Inputs, Place
-from rovsim.engine.compiled import engine
 from rovsim.errors import BadInput
 from rovsim.model import Model
 from rovsim.recording.recording import Commands
@@ -20,7 +19,7 @@ from rovsim.tank.settings import TankSettings, Turbulence
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What happened: `time` (n,) s and `state` (n, 13) in NED; `commands` as the pilot sent them."""
+    """What happened: `time` (n,) s, `state` (n, 13) in NED, `commands` as the pilot sent them."""
 
     time: Array
     state: Array
@@ -73,7 +72,7 @@ class _Vehicle:
         self.place = Place(np.ascontiguousarray(tank), np.array([1.0, -1.0, -1.0]))
         self.times, self.commands = np.empty(0), np.empty((0, len(model.body.directions)))
         self.lag: list | None = None
-        self.heun = engine([type(w) for w in model.wrenches]).heun
+        self.heun = model.engine.heun
 
     def advance(self, k: int, command: Array, state: Array, pushes: Array, out: Array) -> None:
         """Take the command of tick k and move on to the next tick."""

@@ -1,0 +1,147 @@
+"""The command line: every argument arrives, every mistake is one message and exit code 2."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+from rovsim.cli import listed, main, override, quoted
+from rovsim.config import compose
+from rovsim.files import read_yaml
+
+AWKWARD = [
+    "my tank, 2.5 m (a=b) é",
+    "it's",
+    'quote"d',
+    "tilde~$HOME",
+    "back\\slash",
+    "${oops}",
+    "a%b",
+]
+
+
+@pytest.fixture(scope="session")
+def campaign(tmp_path_factory):
+    """A tiny synthetic campaign in a folder with an awkward name."""
+    out = tmp_path_factory.mktemp("tank") / "my tank, (a=b) é"
+    main(["tank", "tank=tiny", "tank.duration=8", f"out={out}"])
+    return out
+
+
+@pytest.mark.parametrize("value", AWKWARD)
+def test_plain_values_arrive_as_typed(value):
+    assert compose([override(f"campaign={value}")]).campaign == value
+
+
+def test_lists_of_models_keep_commas_that_belong_to_files(tmp_path):
+    odd = tmp_path / "a,b.yaml"
+    odd.write_text("vehicle: bluerov2_heavy")
+    assert listed(f"nominal,{odd}") == ["nominal", str(odd)]
+    assert compose([override(f"model=[nominal,{odd}]")]).model == ["nominal", str(odd)]
+    assert quoted("null") == "null"
+
+
+def failing(capsys, *words):
+    """The one message of a command that must end with exit code 2."""
+    with pytest.raises(SystemExit) as ended:
+        main(list(words))
+    text = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert text.startswith("rovsim: ")
+    assert "Traceback" not in text
+    return text
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["compar"], "Did you mean 'compare'"),
+        (["compare"], "no campaign was given"),
+        (["compare", "campaign=/nowhere"], "/nowhere"),
+        (["compare", "campaigm=x"], "campaigm"),
+        (["compare", "oops"], "has no '='"),
+        (["compare", "filter=savgoll", "campaign=x"], "savgol"),
+        (["tank", "tank.seed=-1", "out=x"], "tank.seed"),
+        (["tank", "tank.effects=[{effect: lag}]", "out=x"], "unknown effect 'lag'"),
+        (["train", "residual.k=0", "campaign=x"], "no such file|k"),
+    ],
+)
+def test_mistakes_are_explained(capsys, words, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    import re
+
+    assert re.search(message, failing(capsys, *words))
+    assert list(tmp_path.iterdir()) == []
+
+
+def broken(campaign, tmp_path, change):
+    """A copy of the campaign with one thing wrong in its campaign.yaml."""
+    content = read_yaml(campaign / "campaign.yaml")
+    change(content)
+    folder = tmp_path / "broken"
+    folder.mkdir()
+    for file in campaign.iterdir():
+        (folder / file.name).symlink_to(file)
+    (folder / "campaign.yaml").unlink()
+    (folder / "campaign.yaml").write_text(yaml.safe_dump(content))
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda c: c["mocap"].update(body="Blue"), "BlueROV2"),
+        (lambda c: c.update(vehicle="bluerov"), "bluerov2_heavy"),
+        (lambda c: c.update(tnak={}), "Did you mean 'tank'"),
+        (lambda c: c["commands"].update(columns=[f"u{i}" for i in range(8)]), "u0"),
+        (lambda c: c["runs"][0].update(mocap="gone.tsv"), "gone.tsv"),
+    ],
+)
+def test_bad_campaigns_leave_nothing_behind(capsys, campaign, tmp_path, change, message):
+    folder, out = broken(campaign, tmp_path, change), tmp_path / "out"
+    text = failing(capsys, "compare", f"campaign={folder}", f"out={out}")
+    assert message in text
+    assert not out.exists()
+
+
+def test_compare_writes_the_contract(campaign, tmp_path):
+    main(
+        ["compare", f"campaign={campaign}", "model=[nominal,zero_acceleration]", f"out={tmp_path}"]
+    )
+    found = json.loads((tmp_path / "comparison.json").read_text())
+    assert found["schema"] == "rovsim.comparison/1"
+    assert set(found["models"]) == {"nominal", "zero_acceleration"}
+    run = found["models"]["nominal"]["runs"]["6dof-2"]
+    assert set(run) == {"split", "control", "open_loop", "windows"}
+    assert set(run["windows"]) == {"0.5", "2", "5"}
+    assert set(run["open_loop"]) == {
+        "acceleration_rmse", "velocity_mae", "velocity_rmse", "position_rmse_m", "attitude_rmse_rad"
+    }  # fmt: skip
+    assert "http" not in (tmp_path / "report.html").read_text().split("<body")[0]
+    zero = found["models"]["zero_acceleration"]["runs"]["6dof-2"]["windows"]["2"]
+    assert run["windows"]["2"]["velocity_rmse"]["surge"] < zero["velocity_rmse"]["surge"]
+
+
+def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    arguments = [f"campaign={campaign}", "residual=knn", "control=6dof", f"out={tmp_path / 'knn'}"]
+    main(["train", *arguments])
+    model = tmp_path / "knn" / "model.yaml"
+    first = (tmp_path / "knn" / "residual.npz").read_bytes()
+    main(["compare", f"campaign={campaign}", f"model=[nominal,{model}]", f"out={tmp_path / 'c'}"])
+    found = json.loads((tmp_path / "c" / "comparison.json").read_text())
+    alone = json.loads((tmp_path / "knn" / "comparison.json").read_text())
+    assert found["models"]["model"] == alone["models"]["model"]
+    main(["train", *arguments])
+    assert (tmp_path / "knn" / "residual.npz").read_bytes() == first
+
+
+def test_help_is_quick_because_it_imports_nothing_heavy():
+    code = (
+        "import sys; from rovsim.cli import main; main(['--help']);"
+        "print(sorted({'torch','mlflow','numba','hydra','matplotlib'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip().endswith("[]")

@@ -1,0 +1,114 @@
+"""What every effect promises; a new effect is found here by itself."""
+
+import numpy as np
+import pytest
+
+from rovsim.effects import catalogue, effect
+from rovsim.effects.base import Coefficients, Wrench
+from rovsim.errors import BadInput
+from rovsim.model import read_model
+from rovsim.replay import ReplaySettings, trajectories
+from worlds import at_rest, model, motion, sticks
+
+# contract, section 2
+PUBLIC = {
+    "net_buoyancy", "buoyancy_center", "payload", "constant_wrench", "linear_damping",
+    "quadratic_damping", "coupled_damping", "added_mass", "added_mass_coupling", "lift",
+    "fluid_memory", "current", "tether_tension", "tether_drag", "wall_proximity",
+    "surface_proximity", "thruster_lag", "input_delay", "clock_drift", "thruster_deadband",
+    "thruster_gain", "thrust_asymmetry", "voltage_sag", "advance_loss", "propeller_torque",
+    "onboard_control", "marker_offset", "marker_misalignment", "world_tilt",
+}  # fmt: skip
+EVERY = pytest.mark.parametrize("cls", catalogue().values(), ids=list(catalogue()))
+
+
+def driven(world):
+    start = at_rest()
+    start[7:] = [0.3, -0.2, 0.1, 0.2, -0.1, 0.3]
+    run = motion(sticks(1), seconds=1.0, start=start)
+    return trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
+
+
+def some(cls):
+    """Values that differ from the defaults, inside every range."""
+    return cls(**{p.name: p.default + 0.1 for p in cls.parameters})
+
+
+@EVERY
+def test_it_says_what_it_is(cls):
+    assert cls.id in PUBLIC
+    assert all([cls.__doc__, cls.equation, cls.neglects, cls.source, cls.parameters])
+    assert all(p.unit and p.symbol for p in cls.parameters)
+    assert all(p.low <= p.default <= p.high for p in cls.parameters)
+
+
+@EVERY
+def test_defaults_change_nothing_and_values_do(cls):
+    plain = driven(model())
+    np.testing.assert_allclose(driven(model(cls())), plain, atol=1e-12)
+    assert np.abs(driven(model(some(cls))) - plain).max() > 1e-6
+
+
+@EVERY
+def test_bad_values_are_refused_with_the_nearest_name(cls):
+    name = cls.parameters[0].name
+    with pytest.raises(BadInput, match=f"Did you mean '{name}'|Known"):
+        cls(**{name + "x": 1.0})
+    for wrong in (float("nan"), "much", True, None):
+        with pytest.raises(BadInput, match=name):
+            cls(**{name: wrong})
+
+
+@EVERY
+def test_a_model_file_keeps_it(cls, tmp_path):
+    world = model(some(cls))
+    world.write(tmp_path / "m.yaml")
+    again = read_model(tmp_path / "m.yaml")
+    assert again.name == "m"
+    assert [e.given() for e in again.effects] == [e.given() for e in world.effects]
+    assert driven(again).tobytes() == driven(world).tobytes()
+
+
+def test_an_unknown_effect_names_the_nearest():
+    with pytest.raises(BadInput, match="Did you mean 'thruster_lag'"):
+        effect("thruster_lg")
+
+
+SIGNS = {  # effect, parameters: axis and sign of the first acceleration of a vehicle at rest
+    ("net_buoyancy", "force"): (2, -1),
+    ("payload", "mass"): (2, +1),
+    ("current", "north"): (0, +1),
+    ("constant_wrench", "yaw"): (5, +1),
+}
+
+
+@pytest.mark.parametrize(("name", "parameter"), SIGNS)
+def test_it_pushes_the_right_way(name, parameter):
+    axis, sign = SIGNS[name, parameter]
+    run = motion(np.zeros((1, 8)), seconds=0.1)
+    start = [(0, 10, at_rest())]
+    with_it, without = (
+        trajectories(world, run, start, ReplaySettings())[0][-1, 7 + axis]
+        for world in (model(effect(name)(**{parameter: 0.5})), model())
+    )
+    assert sign * (with_it - without) > 0
+
+
+def test_lift_and_tether_by_hand():
+    from rovsim.effects.lift import Lift
+    from rovsim.effects.tether_tension import TetherTension
+    from rovsim.engine.at import At
+
+    level = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    nu = (0.5, 0.2, -0.1, 0.0, 0.0, 0.0)
+    at = At(0.0, 1.0, (1.0, -2.0, -1.0), level, nu, nu, nu, nu, ((0, 1),) * 3, (1.0, -1.0, -1.0))
+    assert Lift.wrench(at, Lift.named_parameters()(10.0)) == pytest.approx((0, -1, 0.5, 0, 0, 0))
+    # anchor at MoCap (3, 2, 1) is NED (3, -2, -1): 2 m north of CO, 2.2 m from the attachment
+    values = TetherTension(stiffness=3, slack_length=1.2, anchor_x=3, anchor_y=2, anchor_z=1).values
+    pull = TetherTension.wrench(at, TetherTension.named_parameters()(*values))
+    assert pull == pytest.approx((3.0, 0, 0, 0, 0, 0), abs=1e-12)
+
+
+def test_kinds_are_used_as_declared():
+    for cls in catalogue().values():
+        assert issubclass(cls, Coefficients) + issubclass(cls, Wrench) <= 1

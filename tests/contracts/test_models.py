@@ -1,0 +1,73 @@
+"""Model and vehicle files: data only, and every mistake named."""
+
+import pytest
+import yaml
+
+from rovsim.errors import BadInput
+from rovsim.files import read_yaml
+from rovsim.model import read_model
+from rovsim.vehicle import VEHICLES, load_vehicle
+from worlds import SHARED, needed
+
+NOMINAL = VEHICLES / "bluerov2_heavy.yaml"
+
+
+def test_the_nominal_vehicle_is_the_published_one():
+    source = needed(SHARED / "vehicles" / "bluerov2_heavy.yaml")
+    assert read_yaml(NOMINAL) == read_yaml(source)
+
+
+HEAVY = "vehicle: bluerov2_heavy\n"
+BAD = {
+    HEAVY + "efects: []": "Did you mean 'effects'",
+    "vehicle: bluerov2_hevy": "Did you mean 'bluerov2_heavy'",
+    HEAVY + "effects: [{effect: lag}]": "unknown effect 'lag'",
+    HEAVY + "effects: [{effect: lift, parameters: {coeficient: 1}}]": "coefficient",
+    HEAVY + "effects: [{effect: payload, parameters: {mass: -1}}]": "from 0",
+    HEAVY + "effects: [{effect: added_mass, parameters: {surge: -30}}]": "definite",
+    "effects: []": "'vehicle' is missing",
+    "vehicle: !!python/object/apply:os.system [echo]": "not YAML",
+    "[1, 2]": "keys and values",
+    "vehicle: [unclosed": "not YAML",
+}
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_a_bad_model_file_is_explained(text, tmp_path):
+    path = tmp_path / "bad.yaml"
+    path.write_text(text)
+    with pytest.raises(BadInput, match=BAD[text]):
+        read_model(path)
+
+
+def changed(tmp_path, change):
+    content = yaml.safe_load(NOMINAL.read_text())
+    change(content)
+    path = tmp_path / "v.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def test_a_vehicle_can_be_a_path_or_stand_in_the_model(tmp_path):
+    path = changed(tmp_path, lambda v: v["rigid_body"].update(mass=20.0))
+    assert load_vehicle("v.yaml", beside=tmp_path).rigid_body.mass == 20.0
+    model = tmp_path / "m.yaml"
+    model.write_text(yaml.safe_dump({"vehicle": yaml.safe_load(path.read_text())}))
+    world = read_model(model)
+    world.write(tmp_path / "again.yaml")
+    assert read_model(tmp_path / "again.yaml").vehicle == world.vehicle
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda v: v.pop("fluid"), "'fluid' is missing"),
+        (lambda v: v["thrusters"]["mixer"].update(yaw=[1, 2]), "2 numbers for 8 thrusters"),
+        (lambda v: v["thrusters"]["units"][3].update(direction=[1, 1, 0]), "length 1.414"),
+        (lambda v: v["hydrodynamics"].update(added_mas=[1]), "Did you mean 'added_mass'"),
+        (lambda v: v["rigid_body"].update(mass=-1), "greater than 0"),
+    ],
+)
+def test_a_bad_vehicle_file_is_explained(change, message, tmp_path):
+    with pytest.raises(BadInput, match=message):
+        load_vehicle(str(changed(tmp_path, change)))

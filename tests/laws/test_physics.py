@@ -1,0 +1,201 @@
+"""Laws that hold whatever the numbers are."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.integrate import solve_ivp
+
+from rovsim.body import Body, cross_matrix, inertia_at, packed
+from rovsim.effects.added_mass import AddedMass
+from rovsim.effects.buoyancy import BuoyancyCenter, NetBuoyancy
+from rovsim.effects.current import Current
+from rovsim.effects.damping import LinearDamping, QuadraticDamping
+from rovsim.engine.equation import coriolis
+from rovsim.engine.vectors import matrix6
+from rovsim.errors import BadInput
+from rovsim.frames import exp, matrix, multiply, rotate
+from rovsim.replay import ReplaySettings, trajectories
+from worlds import at_rest, model, motion, sticks
+
+speeds = arrays(float, 6, elements=st.floats(-2, 2))
+factors = arrays(float, (6, 6), elements=st.floats(-1, 1))
+
+
+def rows(M):
+    return tuple(tuple(float(x) for x in row) for row in M)
+
+
+def fossen_coriolis(M, nu):
+    """Fossen 2021, eq. 6.43: C from the blocks of a symmetric M."""
+    a = M[:3, :3] @ nu[:3] + M[:3, 3:] @ nu[3:]
+    b = M[3:, :3] @ nu[:3] + M[3:, 3:] @ nu[3:]
+    top = np.hstack([np.zeros((3, 3)), -cross_matrix(a)])
+    return np.vstack([top, np.hstack([-cross_matrix(a), -cross_matrix(b)])])
+
+
+@given(A=factors, nu=speeds)
+def test_coriolis_does_no_work_and_is_fossens(A, nu):
+    M = A @ A.T + np.eye(6)
+    tau = np.array(coriolis(rows(M), tuple(float(x) for x in nu)))
+    assert abs(nu @ tau) < 1e-9
+    np.testing.assert_allclose(tau, fossen_coriolis(M, nu) @ nu, atol=1e-9)
+
+
+def test_matrix6_keeps_rows():
+    M = np.arange(36.0).reshape(6, 6)
+    assert np.array(matrix6(M)).tolist() == M.tolist()
+
+
+def test_parallel_axis_theorem_gives_the_kinetic_energy_of_a_point_mass():
+    r, nu = np.array([0.3, -0.2, 0.1]), np.array([0.4, -0.1, 0.2, 0.5, -0.6, 0.7])
+    v = nu[:3] + np.cross(nu[3:], r)
+    M = inertia_at(2.5, r, np.zeros((3, 3)))
+    assert nu @ M @ nu == pytest.approx(2.5 * v @ v)
+
+
+def test_a_body_that_cannot_exist_is_refused():
+    with pytest.raises(BadInput, match="positive definite"):
+        _ = model(AddedMass(surge=-25.0)).body.M
+    with pytest.raises(BadInput, match="eigenvalue"):
+        packed([Body(gravity=9.82)])
+
+
+def path(world, start, seconds=2.0, step=0.01, commands=None):
+    value = np.zeros((1, 8)) if commands is None else commands
+    run = motion(value, seconds=seconds, start=start)
+    found = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings(step=step))
+    return found[0]
+
+
+def frictionless():
+    """Neutral, without drag and with its centre of buoyancy at the centre of gravity."""
+    world = model()
+    d, q = world.body.linear, world.body.quadratic
+    names = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+    lift = world.body.weight - world.body.buoyancy
+    return (
+        world
+        + LinearDamping(**dict(zip(names, -d, strict=True)))
+        + QuadraticDamping(**dict(zip(names, -q, strict=True)))
+        + NetBuoyancy(force=float(lift))
+        + BuoyancyCenter(z=0.01)
+    )
+
+
+def kinetic(world, states):
+    nu = states[:, 7:]
+    return 0.5 * np.einsum("ni,ij,nj->n", nu, world.body.M, nu)
+
+
+moving = arrays(float, 6, elements=st.floats(-0.5, 0.5))
+
+
+@settings(max_examples=20, deadline=None)
+@given(nu=moving)
+def test_without_forces_energy_is_kept(nu):
+    world, start = frictionless(), at_rest()
+    start[7:] = nu
+    energy = kinetic(world, path(world, start))
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-7, atol=1e-12)
+
+
+@settings(max_examples=20, deadline=None)
+@given(nu=moving)
+def test_drag_only_takes_energy(nu):
+    d = LinearDamping(surge=13.7, sway=2.0, heave=33.0, roll=0.1, pitch=0.8, yaw=0.1)
+    q = QuadraticDamping(surge=141.0, sway=217.0, heave=190.0, roll=1.2, pitch=0.5, yaw=1.5)
+    world, start = frictionless() + d + q, at_rest()
+    start[7:] = nu
+    assert np.all(np.diff(kinetic(world, path(world, start))) <= 1e-12)
+
+
+@settings(max_examples=15, deadline=None)
+@given(heading=st.floats(-3, 3), shift=arrays(float, 3, elements=st.floats(-5, 5)))
+def test_turning_and_moving_the_world_turns_and_moves_the_path(heading, shift):
+    start, turn = at_rest(), exp(np.array([0.0, 0.0, heading]))
+    start[7:] = [0.3, -0.2, 0.1, 0.4, -0.3, 0.2]
+    turned = start.copy()
+    turned[:3], turned[3:7] = shift, multiply(turn, start[3:7])
+    one = path(model(), start, commands=sticks())
+    two = path(model(), turned, commands=sticks())
+    np.testing.assert_allclose(two[:, :3], rotate(turn, one[:, :3]) + shift, atol=1e-9)
+    np.testing.assert_allclose(two[:, 7:], one[:, 7:], atol=1e-9)
+
+
+@settings(max_examples=15, deadline=None)
+@given(c=arrays(float, 3, elements=st.floats(-0.3, 0.3)))
+def test_a_current_is_a_moving_frame(c):
+    """Galileo: rigid-body inertia is felt in the inertial frame too, so this must hold exactly."""
+    start = at_rest()
+    start[7:] = [0.2, 0.1, -0.1, 0.3, 0.2, -0.4]
+    drifting = start.copy()
+    drifting[7:10] += c  # level at the start: body and world axes coincide
+    still = path(model(), start, commands=sticks())
+    moved = path(model(Current(north=c[0], east=c[1], down=c[2])), drifting, commands=sticks())
+    t = np.arange(len(still))[:, None] * 0.01
+    np.testing.assert_allclose(moved[:, :3], still[:, :3] + c * t, atol=2e-7)
+    np.testing.assert_allclose(moved[:, 10:], still[:, 10:], atol=2e-6)
+
+
+def test_runge_kutta_converges_with_fourth_order():
+    start, commands = at_rest(), np.full((1, 8), 0.3)
+    start[7:] = [0.3, -0.2, 0.1, 0.4, -0.3, 0.2]
+
+    def end(step):
+        run = motion(commands, seconds=2.0, start=start)
+        coarse = run.time[:: round(step / 0.01)]
+        n = len(coarse)
+        run = replace(run, time=coarse, eta=run.eta[:n], nu=run.nu[:n], nu_dot=run.nu_dot[:n],
+                      state_nu=run.state_nu[:n], usable=run.usable[:n])  # fmt: skip
+        return trajectories(model(), run, [(0, n - 1, start)], ReplaySettings(step=step))[0][-1]
+
+    best = path(model(), start, commands=commands, step=0.00125)[-1]
+    errors = [np.abs(end(step) - best).max() for step in (0.08, 0.04, 0.02)]
+    assert 10 < errors[0] / errors[1] < 24
+    assert 10 < errors[1] / errors[2] < 24
+
+
+def reference_slope(world, x, tau):
+    """Fossen's equation with matrices, written independently of the engine."""
+    b, nu = world.body, x[7:]
+    R = matrix(x[3:7])
+    C = fossen_coriolis(b.M_RB, nu) + fossen_coriolis(b.M_A, nu)
+    D = np.diag(b.linear + b.quadratic * np.abs(nu))
+    down = R.T @ np.array([0, 0, 1.0])
+    force = (b.weight - b.buoyancy) * down
+    moment = np.cross(b.weight_moment, down) - np.cross(b.buoyancy * b.center_of_buoyancy, down)
+    nu_dot = np.linalg.solve(b.M, tau - C @ nu - D @ nu + np.concatenate([force, moment]))
+    q_dot = 0.5 * multiply(x[3:7], np.concatenate([[0.0], nu[3:]]))
+    return np.concatenate([R @ nu[:3], q_dot, nu_dot])
+
+
+def test_the_engine_agrees_with_an_independent_implementation():
+    world, start, commands = model(), at_rest(), sticks(3, rows=1)
+    start[7:] = [0.3, -0.2, 0.1, 0.4, -0.3, 0.2]
+    thrusters = world.thrust_path.thrusters
+    tau = world.body.B @ thrusters.static_force(commands[0])
+    found = solve_ivp(
+        lambda t, x: reference_slope(world, x, tau), (0, 2), start, "DOP853", rtol=1e-10, atol=1e-12
+    )
+    np.testing.assert_allclose(path(world, start, commands=commands)[-1], found.y[:, -1], atol=1e-7)
+
+
+def test_the_vehicle_rights_itself_and_sinks():
+    start = at_rest()
+    start[3:7] = exp(np.array([0.5, 0.3, 0.0]))
+    found = path(model(), start, seconds=1.0)
+    assert found[-1, 10] < 0 > found[-1, 11]  # rolls and pitches back
+    assert found[-1, 2] > 0  # weight exceeds buoyancy by 0.98 N (vehicle file)
+
+
+def test_parallel_and_serial_give_the_same_bits():
+    run, start = motion(sticks()), at_rest()
+    starts = [(10 * k, 50, start) for k in range(15)]
+    together = trajectories(model(), run, starts, ReplaySettings())
+    alone = [trajectories(model(), run, [one], ReplaySettings())[0] for one in reversed(starts)]
+    for a, b in zip(together, reversed(alone), strict=True):
+        assert a.tobytes() == b.tobytes()

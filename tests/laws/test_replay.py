@@ -1,0 +1,269 @@
+"""Laws of integration: order, conservation, determinism, and what a compiled engine is made of."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from rovsim.body import Body, packed
+from rovsim.effects.buoyancy import NetBuoyancy
+from rovsim.engine.at import Inputs, Jobs, Place
+from rovsim.engine.compiled import engine
+from rovsim.frames import from_euler, matrix, rotate, unrotate
+from rovsim.model import zero_acceleration
+from rovsim.replay import Replay, ReplaySettings, replay, trajectories, windows
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.filter import Butterworth
+from worlds import at_rest, model, motion, sticks
+
+DOWN = np.array([0.0, 0.0, 1.0])
+moving = arrays(float, 6, elements=st.floats(-1, 1))
+few = settings(max_examples=20, deadline=None)
+
+
+def some_body(seed, drag=0.0):
+    """A body with full inertia matrices, heavy by a few newtons, its centres apart."""
+    rng = np.random.default_rng(seed)
+    body = Body(gravity=9.81)
+    body.add_mass(10.0, rng.uniform(-0.05, 0.05, 3), np.diag(rng.uniform(0.3, 0.6, 3)))
+    root = rng.uniform(-0.4, 0.4, (6, 6)) + np.diag([3, 3, 4, 0.5, 0.5, 0.5])
+    body.M_A += root @ root.T
+    body.linear = body.linear + drag
+    body.buoyancy = body.weight - 3.0
+    body.center_of_buoyancy = rng.uniform(-0.05, 0.05, 3)
+    return body
+
+
+def arrange(bodies, states, steps):
+    """Arguments of `integrate` for one trajectory of every state with every body."""
+    count, jobs = len(bodies), len(bodies) * len(states)
+    member, whole = np.repeat(np.arange(count), len(states)), np.zeros(jobs, np.int64)
+    inputs = Inputs(
+        np.zeros((1, steps, 6)), np.zeros((1, steps, 0)), np.full((steps, 6), np.nan),
+        np.zeros(count, np.int64), np.ones(steps),
+    )  # fmt: skip
+    return Jobs(
+        np.tile(states, (count, 1)), np.zeros(jobs), whole, whole + steps, member,
+        np.arange(jobs) * steps,
+    ), inputs  # fmt: skip
+
+
+def drift(bodies, states, h, steps, how="integrate"):
+    """States (j, steps, 13) of bodies left alone."""
+    jobs, inputs = arrange(bodies, states, steps)
+    out = np.empty((len(jobs.first) * steps, 13))
+    getattr(engine([]), how)(
+        jobs, h, 1, packed(bodies), inputs, np.empty((len(bodies), 0)), np.empty(0),
+        Place(np.full((3, 2), np.nan), np.ones(3)), out,
+    )  # fmt: skip
+    return out.reshape(-1, steps, 13)
+
+
+def state(nu, roll=0.4, pitch=-0.3):
+    return np.concatenate([[1.0, -2.0, 0.5], from_euler(roll, pitch, 0.7), nu])
+
+
+def total_energy(body, x):
+    """Kinetic energy and the potential of weight and buoyancy at their centres (NED: z down)."""
+    nu, place = x[..., 7:], x[..., :3]
+    centre = rotate(x[..., 3:7], body.weight_moment / body.weight)
+    bubble = rotate(x[..., 3:7], np.broadcast_to(body.center_of_buoyancy, place.shape))
+    high = body.buoyancy * (place + bubble)[..., 2] - body.weight * (place + centre)[..., 2]
+    return 0.5 * np.einsum("...i,ij,...j->...", nu, body.M, nu) + high
+
+
+@few
+@given(seed=st.integers(0, 1000), nu=moving)
+def test_energy_is_kept_with_weight_and_buoyancy(seed, nu):
+    body = some_body(seed)
+    path = drift([body], state(nu)[None], 0.005, 400)[0]
+    energy = total_energy(body, path)
+    np.testing.assert_allclose(energy, total_energy(body, state(nu)), rtol=0, atol=1e-6)
+
+
+@few
+@given(seed=st.integers(0, 1000), nu=moving)
+def test_drag_takes_total_energy_at_every_step(seed, nu):
+    body = some_body(seed, drag=3.0)
+    energy = total_energy(body, drift([body], state(nu)[None], 0.005, 400)[0])
+    assert np.all(np.diff(energy) <= 1e-10)
+
+
+@few
+@given(seed=st.integers(0, 1000), nu=moving)
+def test_impulse_is_kept_without_forces(seed, nu):
+    """Kirchhoff: R p, and R L + x times R p, of a body and its added mass stay (Lamb, art. 124)."""
+    body = some_body(seed)
+    body.buoyancy, body.center_of_buoyancy = body.weight, body.weight_moment / body.weight
+    path = drift([body], state(nu)[None], 0.005, 400)[0]
+    h = np.vstack([state(nu), path])[:, 7:] @ body.M
+    q, x = np.vstack([state(nu), path])[:, 3:7], np.vstack([state(nu), path])[:, :3]
+    linear = rotate(q, h[:, :3])
+    angular = rotate(q, h[:, 3:]) + np.cross(x, linear)
+    np.testing.assert_allclose(linear, np.tile(linear[0], (401, 1)), atol=1e-6)
+    np.testing.assert_allclose(angular, np.tile(angular[0], (401, 1)), atol=1e-6)
+
+
+def test_energy_drift_falls_with_the_fourth_power_of_the_step():
+    body, start = some_body(3), state(np.array([0.8, -0.6, 0.5, 0.9, -0.7, 0.8]))
+    errors = [
+        abs(total_energy(body, drift([body], start[None], h, round(4 / h))[0, -1])
+            - total_energy(body, start))
+        for h in (0.08, 0.04, 0.02)
+    ]  # fmt: skip
+    assert errors[0] / errors[1] > 14
+    assert errors[1] / errors[2] > 14
+
+
+@few
+@given(nu=moving)
+def test_attitude_stays_a_rotation(nu):
+    path = drift([some_body(1)], state(nu)[None], 0.02, 200)[0]
+    np.testing.assert_allclose(np.linalg.norm(path[:, 3:7], axis=1), 1.0, atol=1e-14)
+
+
+def test_smooth_motion_converges_with_fourth_order():
+    """Drag linear and steady thrust: nothing has a kink, so the order shows at 40, 20, 10 ms."""
+    body, start = some_body(5, drag=4.0), state(np.array([0.5, -0.4, 0.3, 0.6, -0.5, 0.4]))
+    ends = [drift([body], start[None], h, round(2 / h))[0, -1] for h in (0.04, 0.02, 0.01, 0.001)]
+    errors = [np.abs(end - ends[-1]).max() for end in ends[:-1]]
+    assert errors[0] / errors[1] == pytest.approx(16, rel=0.15)
+    assert errors[1] / errors[2] == pytest.approx(16, rel=0.15)
+
+
+def test_static_equilibrium_stays():
+    """Neutral and upright, the vehicle has no reason to move."""
+    body = model().body
+    world = model(NetBuoyancy(force=float(body.weight - body.buoyancy)))
+    run = motion(np.zeros((1, 8)))
+    path = trajectories(world, run, [(0, 200, at_rest())], ReplaySettings())[0]
+    np.testing.assert_allclose(path, np.tile(at_rest(), (201, 1)), atol=1e-12)
+
+
+def test_batches_do_not_change_the_numbers():
+    bodies = [some_body(seed, drag=1.0) for seed in range(4)]
+    states = np.array([state(nu) for nu in np.random.default_rng(0).uniform(-1, 1, (5, 6))])
+    serial = drift(bodies, states, 0.01, 100)
+    parallel = drift(bodies, states, 0.01, 100, "integrate_parallel")
+    again = drift(bodies[::-1], states[::-1], 0.01, 100, "integrate_parallel")[::-1]
+    alone = np.concatenate([drift([b], s[None], 0.01, 100) for b in bodies for s in states])
+    assert serial.tobytes() == parallel.tobytes() == again.tobytes() == alone.tobytes()
+
+
+CHILD = """
+from worlds import model, motion, at_rest, sticks
+from rovsim.replay import ReplaySettings, trajectories
+world = model()
+trajectories(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
+stats = world.engine.integrate_parallel.stats
+print(world.engine.__name__, sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
+"""
+
+
+def test_another_process_uses_the_compiled_engine():
+    world = model()
+    trajectories(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())  # fill the cache
+    env = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    done = subprocess.run([sys.executable, "-c", CHILD], env=env, capture_output=True, text=True)
+    assert done.stdout.split() == [world.engine.__name__, "1", "0"], done.stderr
+
+
+KERNEL = """
+from rovsim.effects.base import Parameter, Wrench
+class Push(Wrench):
+    id, listed, equation, neglects, source = "push", False, "-", "-", "test"
+    parameters = (Parameter("force", "N", "F"),)
+    @staticmethod
+    def wrench(at, p):
+        return {factor} * p.force, 0.0, 0.0, 0.0, 0.0, 0.0
+"""
+
+
+def kernel(path, factor):
+    """The effect of a file that says `factor`."""
+    path.write_text(KERNEL.format(factor=factor))
+    spec = importlib.util.spec_from_file_location("pushing", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["pushing"] = module
+    spec.loader.exec_module(module)
+    return module.Push
+
+
+def test_an_edited_kernel_gives_another_engine(tmp_path):
+    names = [engine([kernel(tmp_path / f"{i}.py", f)]).__name__ for i, f in enumerate([1, 2, 1])]
+    assert names[0] == names[2] != names[1]
+
+
+def simulated(seconds=6.0, gap=None):
+    """A run measured without error: what the nominal model itself did."""
+    start = state(np.array([0.2, 0.1, -0.1, 0.1, 0.2, -0.2]), 0.1, -0.1)
+    run = motion(sticks(7, 30), seconds=seconds, start=start)
+    count = len(run.time)
+    path = trajectories(model(), run, [(0, count - 1, start)], ReplaySettings())[0]
+    usable = np.ones(count, bool)
+    if gap:
+        usable[slice(*gap)] = False
+    nu = path[:, 7:]
+    return replace(run, eta=path[:, :7], nu=nu, state_nu=nu, usable=usable)
+
+
+# motion of the pilot only: a cut-off far above it leaves the prediction as it was
+OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
+
+
+def test_the_model_that_moved_the_vehicle_predicts_it():
+    run = simulated()
+    found = replay(model(), run, OPEN, ReplaySettings())
+    assert list(found.horizons) == ["open_loop", "0.5", "2", "5"]
+    for prediction in found.horizons.values():
+        known = np.isfinite(prediction.eta[:, 0])
+        assert known.sum() >= 500
+        np.testing.assert_allclose(prediction.eta[known], run.eta[known], atol=1e-9)
+        assert np.sqrt(np.nanmean((prediction.nu - run.nu) ** 2)) < 0.01
+
+
+def test_windows_stay_inside_usable_stretches():
+    run = simulated(gap=(250, 300))
+    for a, b in windows(run, 0.5):
+        assert b - a == 50
+        assert run.usable[a : b + 1].all()
+    assert [a for a, _ in windows(run, 2.0)] == [0, 300]
+    found = replay(model(), run, OPEN, ReplaySettings()).horizons["2"]
+    assert np.flatnonzero(np.isfinite(found.eta[:, 0])).tolist() == [*range(1, 201), *range(301, 501)]
+
+
+def test_a_run_without_a_usable_sample_predicts_nothing():
+    run = simulated(seconds=1.0, gap=(0, 101))
+    for prediction in replay(model(), run, OPEN, ReplaySettings()).horizons.values():
+        assert np.isnan(prediction.nu).all()
+
+
+def test_a_replay_comes_back_from_its_file(tmp_path):
+    found = replay(model(), simulated(), OPEN, ReplaySettings())
+    found.write(tmp_path / "r.npz")
+    again = Replay.read(tmp_path / "r.npz")
+    assert (again.model, again.run, list(again.horizons)) == (
+        found.model, found.run, list(found.horizons),
+    )  # fmt: skip
+    for horizon, prediction in found.horizons.items():
+        for name in ("eta", "nu", "nu_dot"):
+            one, two = getattr(prediction, name), getattr(again.horizons[horizon], name)
+            assert one.tobytes() == two.tobytes()
+
+
+def test_zero_acceleration_keeps_the_body_velocity():
+    start = state(np.array([0.3, 0.2, -0.1, 0.0, 0.0, 0.4]), 0.0, 0.0)
+    run = motion(sticks(), start=start)
+    world = zero_acceleration(model().vehicle)
+    path = trajectories(world, run, [(0, 200, start)], ReplaySettings())[0]
+    np.testing.assert_array_equal(path[:, 7:], np.tile(start[7:], (201, 1)))
+    turned = matrix(path[-1, 3:7]) @ matrix(start[3:7]).T
+    assert np.arctan2(turned[1, 0], turned[0, 0]) == pytest.approx(0.8)  # 0.4 rad/s for 2 s
+    np.testing.assert_allclose(unrotate(path[:, 3:7], DOWN), np.tile(DOWN, (201, 1)), atol=1e-12)

@@ -1,0 +1,142 @@
+"""The path from a logged command to a force, each stage against a hand formula."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rovsim.effects.thrusters import (
+    AdvanceLoss,
+    ClockDrift,
+    InputDelay,
+    PropellerTorque,
+    ThrustAsymmetry,
+    ThrusterDeadband,
+    ThrusterGain,
+    ThrusterLag,
+    VoltageSag,
+)  # fmt: skip
+from rovsim.errors import BadInput
+from rovsim.recording.recording import Commands
+from worlds import model, sticks
+
+EDGES = np.linspace(0.0, 2.0, 201)
+
+
+def log(value=None, seconds=2.0):
+    value = sticks() if value is None else value
+    return Commands(np.linspace(0, seconds, len(value), endpoint=False), value, "thruster")
+
+
+def force(*effects, commands=None, edges=EDGES):
+    return model(*effects).thrust_path.over_steps(commands or log(), edges).force
+
+
+@settings(max_examples=30, deadline=None)
+@given(offset=st.floats(0.0, 0.05), h=st.floats(0.004, 0.05))
+def test_step_means_are_exact_wherever_lines_fall(offset, h):
+    edges = offset + h * np.arange(30)
+    fine = offset + h * (np.arange(30 * 400 - 400) + 0.5) / 400
+    commands = log()
+    held = commands.value[np.searchsorted(commands.time, fine, "right") - 1]
+    brute = model().thrust_path.thrusters.static_force(held).reshape(29, 400, 8).mean(axis=1)
+    largest_jump = 30.0  # N
+    assert np.abs(force(commands=commands, edges=edges) - brute).max() <= largest_jump / 400
+
+
+def test_the_force_curve_is_odd_and_the_published_one():
+    curve = model().thrust_path.thrusters.static_force
+    c = np.linspace(-0.9, 0.9, 19)
+    np.testing.assert_allclose(curve(c), -curve(-c), atol=1e-12)
+    # vehicle file: 8.9 c + 176 c^3 - 404.1 c^5 + 389.9 c^7 - 140.3 c^9
+    by_hand = 8.9 * c + 176 * c**3 - 404.1 * c**5 + 389.9 * c**7 - 140.3 * c**9
+    np.testing.assert_allclose(curve(c), by_hand, atol=1e-9)
+
+
+def test_a_delay_shifts_and_a_fast_clock_compresses():
+    late = force(InputDelay(delay=0.1))
+    np.testing.assert_allclose(late[10:], force()[:-10], atol=1e-9)
+    fast = model(ClockDrift(rate=0.01)).thrust_path.arrival(np.array([1.01]))
+    assert fast == pytest.approx([1.0])
+
+
+@pytest.mark.parametrize("T", [0.02, 0.2, 1.0])
+def test_lag_is_the_exact_first_order_response(T):
+    step = Commands(np.array([0.0, 0.5]), np.array([[0.0] * 8, [0.4] * 8]), "thruster")
+    final = model().thrust_path.thrusters.static_force(np.array([0.4]))[0]
+    found = force(ThrusterLag(time_constant=T), commands=step)[:, 0]
+    a, b = EDGES[:-1] - 0.5, EDGES[1:] - 0.5
+    mean = final * (1 + T / (b - a) * (np.exp(-b / T) - np.exp(-a / T)))  # of 1 - exp(-t/T)
+    np.testing.assert_allclose(found, np.where(a >= -1e-9, mean, 0.0), atol=1e-9)
+
+
+def test_a_short_lag_is_no_lag():
+    largest_jump, share = 30.0, 1e-6 / 0.01  # N; part of a step in which the force still differs
+    found = force(ThrusterLag(time_constant=1e-6))
+    np.testing.assert_allclose(found, force(), atol=largest_jump * share)
+
+
+def test_the_response_can_be_computed_in_pieces():
+    path = model(ThrusterLag(time_constant=0.15)).thrust_path
+    static = path.thrusters.static_force(sticks(rows=90))
+    whole, _ = path.respond(static, 0.01, None)
+    states, parts = None, []
+    for piece in np.split(static, [7, 40, 41]):
+        mean, states = path.respond(piece, 0.01, states)
+        parts.append(mean)
+    np.testing.assert_allclose(np.concatenate(parts), whole, atol=1e-12)
+
+
+def test_gain_asymmetry_sag_and_deadband():
+    plain = force()
+    np.testing.assert_allclose(force(ThrusterGain(t2=-1.0, all=0.5))[:, 1], -0.5 * plain[:, 1])
+    held = Commands(np.array([0.0]), np.tile([0.3, -0.3], (1, 4)), "thruster")
+    uneven = force(ThrustAsymmetry(ratio=0.7), commands=held)
+    np.testing.assert_allclose(uneven[:, 1] / uneven[:, 0], -0.7)
+    fading = force(VoltageSag(fraction=0.2), commands=held)[:, 0]
+    middle = 0.5 * (EDGES[1:] + EDGES[:-1])
+    np.testing.assert_allclose(fading / force(commands=held)[:, 0], 1 - 0.2 * middle / 2.0)
+    small = Commands(np.array([0.0]), np.tile([0.05, 0.051], (1, 4)), "thruster")
+    dead = force(ThrusterDeadband(width=0.05), commands=small)
+    assert np.all(dead[:, 0] == 0)
+    np.testing.assert_allclose(dead[:, 1], force(commands=small)[:, 1])
+
+
+def test_the_order_of_stages_is_fixed():
+    effects = [ThrusterGain(all=-0.8), ThrustAsymmetry(ratio=0.6), VoltageSag(fraction=0.1)]
+    np.testing.assert_allclose(force(*effects), force(*reversed(effects)))
+
+
+def test_demands_go_through_the_mixer_and_are_clipped():
+    path = model().thrust_path
+    demand = np.array([[0.6, 0.5, 0.0, 0.0, 0.0, 0.3]])
+    found = path.over_steps(Commands(np.zeros(1), demand, "demand"), EDGES)
+    mixed = np.clip(path.thrusters.mixing @ demand[0], -1, 1)
+    np.testing.assert_allclose(found.force[0], path.thrusters.static_force(mixed))
+    np.testing.assert_allclose(found.demand[0], demand[0])
+
+
+@pytest.mark.parametrize("axis", range(6))
+def test_every_mixer_row_pushes_along_its_axis(axis):
+    """With a positive demand: catches the published table's wrong angle of thruster 4."""
+    world, demand = model(), np.zeros((1, 6))
+    demand[0, axis] = 0.3
+    thrust = world.thrust_path.over_steps(Commands(np.zeros(1), demand, "demand"), EDGES)
+    tau = world.body.B @ thrust.force[0]
+    assert tau[axis] > 0
+    others = np.delete(np.abs(tau[:3] if axis < 3 else tau[3:]), axis % 3)
+    assert others.max() < 0.05 * tau[axis]
+
+
+def test_propeller_torque_and_advance_loss_by_hand():
+    B = model().body.B
+    body = model(PropellerTorque(ratio=0.02)).body
+    np.testing.assert_allclose(
+        body.B[3:] - B[3:], 0.02 * (body.directions * body.spin[:, None]).T, atol=1e-12
+    )
+    assert model(AdvanceLoss(coefficient=0.3)).body.advance == 0.3
+
+
+def test_columns_that_do_not_fit_are_refused():
+    with pytest.raises(BadInput, match=r"7 command columns.*8"):
+        force(commands=log(np.zeros((3, 7))))

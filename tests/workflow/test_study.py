@@ -1,0 +1,99 @@
+"""The whole study on a tiny campaign: it ends, its numbers hold, and edits re-run what they touch."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+OVERRIDES = "tank=tiny study.residuals=[knn] study.controls=[6dof] timing.calls=50"
+
+
+def copy_of(repository: Path, folder: Path) -> Path:
+    """A working copy without results, so that a test may edit it."""
+    for name in ("Snakefile", "conf", "workflow", "src", "pyproject.toml"):
+        source = repository / name
+        if source.is_dir():
+            ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
+            shutil.copytree(source, folder / name, ignore=ignored)
+        else:
+            shutil.copy(source, folder / name)
+    return folder
+
+
+def snakemake(folder: Path, *words: str) -> str:
+    """Output of one Snakemake call in the copy, with the copy's own package."""
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", *words]
+    environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=500
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
+    return done.stdout + done.stderr
+
+
+def to_run(folder: Path) -> set[str]:
+    """Rules a dry run would run."""
+    text = snakemake(folder, "-n", "--config", f"overrides={OVERRIDES}")
+    return set(re.findall(r"^(?:local)?rule (\w+):", text, re.MULTILINE))
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """A finished study."""
+    folder = copy_of(ROOT, tmp_path_factory.mktemp("study"))
+    snakemake(folder, "--config", f"overrides={OVERRIDES}")
+    return folder
+
+
+@pytest.mark.slow
+def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
+    results = study / "results" / "tank-tiny"
+    ladder = json.loads((results / "ladder.json").read_text())
+    steps = {step["model"]: step["windows_2s"] for step in ladder["steps"]}
+    assert list(steps) == ["zero_acceleration", "nominal", "knn_6dof"]
+    assert steps["nominal"] < steps["zero_acceleration"]
+    for name in ("report.html", "comparison.json", "tables/ladder.tex", "figures/ladder.pdf"):
+        assert (results / name).stat().st_size > 500
+    assert (study / "results" / "mlflow.db").exists()
+
+    assert to_run(study) == set()
+
+    reading = {"tank", "read", "resample", "filter", "differentiate"}
+    touched = _edited(study, "src/rovsim/effects/damping.py")
+    assert "replay" in touched
+    assert not reading & touched
+    assert _edited(study, "src/rovsim/figures/ladder.py") <= {
+        "figure_of_study", "report", "track", "all"
+    }  # fmt: skip
+    assert {"filter", "replay"} <= _edited(study, "src/rovsim/signals/filter.py")
+    assert "read" not in _edited(study, "src/rovsim/signals/filter.py")
+
+
+def _edited(folder: Path, name: str) -> set[str]:
+    """Rules that an edit of one file would run; the edit is taken back."""
+    path = folder / name
+    before = path.read_text()
+    try:
+        path.write_text(before + "\n# edited\n")
+        return to_run(folder)
+    finally:
+        path.write_text(before)
+
+
+@pytest.mark.slow
+def test_a_bad_campaign_is_one_message(tmp_path):
+    folder = copy_of(ROOT, tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-m", "snakemake", "--cores", "1", "--config", "campaign=nowhere"],
+        cwd=folder, capture_output=True, text=True,
+        env=os.environ | {"PYTHONPATH": str(folder / "src")},
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "nowhere" in done.stderr
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,56 @@
+"""Small builders shared by tests: models, motions and starts."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rovsim.effects.base import Effect
+from rovsim.model import Model, nominal
+from rovsim.recording.recording import Commands, RunInfo, Site
+from rovsim.signals.motion import Motion
+from rovsim.vehicle import load_vehicle
+
+SHARED = Path(os.environ.get("ROVSIM_DATA", Path(__file__).parents[2] / "shared" / "data")).parent
+
+
+def needed(path: Path) -> Path:
+    """A file or folder of the recordings; the test is skipped where it is absent."""
+    if not path.exists():
+        pytest.skip(f"{path.name} is not here; set ROVSIM_DATA to the folder of the recordings")
+    return path
+
+
+def model(*effects: Effect) -> Model:
+    """The nominal BlueROV2 with some effects added."""
+    found = nominal(load_vehicle("bluerov2_heavy"))
+    for effect in effects:
+        found = found + effect
+    return found
+
+
+def motion(
+    value: np.ndarray, kind: str = "thruster", seconds: float = 2.0, start: np.ndarray | None = None
+) -> Motion:
+    """A run whose commands (m, c) are spread evenly over its length; measured as standing still."""
+    time = np.round(np.arange(0.0, seconds + 1e-9, 0.01), 6)
+    state = at_rest() if start is None else start
+    rows = np.repeat(state[None], len(time), axis=0)
+    commands = Commands(np.linspace(0, seconds, len(value), endpoint=False), value, kind)
+    return Motion(
+        RunInfo("r", "6dof", "test"), Site.unknown(), time, rows[:, :7], rows[:, 7:],
+        0 * rows[:, 7:], rows[:, 7:], np.ones(len(time), bool), commands, False, float(time[-1]),
+    )  # fmt: skip
+
+
+def at_rest() -> np.ndarray:
+    """State (13,): level, still, at the origin."""
+    state = np.zeros(13)
+    state[3] = 1.0
+    return state
+
+
+def sticks(seed: int = 0, rows: int = 20) -> np.ndarray:
+    """Thruster commands (rows, 8), within what a pilot uses."""
+    return np.random.default_rng(seed).uniform(-0.5, 0.5, (rows, 8))
