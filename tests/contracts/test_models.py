@@ -71,3 +71,20 @@ def test_a_vehicle_can_be_a_path_or_stand_in_the_model(tmp_path):
 def test_a_bad_vehicle_file_is_explained(change, message, tmp_path):
     with pytest.raises(BadInput, match=message):
         load_vehicle(str(changed(tmp_path, change)))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda v: v.pop("fluid"), "fluid' is missing"),
+        (lambda v: v["thrusters"]["mixer"].update(yaw=[1, 2]), "2 numbers for 8 thrusters"),
+        (lambda v: v["thrusters"]["units"][3].update(direction=[1, 1, 0]), "length 1.414"),
+        (lambda v: v["hydrodynamics"].update(added_mas=[1]), "Did you mean 'added_mass'"),
+    ],
+)
+def test_a_bad_vehicle_inside_a_model_is_explained_too(change, message, tmp_path):
+    vehicle = yaml.safe_load(changed(tmp_path, change).read_text())
+    path = tmp_path / "m.yaml"
+    path.write_text(yaml.safe_dump({"vehicle": vehicle}))
+    with pytest.raises(BadInput, match=message):
+        read_model(path)

@@ -17,7 +17,9 @@ from rovsim.effects.thrusters import (
     VoltageSag,
 )  # fmt: skip
 from rovsim.errors import BadInput
+from rovsim.model import nominal
 from rovsim.recording.recording import Commands
+from rovsim.vehicle import Vehicle
 from worlds import model, sticks
 
 EDGES = np.linspace(0.0, 2.0, 201)
@@ -140,3 +142,14 @@ def test_propeller_torque_and_advance_loss_by_hand():
 def test_columns_that_do_not_fit_are_refused():
     with pytest.raises(BadInput, match=r"7 command columns.*8"):
         force(commands=log(np.zeros((3, 7))))
+
+
+def test_a_common_gain_is_common_to_any_number_of_thrusters():
+    vehicle = model().vehicle.model_dump()
+    vehicle["thrusters"]["units"] += (vehicle["thrusters"]["units"][0],)
+    rows = vehicle["thrusters"]["mixer"]
+    vehicle["thrusters"]["mixer"] = {axis: (*row, 0.0) for axis, row in rows.items()}
+    world = nominal(Vehicle.model_validate(vehicle)) + ThrusterGain(all=0.5)
+    commands = Commands(np.zeros(1), np.full((1, 9), 0.3), "thruster")
+    thrust = world.thrust_path.over_steps(commands, EDGES).force[0]
+    np.testing.assert_allclose(thrust, thrust[0])

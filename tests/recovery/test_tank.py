@@ -63,7 +63,7 @@ def test_a_hidden_effect_is_seen_and_the_true_model_explains_it(tmp_path, hidden
 
 def test_the_exports_hold_the_stated_noise_and_faults(tmp_path):
     camera = Camera(bursts_per_minute=10, outliers_per_minute=10)
-    chosen, recording, anomalies, _ = recorded(tmp_path, seed=3, camera=camera)
+    _, recording, anomalies, _ = recorded(tmp_path, seed=3, camera=camera)
     report = quality_of(recording, anomalies, SignalSettings().outliers)
     assert report["frames"] == 3000
     assert 1 <= report["outliers"] <= 15

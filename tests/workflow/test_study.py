@@ -1,4 +1,4 @@
-"""The whole study on a tiny campaign: it ends, its numbers hold, and edits re-run what they touch."""
+"""The study on a tiny campaign: it ends, its numbers hold, edits re-run what they touch."""
 
 import json
 import os
