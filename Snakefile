@@ -25,13 +25,13 @@ localrules:
 
 
 rule all:
+    default_target: True
     input:
         f"{R}/report.html",
         f"{R}/comparison.json",
         f"{R}/ladder.json",
         f"{R}/tables/ladder.tex",
         f"{R}/tracked.json",
-    default_target: True
 
 
 include: "workflow/rules/recordings.smk"

@@ -137,7 +137,7 @@ def test_held_random_commands_are_followed_within_a_micrometre(seed):
 
 @pytest.mark.parametrize("thruster", range(8))
 def test_each_thruster_turns_the_way_the_yaw_mixer_expects(thruster):
-    """The published table's fourth angle (3 pi/4 for 3 pi/2) would turn thruster 4 the other way."""
+    """The published table's fourth angle (3 pi/4 for 3 pi/2) turns thruster 4 round."""
     tau = wrench(np.eye(8)[thruster] * 0.5)
     assert np.sign(np.round(tau[5], 6)) == np.sign(SET["mixer"]["yaw"][thruster])
     np.testing.assert_allclose(

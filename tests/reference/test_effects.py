@@ -88,9 +88,7 @@ def test_inflow_against_the_thrust_raises_it(tilted):
     B = model(torque).body.B
     loss = B @ (-c * np.sign(force) * (world.body.directions @ v_r) * force)
     with_it = push(model(water, torque, AdvanceLoss(coefficient=c)), tilted, force)
-    np.testing.assert_allclose(
-        with_it - push(model(water, torque), tilted, force), loss, atol=1e-9
-    )
+    np.testing.assert_allclose(with_it - push(model(water, torque), tilted, force), loss, atol=1e-9)
     ahead = at_rest()
     ahead[7] = 0.5  # moving ahead, thruster 1 pushing ahead: less thrust
     pushing = np.eye(8)[0] * 10.0
@@ -107,7 +105,7 @@ def test_lift_sees_the_velocity_through_the_water(tilted):
 
 
 def test_a_payload_weighs_down_where_it_hangs():
-    """At rest and level: weight m g, and forward of CO the nose goes down, to starboard it lists."""
+    """At rest and level: m g down; forward of CO the nose drops, to starboard it lists."""
     place = np.array([0.2, 0.1, 0.05])
     world = model(Payload(mass=1.5, x=place[0], y=place[1], z=place[2]))
     weight = np.array([0.0, 0.0, 1.5 * 9.82])

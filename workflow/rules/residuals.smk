@@ -1,7 +1,9 @@
 rule train:
     "Learn what the nominal model's acceleration misses, on the train runs of one control."
     input:
-        motions=lambda w: expand(f"{R}/motions/{{run}}.npz", run=study.control_runs(w.control)),
+        motions=lambda w: expand(
+            f"{R}/motions/{{run}}.npz", run=study.control_runs(w.control)
+        ),
         campaign=study.campaign_file,
     output:
         model=f"{R}/models/{{residual}}_{{control}}/model.yaml",
@@ -26,11 +28,11 @@ rule timing:
         models=expand(f"{R}/models/{{model}}/model.yaml", model=study.trained),
     output:
         f"{R}/timing.json",
-    threads: workflow.cores
     log:
         f"{R}/logs/timing.log",
     benchmark:
         f"{R}/benchmarks/timing.tsv"
+    threads: workflow.cores
     params:
         settings=study.section("replay", "signals", "timing"),
         code=study.code("latency", "training", "residual"),

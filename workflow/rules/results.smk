@@ -1,6 +1,8 @@
 def of_models(folder, ending, models):
     """Files of models and runs, by model and then by run."""
-    return expand(f"{R}/{folder}/{{model}}/{{run}}.{ending}", model=models, run=study.runs())
+    return expand(
+        f"{R}/{folder}/{{model}}/{{run}}.{ending}", model=models, run=study.runs()
+    )
 
 
 rule compare:
@@ -40,12 +42,12 @@ rule figure_of_study:
             labels={"figure": "{figure}"},
         ),
         pdf=f"{R}/figures/{{figure}}.pdf",
-    wildcard_constraints:
-        figure="error_by_axis|error_growth|ladder|inference_time|excitation",
     log:
         f"{R}/logs/figures/{{figure}}.log",
     benchmark:
         f"{R}/benchmarks/figures/{{figure}}.tsv"
+    wildcard_constraints:
+        figure="error_by_axis|error_growth|ladder|inference_time|excitation",
     params:
         runs=study.runs(),
         code=lambda w: study.code(f"figures.{w.figure}", "figures.style", "evidence"),
@@ -66,12 +68,12 @@ rule figure_of_run:
             labels={"figure": "{figure}", "run": "{run}"},
         ),
         pdf=f"{R}/figures/{{figure}}-{{run}}.pdf",
-    wildcard_constraints:
-        figure="velocities|residual_series|path_3d",
     log:
         f"{R}/logs/figures/{{figure}}-{{run}}.log",
     benchmark:
         f"{R}/benchmarks/figures/{{figure}}-{{run}}.tsv"
+    wildcard_constraints:
+        figure="velocities|residual_series|path_3d",
     params:
         code=lambda w: study.code(f"figures.{w.figure}", "figures.style", "evidence"),
     script:
