@@ -117,11 +117,13 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
         BadInput: the file is missing, damaged or holds objects.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
+        with zipfile.ZipFile(path) as archive:  # np.load would also take bare arrays and pickles
+            names = [name.removesuffix(".npy") for name in archive.namelist()]
+        with np.load(path, allow_pickle=False) as content:
+            return {name: content[name] for name in names}
     except FileNotFoundError:
         found = "no such file"
-    except (ValueError, OSError, zipfile.BadZipFile) as error:
+    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:
         found = f"cannot be read ({error})"
     raise BadInput(
         found,

@@ -70,21 +70,25 @@ def _sentence(message: str) -> str:
 
 
 def _known_keys(kind: type[BaseModel], place: tuple[Any, ...]) -> list[str]:
-    """Keys of the section found by walking `place` down from `kind`."""
+    """Keys of the section found by walking `place` down from `kind`.
+
+    A place names list items by number and members of a union by their `kind`.
+    """
+    choices = [kind]
     for part in place:
-        if isinstance(part, int) or part not in kind.model_fields:
-            continue
-        inner = _section_in(kind.model_fields[part].annotation)
-        if inner is not None:
-            kind = inner
-    return list(kind.model_fields)
+        tagged = [c for c in choices if _tag(c) == part]
+        fields = [c.model_fields[part].annotation for c in choices if part in c.model_fields]
+        inner = [section for field in fields for section in _sections_in(field)]
+        choices = tagged or inner or choices
+    return list(dict.fromkeys(name for choice in choices for name in choice.model_fields))
 
 
-def _section_in(annotation: Any) -> type[BaseModel] | None:
+def _tag(kind: type[BaseModel]) -> Any:
+    return kind.model_fields["kind"].default if "kind" in kind.model_fields else None
+
+
+def _sections_in(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    for inner in getattr(annotation, "__args__", ()):
-        found = _section_in(inner)
-        if found is not None:
-            return found
-    return None
+        return [annotation]
+    inner = getattr(annotation, "__args__", ())
+    return [section for one in inner for section in _sections_in(one)]

@@ -8,7 +8,7 @@ rule replay:
     "Drive one model with the logged commands of one run: open loop and windows."
     input:
         motion=f"{R}/motions/{{run}}.npz",
-        campaign=study.campaign_file,
+        campaign=lambda w: study.campaign_file,
         model=model_files,
     output:
         f"{R}/replay/{{model}}/{{run}}.npz",

@@ -4,7 +4,7 @@ rule train:
         motions=lambda w: expand(
             f"{R}/motions/{{run}}.npz", run=study.control_runs(w.control)
         ),
-        campaign=study.campaign_file,
+        campaign=lambda w: study.campaign_file,
     output:
         model=f"{R}/models/{{residual}}_{{control}}/model.yaml",
         arrays=f"{R}/models/{{residual}}_{{control}}/residual.npz",
@@ -24,7 +24,7 @@ rule timing:
     "Time one prediction after the other, library call and exported predictor, alone on the machine."
     input:
         motion=f"{R}/motions/{study.runs('test')[0]}.npz",
-        campaign=study.campaign_file,
+        campaign=lambda w: study.campaign_file,
         models=expand(f"{R}/models/{{model}}/model.yaml", model=study.trained),
     output:
         f"{R}/timing.json",

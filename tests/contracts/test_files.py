@@ -1,0 +1,63 @@
+"""Files appear whole or not at all; nothing read from disk is ever executed."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from rovsim.errors import BadInput
+from rovsim.files import appearing, read_arrays, read_json, read_yaml, write_arrays, write_json
+from rovsim.signals.chain import SignalSettings
+from rovsim.strict import checked
+
+
+class Evil:
+    def __reduce__(self):
+        return (pytest.fail, ("a pickle was executed",))
+
+
+def test_arrays_survive_and_their_bytes_depend_on_them_alone(tmp_path):
+    arrays = {"a": np.arange(6.0).reshape(2, 3), "b": np.array(["x", "é"]), "c": np.array(True)}
+    for name in ("one.npz", "two.npz"):
+        write_arrays(tmp_path / name, **arrays)
+    assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
+    again = read_arrays(tmp_path / "one.npz")
+    assert all(np.array_equal(again[key], value) for key, value in arrays.items())
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", pickle.dumps(Evil()), b"text"])
+def test_damaged_arrays_and_pickles_are_refused(tmp_path, content):
+    (tmp_path / "bad.npz").write_bytes(content)
+    with pytest.raises(BadInput, match=r"bad\.npz"):
+        read_arrays(tmp_path / "bad.npz")
+
+
+def test_pickled_objects_inside_an_archive_are_refused(tmp_path):
+    np.savez(tmp_path / "bad.npz", x=np.array([Evil()], dtype=object))
+    with pytest.raises(BadInput, match="plain arrays"):
+        read_arrays(tmp_path / "bad.npz")
+
+
+def test_an_interrupted_write_leaves_the_old_file(tmp_path):
+    path = tmp_path / "x.json"
+    write_json(path, {"kept": 1})
+    with pytest.raises(RuntimeError, match="power cut"), appearing(path) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError("power cut")
+    assert read_json(path) == {"kept": 1}
+    assert [p.name for p in tmp_path.iterdir()] == ["x.json"]
+    with pytest.raises(ValueError, match="JSON"):
+        write_json(path, {"bad": float("nan")})
+    assert read_json(path) == {"kept": 1}
+
+
+def test_yaml_builds_nothing(tmp_path):
+    (tmp_path / "bad.yaml").write_text("!!python/object/apply:os.getcwd []")
+    with pytest.raises(BadInput, match="not YAML"):
+        read_yaml(tmp_path / "bad.yaml")
+
+
+def test_a_typo_in_one_of_several_kinds_names_that_kinds_key():
+    content = {"filter": {"kind": "savgol", "windw": 0.3}}
+    with pytest.raises(BadInput, match="Did you mean 'window'"):
+        checked(SignalSettings, content, "conf")
