@@ -58,6 +58,18 @@ def read_json(path: Path) -> Any:
         ) from None
 
 
+class _UniqueKeys(yaml.SafeLoader):
+    """Safe YAML in which a key given twice is an error: the first would be lost silently."""
+
+    def construct_mapping(self, node, deep=False):
+        names = [self.construct_object(key, deep=True) for key, _ in node.value]
+        for k, name in enumerate(names):
+            if isinstance(name, str) and name in names[:k]:
+                mark = node.value[k][0].start_mark
+                raise yaml.constructor.ConstructorError(None, None, f"'{name}' twice", mark)
+        return super().construct_mapping(node, deep)
+
+
 def write_yaml(path: Path, content: Any) -> None:
     """Write plain YAML atomically, keys in the order given."""
     write_text(path, yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=100))
@@ -70,7 +82,7 @@ def read_yaml(path: Path) -> Any:
         BadInput: the file is missing or is not YAML.
     """
     try:
-        return yaml.safe_load(read_text(path))
+        return yaml.load(read_text(path), Loader=_UniqueKeys)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = f", line {mark.line + 1}" if mark else ""

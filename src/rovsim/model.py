@@ -4,22 +4,23 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy import ndarray as Array
-from pydantic import Field, FiniteFloat
+from pydantic import BeforeValidator, Field
 
 from rovsim.body import Body, packed
 from rovsim.effects import effect
 from rovsim.effects.base import Coefficients, Effect, Wrench
 from rovsim.engine.at import Constants
 from rovsim.engine.compiled import engine
+from rovsim.errors import BadInput
 from rovsim.files import plain, read_yaml, write_yaml
 from rovsim.residual.storage import Residual, read_residual
-from rovsim.strict import Section, checked
+from rovsim.strict import Number, Section, checked
 from rovsim.thrust import ThrustPath
-from rovsim.vehicle import VEHICLES, Thrusters, Vehicle, load_vehicle
+from rovsim.vehicle import VEHICLES, Thrusters, Vehicle, check_layout, load_vehicle
 
 SCHEMA = "rovsim.model/1"
 
@@ -27,30 +28,56 @@ SCHEMA = "rovsim.model/1"
 class Value(Section):
     """A parameter's value with what is known of it."""
 
-    value: FiniteFloat
-    std: FiniteFloat | None = None
+    value: Number
+    std: Number | None = None
     unit: str | None = None
 
 
+def _with_key(value: Any) -> Any:
+    """A bare number is a value nothing more is known of."""
+    return value if isinstance(value, (dict, Value)) else {"value": value}
+
+
 class EffectEntry(Section):
-    """One effect of a model file."""
+    """One effect of a model file; a parameter is a number, or a `value` with `std` and `unit`."""
 
     effect: str
-    parameters: dict[str, Value | FiniteFloat] = Field(default_factory=dict)
+    parameters: dict[str, Annotated[Value, BeforeValidator(_with_key)]] = Field(
+        default_factory=dict
+    )
 
     def build(self) -> Effect:
-        """The effect with these values."""
-        given = self.parameters.items()
-        return effect(self.effect)(
-            **{name: v.value if isinstance(v, Value) else v for name, v in given}
-        )
+        """The effect with these values.
+
+        Raises:
+            BadInput: an unknown effect or parameter, a value out of range, another unit.
+        """
+        found = effect(self.effect)(**{name: v.value for name, v in self.parameters.items()})
+        units = {p.name: p.unit for p in found.parameters}
+        for name, value in self.parameters.items():
+            if value.unit not in (None, units[name]):
+                raise BadInput(
+                    f"{name} has the unit '{value.unit}'",
+                    where=f"effect {self.effect}",
+                    expected=f"'{units[name]}'",
+                    remedy="Convert the value, or leave the unit out.",
+                )
+        return found
+
+    def plain(self) -> dict[str, Any]:
+        """As it is written: numbers alone where nothing more is known."""
+        known = {
+            name: v.value if v.std is None and v.unit is None else v.model_dump(exclude_none=True)
+            for name, v in self.parameters.items()
+        }
+        return {"effect": self.effect, "parameters": known}
 
 
 class ModelFile(Section):
     """A model file as it stands on disk: data only."""
 
-    schema_: Literal["rovsim.model/1"] = "rovsim.model/1"
-    vehicle: str | Vehicle
+    schema_: Literal["rovsim.model/1"] = Field("rovsim.model/1", alias="schema")
+    vehicle: str | dict[str, Any]
     effects: tuple[EffectEntry, ...] = ()
     residual: dict[str, Any] | None = None
     provenance: dict[str, Any] | None = None
@@ -67,7 +94,9 @@ class Model:
     inert: bool = False  # keeps its body velocity whatever pushes: the baseline to beat
 
     def __add__(self, added: Effect) -> "Model":
-        entry = EffectEntry(effect=added.id, parameters=dict(added.given()))
+        entry = EffectEntry(
+            effect=added.id, parameters={k: Value(value=v) for k, v in added.given().items()}
+        )
         return replace(self, entries=(*self.entries, entry))
 
     def called(self, name: str) -> "Model":
@@ -121,7 +150,7 @@ class Model:
         )
         content: dict[str, Any] = {"schema": SCHEMA}
         content["vehicle"] = self.vehicle.name if known else self.vehicle.model_dump(mode="json")
-        content["effects"] = [entry.model_dump(exclude_none=True) for entry in self.entries]
+        content["effects"] = [entry.plain() for entry in self.entries]
         content |= {"residual": plain(residual)} if residual else {}
         content |= {"provenance": plain(provenance)} if provenance else {}
         write_yaml(path, content)
@@ -155,13 +184,12 @@ def read_model(path: Path) -> Model:
     Raises:
         BadInput: it is missing, or something in it is unknown or out of range.
     """
-    content = read_yaml(path)
-    if isinstance(content, dict) and "schema" in content:
-        content = {("schema_" if k == "schema" else k): v for k, v in content.items()}
-    file = checked(ModelFile, content, path)
-    vehicle = file.vehicle
-    if isinstance(vehicle, str):
-        vehicle = load_vehicle(vehicle, beside=path.parent)
+    file = checked(ModelFile, read_yaml(path), path)
+    if isinstance(file.vehicle, str):
+        vehicle = load_vehicle(file.vehicle, beside=path.parent)
+    else:
+        vehicle = checked(Vehicle, file.vehicle, f"{path}, vehicle")
+        check_layout(vehicle, path)
     residual = read_residual(file.residual, path.parent) if file.residual else None
     model = Model(path.stem, vehicle, file.effects, residual)
     _ = model.body.M, model.effects  # refuse a model that cannot move

@@ -1,9 +1,9 @@
 """Typed sections read from YAML: an unknown key is an error that names the nearest known one."""
 
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
 
 from rovsim.errors import BadInput, nearest
 
@@ -13,6 +13,9 @@ class Section(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+
+# A number as it is: neither true nor '1.5' is one.
+Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 
 S = TypeVar("S", bound=Section)
 
@@ -27,7 +30,7 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
         raise BadInput(
             f"holds {type(content).__name__} instead of keys and values",
             where=where,
-            expected=f"the keys {', '.join(kind.model_fields)}",
+            expected=f"the keys {', '.join(_names(kind))}",
             remedy="See docs/formats.md for an example.",
         )
     try:
@@ -80,7 +83,12 @@ def _known_keys(kind: type[BaseModel], place: tuple[Any, ...]) -> list[str]:
         fields = [c.model_fields[part].annotation for c in choices if part in c.model_fields]
         inner = [section for field in fields for section in _sections_in(field)]
         choices = tagged or inner or choices
-    return list(dict.fromkeys(name for choice in choices for name in choice.model_fields))
+    return list(dict.fromkeys(name for choice in choices for name in _names(choice)))
+
+
+def _names(kind: type[BaseModel]) -> list[str]:
+    """Keys as they stand in the file."""
+    return [field.alias or name for name, field in kind.model_fields.items()]
 
 
 def _tag(kind: type[BaseModel]) -> Any:

@@ -67,7 +67,7 @@ class ThrustPath:
         Before the first line its command holds, after the last one too. The mean is exact for held
         commands wherever a line falls inside a step.
         """
-        arrival = self.arrival(commands.time)
+        arrival = edges[0] + self.arrival(commands.time - edges[0])  # clocks agree at the start
         value = commands.value
         pieces = np.union1d(edges, arrival[(arrival > edges[0]) & (arrival < edges[-1])])
         middle = 0.5 * (pieces[1:] + pieces[:-1])

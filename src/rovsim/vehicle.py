@@ -179,7 +179,7 @@ def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
             remedy=nearest(name, known),
         )
     vehicle = checked(Vehicle, read_yaml(path), path)
-    _check_layout(vehicle, path)
+    check_layout(vehicle, path)
     return vehicle
 
 
@@ -188,7 +188,12 @@ def campaign_vehicle(campaign: Campaign) -> Vehicle:
     return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
 
 
-def _check_layout(vehicle: Vehicle, path: Path) -> None:
+def check_layout(vehicle: Vehicle, path: Path) -> None:
+    """Refuse thrusters and a mixer that do not fit together.
+
+    Raises:
+        BadInput: a mixer row of another length, or a direction that is not a unit vector.
+    """
     count = len(vehicle.thrusters.units)
     for axis in AXES:
         row = getattr(vehicle.thrusters.mixer, axis)

@@ -41,14 +41,19 @@ def test_pickled_objects_inside_an_archive_are_refused(tmp_path):
 def test_an_interrupted_write_leaves_the_old_file(tmp_path):
     path = tmp_path / "x.json"
     write_json(path, {"kept": 1})
-    with pytest.raises(RuntimeError, match="power cut"), appearing(path) as temporary:
-        temporary.write_text("half")
-        raise RuntimeError("power cut")
+    with pytest.raises(RuntimeError, match="power cut"):
+        _cut_off(path)
     assert read_json(path) == {"kept": 1}
     assert [p.name for p in tmp_path.iterdir()] == ["x.json"]
     with pytest.raises(ValueError, match="JSON"):
         write_json(path, {"bad": float("nan")})
     assert read_json(path) == {"kept": 1}
+
+
+def _cut_off(path):
+    with appearing(path) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError("power cut")
 
 
 def test_yaml_builds_nothing(tmp_path):

@@ -88,3 +88,18 @@ def test_a_bad_vehicle_inside_a_model_is_explained_too(change, message, tmp_path
     path.write_text(yaml.safe_dump({"vehicle": vehicle}))
     with pytest.raises(BadInput, match=message):
         read_model(path)
+
+
+def test_a_key_given_twice_and_a_wrong_unit_are_refused(tmp_path):
+    path = tmp_path / "m.yaml"
+    path.write_text("vehicle: bluerov2_heavy\neffects: []\neffects: []")
+    with pytest.raises(BadInput, match="'effects' twice"):
+        read_model(path)
+    lag = "{effect: thruster_lag, parameters: {time_constant: {value: 150, unit: ms}}}"
+    path.write_text(f"{HEAVY}effects: [{lag}]")
+    with pytest.raises(BadInput, match="unit 'ms'"):
+        read_model(path)
+    for wrong in ("true", "'0.2'", ".nan"):
+        path.write_text(f"{HEAVY}effects: [{{effect: lift, parameters: {{coefficient: {wrong}}}}}]")
+        with pytest.raises(BadInput, match="coefficient"):
+            read_model(path)

@@ -1,23 +1,18 @@
 """Laws that hold whatever the numbers are."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from scipy.integrate import solve_ivp
 
 from rovsim.body import Body, cross_matrix, inertia_at, packed
 from rovsim.effects.added_mass import AddedMass
-from rovsim.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.effects.current import Current
-from rovsim.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.engine.equation import coriolis
 from rovsim.engine.vectors import matrix6
 from rovsim.errors import BadInput
-from rovsim.frames import exp, matrix, multiply, rotate
+from rovsim.frames import exp, multiply, rotate
 from rovsim.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion, sticks
 
@@ -71,48 +66,6 @@ def path(world, start, seconds=2.0, step=0.01, commands=None):
     return found[0]
 
 
-def frictionless():
-    """Neutral, without drag and with its centre of buoyancy at the centre of gravity."""
-    world = model()
-    d, q = world.body.linear, world.body.quadratic
-    names = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-    lift = world.body.weight - world.body.buoyancy
-    return (
-        world
-        + LinearDamping(**dict(zip(names, -d, strict=True)))
-        + QuadraticDamping(**dict(zip(names, -q, strict=True)))
-        + NetBuoyancy(force=float(lift))
-        + BuoyancyCenter(z=0.01)
-    )
-
-
-def kinetic(world, states):
-    nu = states[:, 7:]
-    return 0.5 * np.einsum("ni,ij,nj->n", nu, world.body.M, nu)
-
-
-moving = arrays(float, 6, elements=st.floats(-0.5, 0.5))
-
-
-@settings(max_examples=20, deadline=None)
-@given(nu=moving)
-def test_without_forces_energy_is_kept(nu):
-    world, start = frictionless(), at_rest()
-    start[7:] = nu
-    energy = kinetic(world, path(world, start))
-    np.testing.assert_allclose(energy, energy[0], rtol=1e-7, atol=1e-12)
-
-
-@settings(max_examples=20, deadline=None)
-@given(nu=moving)
-def test_drag_only_takes_energy(nu):
-    d = LinearDamping(surge=13.7, sway=2.0, heave=33.0, roll=0.1, pitch=0.8, yaw=0.1)
-    q = QuadraticDamping(surge=141.0, sway=217.0, heave=190.0, roll=1.2, pitch=0.5, yaw=1.5)
-    world, start = frictionless() + d + q, at_rest()
-    start[7:] = nu
-    assert np.all(np.diff(kinetic(world, path(world, start))) <= 1e-12)
-
-
 @settings(max_examples=15, deadline=None)
 @given(heading=st.floats(-3, 3), shift=arrays(float, 3, elements=st.floats(-5, 5)))
 def test_turning_and_moving_the_world_turns_and_moves_the_path(heading, shift):
@@ -141,61 +94,9 @@ def test_a_current_is_a_moving_frame(c):
     np.testing.assert_allclose(moved[:, 10:], still[:, 10:], atol=2e-6)
 
 
-def test_runge_kutta_converges_with_fourth_order():
-    start, commands = at_rest(), np.full((1, 8), 0.3)
-    start[7:] = [0.3, -0.2, 0.1, 0.4, -0.3, 0.2]
-
-    def end(step):
-        run = motion(commands, seconds=2.0, start=start)
-        coarse = run.time[:: round(step / 0.01)]
-        n = len(coarse)
-        run = replace(run, time=coarse, eta=run.eta[:n], nu=run.nu[:n], nu_dot=run.nu_dot[:n],
-                      state_nu=run.state_nu[:n], usable=run.usable[:n])  # fmt: skip
-        return trajectories(model(), run, [(0, n - 1, start)], ReplaySettings(step=step))[0][-1]
-
-    best = path(model(), start, commands=commands, step=0.00125)[-1]
-    errors = [np.abs(end(step) - best).max() for step in (0.08, 0.04, 0.02)]
-    assert 10 < errors[0] / errors[1] < 24
-    assert 10 < errors[1] / errors[2] < 24
-
-
-def reference_slope(world, x, tau):
-    """Fossen's equation with matrices, written independently of the engine."""
-    b, nu = world.body, x[7:]
-    R = matrix(x[3:7])
-    C = fossen_coriolis(b.M_RB, nu) + fossen_coriolis(b.M_A, nu)
-    D = np.diag(b.linear + b.quadratic * np.abs(nu))
-    down = R.T @ np.array([0, 0, 1.0])
-    force = (b.weight - b.buoyancy) * down
-    moment = np.cross(b.weight_moment, down) - np.cross(b.buoyancy * b.center_of_buoyancy, down)
-    nu_dot = np.linalg.solve(b.M, tau - C @ nu - D @ nu + np.concatenate([force, moment]))
-    q_dot = 0.5 * multiply(x[3:7], np.concatenate([[0.0], nu[3:]]))
-    return np.concatenate([R @ nu[:3], q_dot, nu_dot])
-
-
-def test_the_engine_agrees_with_an_independent_implementation():
-    world, start, commands = model(), at_rest(), sticks(3, rows=1)
-    start[7:] = [0.3, -0.2, 0.1, 0.4, -0.3, 0.2]
-    thrusters = world.thrust_path.thrusters
-    tau = world.body.B @ thrusters.static_force(commands[0])
-    found = solve_ivp(
-        lambda t, x: reference_slope(world, x, tau), (0, 2), start, "DOP853", rtol=1e-10, atol=1e-12
-    )
-    np.testing.assert_allclose(path(world, start, commands=commands)[-1], found.y[:, -1], atol=1e-7)
-
-
 def test_the_vehicle_rights_itself_and_sinks():
     start = at_rest()
     start[3:7] = exp(np.array([0.5, 0.3, 0.0]))
     found = path(model(), start, seconds=1.0)
     assert found[-1, 10] < 0 > found[-1, 11]  # rolls and pitches back
     assert found[-1, 2] > 0  # weight exceeds buoyancy by 0.98 N (vehicle file)
-
-
-def test_parallel_and_serial_give_the_same_bits():
-    run, start = motion(sticks()), at_rest()
-    starts = [(10 * k, 50, start) for k in range(15)]
-    together = trajectories(model(), run, starts, ReplaySettings())
-    alone = [trajectories(model(), run, [one], ReplaySettings())[0] for one in reversed(starts)]
-    for a, b in zip(together, reversed(alone), strict=True):
-        assert a.tobytes() == b.tobytes()

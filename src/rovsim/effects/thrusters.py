@@ -66,7 +66,9 @@ class ThrusterGain(Strength):
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
         """Forces times each thruster's gain and the common one."""
-        return force * (self["all"] * self.values[: force.shape[1]])
+        each, own = np.ones(force.shape[1]), self.values[: len(THRUSTERS)][: force.shape[1]]
+        each[: len(own)] = own
+        return force * (self["all"] * each)
 
 
 class ThrustAsymmetry(Strength):

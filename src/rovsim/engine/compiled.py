@@ -82,13 +82,13 @@ def _chain(wrenches: tuple[Any, ...]) -> str:
 
 
 def _digest(source: str, wrenches: tuple[Any, ...]) -> str:
-    """Digest of the engine's source, of every module its kernels come from, and of Numba."""
-    from rovsim.engine import at, vectors
+    """Digest of the engine's source, of all that its kernels may call, and of Numba."""
     from rovsim.residual import features, predictor
 
-    files = [inspect.getsourcefile(m) for m in (at, vectors, features, predictor)]
-    files += [inspect.getsourcefile(wrench) for wrench in wrenches]
+    package = TEMPLATE.parents[1]
+    files = {*package.glob("engine/*.py"), *package.glob("effects/*.py")}
+    files |= {Path(str(inspect.getsourcefile(m))) for m in (features, predictor, *wrenches)}
     content = hashlib.sha256(f"{source}{numba.__version__}".encode())
-    for file in files:
-        content.update(Path(str(file)).read_bytes())
+    for file in sorted(files):
+        content.update(file.read_bytes())
     return content.hexdigest()[:16]

@@ -47,12 +47,16 @@ def extra(at, p):
 
 @inlined
 def rotation(q):
-    """Rotation matrix body to world, by rows (Fossen 2021, eq. 2.73)."""
+    """Rotation matrix body to world, by rows (Fossen 2021, eq. 2.73).
+
+    Homogeneous in q: where a Runge-Kutta stage has stretched it, all of R is stretched alike, and
+    no direction of the world is preferred.
+    """
     w, i, j, k = q
     return (
-        (1 - 2 * (j * j + k * k), 2 * (i * j - w * k), 2 * (i * k + w * j)),
-        (2 * (i * j + w * k), 1 - 2 * (i * i + k * k), 2 * (j * k - w * i)),
-        (2 * (i * k - w * j), 2 * (j * k + w * i), 1 - 2 * (i * i + j * j)),
+        (w * w + i * i - j * j - k * k, 2 * (i * j - w * k), 2 * (i * k + w * j)),
+        (2 * (i * j + w * k), w * w - i * i + j * j - k * k, 2 * (j * k - w * i)),
+        (2 * (i * k - w * j), 2 * (j * k + w * i), w * w - i * i - j * j + k * k),
     )
 
 
