@@ -43,7 +43,7 @@ def own_digest(package: str) -> str:
 
 def _discovered(modules: set[str]) -> set[str]:
     """Packages whose members are found by looking into their folder."""
-    found = {"rovsim.effects", "rovsim.recording", "rovsim.residual", "rovsim.figures"}
+    found = {"rovsim.effects", "rovsim.recording", "rovsim.residual"}
     return {package for package in found if package in modules}
 
 

@@ -69,7 +69,7 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     assert "replay" in touched
     assert not reading & touched
     assert _edited(study, "src/rovsim/figures/ladder.py") <= {
-        "figure_of_study", "report", "track", "all"
+        "figure_ladder", "report", "track", "all"
     }  # fmt: skip
     assert {"filter", "replay"} <= _edited(study, "src/rovsim/signals/filter.py")
     assert "read" not in _edited(study, "src/rovsim/signals/filter.py")

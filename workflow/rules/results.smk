@@ -1,3 +1,6 @@
+from rovsim.evidence import ONCE, PER_RUN
+
+
 def of_models(folder, ending, models):
     """Files of models and runs, by model and then by run."""
     return expand(
@@ -26,58 +29,63 @@ rule compare:
         "../scripts/compare.py"
 
 
-rule figure_of_study:
-    "One figure of the whole study."
-    input:
-        comparison=f"{R}/comparison.json",
-        ladder=f"{R}/ladder.json",
-        growth=f"{R}/growth.json",
-        timing=f"{R}/timing.json",
-        quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
-    output:
-        png=report(
-            f"{R}/figures/{{figure}}.png",
-            caption="../report/{figure}.rst",
-            category="Study",
-            labels={"figure": "{figure}"},
-        ),
-        pdf=f"{R}/figures/{{figure}}.pdf",
-    log:
-        f"{R}/logs/figures/{{figure}}.log",
-    benchmark:
-        f"{R}/benchmarks/figures/{{figure}}.tsv"
-    wildcard_constraints:
-        figure="error_by_axis|error_growth|ladder|inference_time|excitation",
-    params:
-        runs=study.runs(),
-        code=lambda w: study.code(f"figures.{w.figure}", "figures.style", "evidence"),
-    script:
-        "../scripts/figure_of_study.py"
+# One rule a figure, so that each has its own caption and re-runs on its own edits.
+for figure in ONCE:
+
+    rule:
+        name:
+            f"figure_{figure}"
+        input:
+            comparison=f"{R}/comparison.json",
+            ladder=f"{R}/ladder.json",
+            growth=f"{R}/growth.json",
+            timing=f"{R}/timing.json",
+            quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
+        output:
+            png=report(
+                f"{R}/figures/{figure}.png",
+                caption=f"../report/{figure}.rst",
+                category="Study",
+                labels={"figure": figure},
+            ),
+            pdf=f"{R}/figures/{figure}.pdf",
+        log:
+            f"{R}/logs/figures/{figure}.log",
+        benchmark:
+            f"{R}/benchmarks/figures/{figure}.tsv"
+        params:
+            figure=figure,
+            runs=study.runs(),
+            code=study.code(f"figures.{figure}", "figures.style", "evidence"),
+        script:
+            "../scripts/figure_of_study.py"
 
 
-rule figure_of_run:
-    "One figure of one run."
-    input:
-        motion=f"{R}/motions/{{run}}.npz",
-        replays=expand(f"{R}/replay/{{model}}/{{{{run}}}}.npz", model=study.drawn),
-    output:
-        png=report(
-            f"{R}/figures/{{figure}}-{{run}}.png",
-            caption="../report/{figure}.rst",
-            category="Runs",
-            labels={"figure": "{figure}", "run": "{run}"},
-        ),
-        pdf=f"{R}/figures/{{figure}}-{{run}}.pdf",
-    log:
-        f"{R}/logs/figures/{{figure}}-{{run}}.log",
-    benchmark:
-        f"{R}/benchmarks/figures/{{figure}}-{{run}}.tsv"
-    wildcard_constraints:
-        figure="velocities|residual_series|path_3d",
-    params:
-        code=lambda w: study.code(f"figures.{w.figure}", "figures.style", "evidence"),
-    script:
-        "../scripts/figure_of_run.py"
+for figure in PER_RUN:
+
+    rule:
+        name:
+            f"figure_{figure}"
+        input:
+            motion=f"{R}/motions/{{run}}.npz",
+            replays=expand(f"{R}/replay/{{model}}/{{{{run}}}}.npz", model=study.drawn),
+        output:
+            png=report(
+                f"{R}/figures/{figure}-{{run}}.png",
+                caption=f"../report/{figure}.rst",
+                category="Runs",
+                labels={"figure": figure, "run": "{run}"},
+            ),
+            pdf=f"{R}/figures/{figure}-{{run}}.pdf",
+        log:
+            f"{R}/logs/figures/{figure}-{{run}}.log",
+        benchmark:
+            f"{R}/benchmarks/figures/{figure}-{{run}}.tsv"
+        params:
+            figure=figure,
+            code=study.code(f"figures.{figure}", "figures.style", "evidence"),
+        script:
+            "../scripts/figure_of_run.py"
 
 
 rule tables:
@@ -102,9 +110,6 @@ rule tables:
         "../scripts/tables.py"
 
 
-FIGURES = ["error_by_axis", "error_growth", "ladder", "inference_time", "excitation"]
-
-
 rule report:
     "Everything on one page."
     input:
@@ -112,7 +117,7 @@ rule report:
         ladder=f"{R}/ladder.json",
         timing=f"{R}/timing.json",
         quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
-        figures=expand(f"{R}/figures/{{name}}.png", name=[*FIGURES, *study.figures()]),
+        figures=expand(f"{R}/figures/{{name}}.png", name=[*ONCE, *study.figures()]),
     output:
         report(f"{R}/report.html", caption="../report/report.rst", category="Study"),
     log:
@@ -133,7 +138,7 @@ rule track:
     input:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
-        figures=expand(f"{R}/figures/{{name}}.png", name=FIGURES),
+        figures=expand(f"{R}/figures/{{name}}.png", name=ONCE),
         report=f"{R}/report.html",
         models=expand(f"{R}/models/{{model}}/model.yaml", model=study.trained),
     output:

@@ -21,7 +21,7 @@ def main(*, figure: str, motion: Path, replays: list[Path], out: Path) -> None:
 if __name__ == "__main__":
     with job(snakemake):
         main(
-            figure=snakemake.wildcards.figure,
+            figure=snakemake.params.figure,
             motion=Path(snakemake.input.motion),
             replays=[Path(path) for path in snakemake.input.replays],
             out=Path(snakemake.output.png),

@@ -19,7 +19,7 @@ def main(*, figure: str, contents: dict[str, Path], quality: dict[str, Path], ou
 if __name__ == "__main__":
     with job(snakemake):
         main(
-            figure=snakemake.wildcards.figure,
+            figure=snakemake.params.figure,
             contents={
                 name: Path(snakemake.input[name])
                 for name in ("comparison", "ladder", "growth", "timing")
