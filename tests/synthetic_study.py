@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+from rovsim import AXES
+
 MODELS = (
     "nominal", "knn_3dof", "knn_6dof", "gp_3dof", "gp_6dof", "svgp_3dof", "svgp_6dof",
     "zero_acceleration",

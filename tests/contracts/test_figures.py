@@ -1,0 +1,84 @@
+"""What every figure promises; a new figure is found here by itself."""
+
+import copy
+import inspect
+
+import numpy as np
+import pytest
+from matplotlib.patches import Rectangle
+
+from rovsim.errors import BadInput
+from rovsim.evidence import ONCE, PER_RUN
+from rovsim.figures import SECTIONS, kind, kinds
+from rovsim.figures.style import save
+from synthetic_study import MODELS, study
+
+EVERY = pytest.mark.parametrize("name", sorted(kinds()))
+
+
+def drawn(name, content):
+    """The figure, from the parts of a study that its `draw` asks for."""
+    draw = kind(name).draw
+    wanted = inspect.signature(draw).parameters
+    return draw(**{key: value for key, value in content.items() if key in wanted})
+
+
+@EVERY
+def test_it_is_drawn_the_same_every_time_and_changes_nothing(name, tmp_path):
+    content = study()
+    before = copy.deepcopy(content)
+    for folder in ("one", "two"):
+        save(drawn(name, content), tmp_path / folder, name)
+    for ending in ("pdf", "png"):
+        one, two = (tmp_path / folder / f"{name}.{ending}" for folder in ("one", "two"))
+        assert len(one.read_bytes()) > 3000
+        assert one.read_bytes() == two.read_bytes()
+    np.testing.assert_equal(content, before)
+
+
+@EVERY
+def test_it_says_where_it_belongs_and_what_it_shows(name):
+    found = kind(name)
+    assert found.section in SECTIONS
+    assert found.caption.endswith(".")
+    assert (name in ONCE) != (name in PER_RUN)
+
+
+@EVERY
+@pytest.mark.parametrize("models", [("nominal",), MODELS[:3], ("nominal", "a_model of mine")])
+def test_it_takes_any_models(name, models, tmp_path):
+    save(drawn(name, study(models=models)), tmp_path, name)
+
+
+@EVERY
+def test_nothing_measured_is_said_not_crashed(name, tmp_path):
+    content = study()
+    for key in ("comparison", "growth", "ladder", "timing", "quality"):
+        content[key] = {}
+    for key in ("nu", "nu_dot", "eta"):
+        content[key] = np.full_like(content[key], np.nan)
+    save(drawn(name, content), tmp_path, name)
+
+
+def test_the_bars_of_the_ladder_are_its_numbers():
+    content = study()
+    steps = {s["model"]: s["windows_2s"] for s in content["ladder"]["steps"]}
+    steps.pop("noise_floor", None)
+    bars = [p for p in drawn("ladder", content).axes[0].patches if isinstance(p, Rectangle)]
+    assert [bar.get_width() for bar in bars] == pytest.approx(list(steps.values()))
+    assert all(bar.get_x() == 0 for bar in bars)
+
+
+def test_the_measured_line_is_the_measurement():
+    content = study()
+    figure = drawn("velocities", content)
+    for k, axes in enumerate(figure.axes[:6]):
+        shown = np.concatenate([line.get_ydata() for line in axes.lines])
+        known = content["nu"][content.get("usable", slice(None)), k]
+        known = known[np.isfinite(known)]
+        assert np.isin(np.round(known, 12), np.round(shown, 12)).mean() > 0.99
+
+
+def test_an_unknown_figure_names_the_nearest():
+    with pytest.raises(BadInput, match="Did you mean 'ladder'"):
+        kind("lader")
