@@ -5,7 +5,7 @@ from typing import Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt
 
-from rovsim.errors import BadInput
+from rovsim.errors import BadInput, nearest
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import LearnerSettings, learner_settings
 from rovsim.signals.chain import SignalSettings
@@ -79,8 +79,30 @@ def compose(overrides: Sequence[str]) -> Settings:
             str(error).split("\n")[0].rstrip("."),
             where=f"overrides {' '.join(overrides)}",
             expected="key=value with keys of conf/config.yaml and options of its groups",
-            remedy="See docs/configuration.md for the keys.",
+            remedy=_nearest_override(overrides),
         ) from None
+
+
+def _nearest_override(overrides: Sequence[str]) -> str:
+    """What an override that Hydra refused was probably meant to be."""
+    for word in overrides:
+        key, _, value = word.lstrip("+~").partition("=")
+        options = sorted(path.stem for path in (CONF / key).glob("*.yaml")) if key else []
+        if options and value not in options:
+            return nearest(value, options)
+        if not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
+            known = _keys()
+            if key not in known:
+                return nearest(key, known)
+    return "See docs/configuration.md for the keys."
+
+
+def _keys() -> list[str]:
+    """Every key of the default configuration, dotted, and every group."""
+    from rovsim.provenance import flattened
+
+    groups = [path.name for path in CONF.iterdir() if path.is_dir()]
+    return [*groups, *flattened(compose([]).model_dump(mode="json"))]
 
 
 def settings_of(composed: Any) -> Settings:

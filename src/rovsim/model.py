@@ -15,7 +15,7 @@ from rovsim.effects import effect
 from rovsim.effects.base import Coefficients, Effect, Wrench
 from rovsim.engine.at import Constants
 from rovsim.engine.compiled import engine
-from rovsim.errors import BadInput
+from rovsim.errors import BadInput, nearest
 from rovsim.files import plain, read_yaml, write_yaml
 from rovsim.residual.storage import Residual, read_residual
 from rovsim.strict import Number, Section, checked
@@ -175,7 +175,16 @@ def load_model(spec: str, vehicle: Vehicle) -> Model:
     Raises:
         BadInput: no such file, or it does not describe a model.
     """
-    return BUILT_IN[spec](vehicle) if spec in BUILT_IN else read_model(Path(spec))
+    if spec in BUILT_IN:
+        return BUILT_IN[spec](vehicle)
+    if not Path(spec).suffix and not Path(spec).exists():
+        raise BadInput(
+            f"unknown model '{spec}'",
+            where="model",
+            expected=f"{' or '.join(BUILT_IN)}, or the path of a model file",
+            remedy=nearest(spec, BUILT_IN),
+        )
+    return read_model(Path(spec))
 
 
 def read_model(path: Path) -> Model:

@@ -5,7 +5,7 @@ import platform
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, Mapping
 
 import rovsim
 from rovsim.strict import Section
@@ -65,3 +65,13 @@ def provenance(settings: Section) -> dict[str, Any]:
     versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
     chosen = settings.model_dump(mode="json", exclude={"command", "tracking", "timing"})
     return {"settings": chosen, "code": digest("rovsim"), "versions": versions}
+
+
+def flattened(content: Mapping[str, Any], above: str = "") -> dict[str, Any]:
+    """Nested values by dotted name, sections included."""
+    found: dict[str, Any] = {}
+    for key, value in content.items():
+        found[f"{above}{key}"] = value
+        if isinstance(value, Mapping):
+            found |= flattened(value, f"{above}{key}.")
+    return found

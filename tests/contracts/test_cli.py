@@ -62,7 +62,9 @@ def failing(capsys, *words):
         (["compare", "campaign=/nowhere"], "/nowhere"),
         (["compare", "campaigm=x"], "campaigm"),
         (["compare", "oops"], "has no '='"),
-        (["compare", "filter=savgoll", "campaign=x"], "savgol"),
+        (["compare", "filter=savgoll", "campaign=x"], "Did you mean 'savgol'"),
+        (["compare", "replay.stepp=1", "campaign=x"], "Did you mean 'replay.step'"),
+        (["train", "residual=knnn", "campaign=x"], "Did you mean 'knn'"),
         (["tank", "tank.seed=-1", "out=x"], "tank.seed"),
         (["tank", "tank.effects=[{effect: lag}]", "out=x"], "unknown effect 'lag'"),
         (["train", "residual.k=0", "campaign=x"], "no such file|k"),
@@ -93,7 +95,7 @@ def broken(campaign, tmp_path, change):
     ("change", "message"),
     [
         (lambda c: c["mocap"].update(body="Blue"), "BlueROV2"),
-        (lambda c: c.update(vehicle="bluerov"), "bluerov2_heavy"),
+        (lambda c: c.update(vehicle="bluerov"), "Did you mean 'bluerov2_heavy'"),
         (lambda c: c.update(tnak={}), "Did you mean 'tank'"),
         (lambda c: c["commands"].update(columns=[f"u{i}" for i in range(8)]), "u0"),
         (lambda c: c["runs"][0].update(mocap="gone.tsv"), "gone.tsv"),
@@ -104,6 +106,11 @@ def test_bad_campaigns_leave_nothing_behind(capsys, campaign, tmp_path, change, 
     text = failing(capsys, "compare", f"campaign={folder}", f"out={out}")
     assert message in text
     assert not out.exists()
+
+
+def test_an_unknown_model_names_the_nearest(capsys, campaign, tmp_path):
+    text = failing(capsys, "compare", f"campaign={campaign}", "model=nominl", f"out={tmp_path}/o")
+    assert "Did you mean 'nominal'" in text
 
 
 def test_compare_writes_the_contract(campaign, tmp_path):

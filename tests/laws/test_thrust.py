@@ -55,6 +55,16 @@ def test_the_force_curve_is_odd_and_the_published_one():
     np.testing.assert_allclose(curve(c), by_hand, atol=1e-9)
 
 
+def test_commands_can_be_interpolated_between_lines():
+    """A ramp of commands: the mean over a short step is the curve at the step's middle."""
+    ramp = Commands(np.array([0.0, 2.0]), np.array([[0.0] * 8, [0.5] * 8]), "thruster")
+    path = model().thrust_path
+    middle = 0.5 * (EDGES[1:] + EDGES[:-1])
+    expected = path.thrusters.static_force(np.repeat(0.25 * middle[:, None], 8, axis=1))
+    np.testing.assert_allclose(path.over_steps(ramp, EDGES, "linear").force, expected, atol=1e-9)
+    assert np.all(path.over_steps(ramp, EDGES, "held").force == 0)
+
+
 def test_a_delay_shifts_and_a_fast_clock_compresses():
     late = force(InputDelay(delay=0.1))
     np.testing.assert_allclose(late[10:], force()[:-10], atol=1e-9)
