@@ -4,7 +4,7 @@ Teacher-forced: the model is evaluated at the measured state, a_res = a_real - a
 """
 
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -183,8 +183,3 @@ def train_residual(
     X = np.concatenate([s.features(learner.features) for s in found])
     Y = np.concatenate([s.a_res for s in found])
     return train(X, Y, learner, seed, progress)
-
-
-def described(trained: Trained, control: str, runs: Sequence[Motion]) -> dict[str, Any]:
-    """What a model file says of a residual's training."""
-    return {"control": control, "train_runs": [m.run.id for m in runs], **trained.info}

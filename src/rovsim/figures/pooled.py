@@ -49,11 +49,6 @@ def values(entry: Mapping[str, Any], horizon: str) -> Mapping[str, Any]:
     return (entry.get("windows") or {}).get(horizon) or {}
 
 
-def scalar(entry: Mapping[str, Any], horizon: str, quantity: str) -> float:
-    """Return a metric of one run that is a single number, NaN where it is missing."""
-    return number(values(entry, horizon).get(quantity))
-
-
 def gaps(errors: Mapping[str, Array]) -> str:
     """Say which models lack a value on some axis."""
     lacking = [name for name, row in errors.items() if not np.isfinite(row).all()]

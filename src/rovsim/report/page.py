@@ -12,6 +12,7 @@ from rovsim.figures import SECTIONS, kind
 from rovsim.figures.inference_time import RATES
 from rovsim.figures.marks import AXES, number, significant
 from rovsim.files import write_text
+from rovsim.provenance import flattened
 from rovsim.report.sentences import summary
 from rovsim.tables import Table, errors_table, ladder_table
 
@@ -101,7 +102,7 @@ def render(inputs: ReportInputs) -> str:
         quality=inputs.quality,
         axes=AXES,
         pictures=_by_section(inputs.pictures),
-        provenance=flattened(inputs.provenance),
+        provenance=rows_of(inputs.provenance),
     )
 
 
@@ -110,18 +111,16 @@ def write(path: Path, inputs: ReportInputs) -> None:
     write_text(path, render(inputs))
 
 
-def flattened(content: Mapping[str, Any], above: str = "") -> list[tuple[str, str]]:
-    """Return nested values as rows of a dotted name and a text."""
-    rows: list[tuple[str, str]] = []
-    for key, value in content.items():
-        name = f"{above}{key}"
-        if isinstance(value, Mapping) and value:
-            rows += flattened(value, f"{name}.")
-        elif isinstance(value, (list, tuple)):
-            rows.append((name, ", ".join(str(v) for v in value) or "none"))
-        else:
-            rows.append((name, "none" if value is None or value == {} else str(value)))
-    return rows
+def rows_of(content: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Nested values as rows of a dotted name and a text."""
+    leaves = {k: v for k, v in flattened(content).items() if not isinstance(v, Mapping) or not v}
+    return [(name, _text(value)) for name, value in leaves.items()]
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return ", ".join(str(v) for v in value) or "none"
+    return "none" if value is None or value == {} else str(value)
 
 
 def _errors(comparison: Mapping[str, Any]) -> list[Table]:
