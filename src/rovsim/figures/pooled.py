@@ -6,7 +6,7 @@ from typing import Any, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.figures.marks import AXES, listed, number, vector
+from rovsim.figures.marks import AXES, listed, vector
 
 
 def pooled(
