@@ -21,6 +21,7 @@ from platformdirs import user_cache_path
 from rovsim.files import write_text
 
 TEMPLATE = Path(__file__).with_name("equation.py")
+APPENDED = (Path(__file__).with_name("observer.py"),)  # what follows their marker
 
 
 def cache_folder() -> Path:
@@ -38,7 +39,8 @@ def _engine(wrenches: tuple[Any, ...]) -> ModuleType:
     text = TEMPLATE.read_text(encoding="utf-8")
     before, rest = text.split("# <extra>")
     after = rest.split("# </extra>")[1]
-    source = before + _chain(wrenches) + after
+    more = (path.read_text(encoding="utf-8").split("# <template>")[1] for path in APPENDED)
+    source = before + _chain(wrenches) + after + "".join(more)
     name = f"rovsim_engine_{_digest(source, wrenches)}"
     path = cache_folder() / f"{name}.py"
     with FileLock(_made(path.parent) / f"{name}.lock"):

@@ -1,0 +1,64 @@
+"""Innovations, and how they change with parameters: what all decisions are made of."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.hypothesis import Hypothesis
+from rovsim.diagnosis.noise import Noise, Tuning, damping_rates, tuning, whitened
+from rovsim.diagnosis.observe import observe
+from rovsim.diagnosis.watch import Watch
+from rovsim.model import Model
+from rovsim.thrust import Between
+
+STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
+
+
+@dataclass(frozen=True, eq=False)
+class Observatory:
+    """The runs, and the filters they are observed with."""
+
+    watches: tuple[Watch, ...]
+    damping: Array
+    tunings: tuple[Tuning, ...]
+    between: Between
+
+    @staticmethod
+    def built(
+        watches: Sequence[Watch], base: Model, noise: Noise, between: Between
+    ) -> "Observatory":
+        """An observatory whose filters suit this noise."""
+        damping = damping_rates(base, watches)
+        found = tuple(tuning(noise, damping, w) for w in watches)
+        return Observatory(tuple(watches), damping, found, between)
+
+    def innovations(self, models: Sequence[Model]) -> list[Array]:
+        """Innovations (m, 6, n) of each run."""
+        return [
+            observe(models, w, t, self.between)
+            for w, t in zip(self.watches, self.tunings, strict=True)
+        ]
+
+    def white(self, e: Sequence[Array], noise: Noise) -> Array:
+        """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
+        wanted = [tuning(noise, self.damping, w) for w in self.watches]
+        return whitened(e, self.watches, self.tunings, wanted)
+
+    def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
+        """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
+        x = at.x
+        steps = [_inward(at, x, i) for i in range(len(x))]
+        moved = [at.at(x + step).model for step in steps]
+        sizes = np.array([step.sum() for step in steps])[:, None, None]
+        found = self.innovations([at.model, *moved])
+        return [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found]
+
+
+def _inward(at: Hypothesis, x: Array, i: int) -> Array:
+    """A step of one parameter that stays inside its range."""
+    step = np.zeros(len(x))
+    step[i] = STEP
+    parameter = [p for term in at.terms for p in term.parameters][i]
+    return -step if (x[i] + STEP) * parameter.scale > parameter.high else step

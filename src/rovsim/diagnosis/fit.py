@@ -1,0 +1,89 @@
+"""Gauss-Newton on the innovations: the most likely parameters of a hypothesis, and their spread."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.evidence import Observatory
+from rovsim.diagnosis.gram import inner_products, solved
+from rovsim.diagnosis.hypothesis import Hypothesis
+from rovsim.diagnosis.noise import Noise, fit_noise
+
+MOST_ITERATIONS = 12
+CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
+FIRST_TRUST, LARGEST_TRUST = 1e-4, 1e4  # damping of the steps (Levenberg-Marquardt)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fitted hypothesis.
+
+    `e` (6, n) and `J` (k, 6, n) of each run, not whitened; `noise` fitted to it; `likelihood` twice
+    the log likelihood under that noise; `covariance` (k, k) of the scaled parameters.
+    """
+
+    hypothesis: Hypothesis
+    e: list[Array]
+    J: list[Array]
+    noise: Noise
+    likelihood: float
+    covariance: Array
+
+    @property
+    def std(self) -> Array:
+        """Standard deviations (k,) of the scaled parameters."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+
+def fit(start: Hypothesis, observatory: Observatory, noise: Noise) -> Fit:
+    """Fit the free parameters under a given noise, then the noise to what is left."""
+    here, e, J, H = _descend(start, observatory, noise)
+    own, likelihood = fit_noise(
+        e, observatory.watches, observatory.tunings, observatory.damping, noise
+    )
+    rows = _rows(observatory.white(J, own))
+    return Fit(here, e, J, own, likelihood, solved(inner_products(rows), np.eye(len(rows))))
+
+
+def _rows(white: Array) -> Array:
+    return white.reshape(len(white), int(np.prod(white.shape[1:])))
+
+
+def _cost(observatory: Observatory, e: list[Array], noise: Noise) -> float:
+    white = observatory.white(e, noise)
+    return float(np.sum(white**2))
+
+
+def _descend(here: Hypothesis, observatory: Observatory, noise: Noise):
+    trust = FIRST_TRUST
+    for _ in range(MOST_ITERATIONS):
+        e, J = observatory.linearised(here)
+        rows = _rows(observatory.white(J, noise))
+        target = observatory.white(e, noise).ravel()
+        H, g, cost = inner_products(rows), rows @ target, float(target @ target)
+        if not len(rows):
+            return here, e, J, H
+        step, better, trust = _step(here, observatory, noise, H, g, cost, trust)
+        if better is None:
+            return here, e, J, H
+        here = better
+        if float(step @ H @ step) < CONVERGED**2 * len(step):
+            break
+    e, J = observatory.linearised(here)
+    return here, e, J, H
+
+
+def _step(here, observatory, noise, H, g, cost, trust):
+    """A step that lowers the cost, or None when none does."""
+    x = here.x
+    while trust < LARGEST_TRUST:
+        wanted = here.at(x - solved(H + trust * np.diag(np.diag(H)), g))
+        step = wanted.x - x
+        e = [one[0] for one in observatory.innovations([wanted.model])]
+        if np.isfinite(e[0]).all() and _cost(observatory, e, noise) < cost:
+            return step, wanted, max(trust / 10.0, 1e-8)
+        if float(step @ H @ step) < CONVERGED**2:
+            return step, None, trust
+        trust *= 10.0
+    return np.zeros_like(x), None, trust

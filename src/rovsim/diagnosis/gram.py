@@ -1,0 +1,79 @@
+"""Least squares on inner products alone: any subset of columns, at the cost of a small solve."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
+
+
+def inner_products(rows: Array) -> Array:
+    """Inner products (q, q) of rows (q, n)."""
+    return rows @ rows.T
+
+
+def solved(H: Array, b: Array) -> Array:
+    """H^-1 b for a symmetric, perhaps singular H."""
+    if not len(H):
+        return np.zeros_like(b)
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    scaled = H / np.outer(scale, scale) + RIDGE * np.eye(len(H))
+    x = np.linalg.solve(scaled, (b.T / scale).T)
+    return (x.T / scale).T
+
+
+def without(M: Array, columns: Sequence[int]) -> Array:
+    """Inner products after projecting some columns out of all others."""
+    C = list(columns)
+    return M - M[:, C] @ solved(M[np.ix_(C, C)], M[C])
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What some columns explain: decrease of the sum of squares, and their coefficients."""
+
+    decrease: float
+    chosen: tuple[int, ...]
+    x: Array
+
+
+def joint(H: Array, b: Array, offset: float = 0.0) -> Gain:
+    """All columns together; `b` (k,) their products with the target, `offset` what the target cost."""
+    x = -solved(H, b)
+    return Gain(float(-b @ x) - offset, tuple(range(len(b))), x)
+
+
+def greedy(H: Array, b: Array, price: float) -> Gain:
+    """The columns that are worth their price each, added one by one, then pruned."""
+    chosen: list[int] = []
+    while len(chosen) < len(b):
+        left = [j for j in range(len(b)) if j not in chosen]
+        worth = _worth(H, b, chosen)
+        best = max(left, key=lambda j: worth[j])
+        if worth[best] < price and chosen:
+            break
+        chosen.append(best)
+        if worth[best] < price:
+            break
+    while len(chosen) > 1:
+        x = solved(H[np.ix_(chosen, chosen)], b[chosen])
+        variance = np.diag(solved(H[np.ix_(chosen, chosen)], np.eye(len(chosen))))
+        weakest = int(np.argmin(x**2 / variance))
+        if x[weakest] ** 2 / variance[weakest] >= price:
+            break
+        chosen.pop(weakest)
+    x = -solved(H[np.ix_(chosen, chosen)], b[chosen])
+    return Gain(float(-b[chosen] @ x), tuple(chosen), x)
+
+
+def _worth(H: Array, b: Array, chosen: list[int]) -> Array:
+    """Decrease (k,) of the sum of squares by each further column."""
+    if not chosen:
+        return b**2 / np.maximum(np.diag(H), 1e-300)
+    solution = solved(H[np.ix_(chosen, chosen)], np.column_stack([H[chosen], b[chosen]]))
+    rest = np.diag(H) - np.einsum("ij,ij->j", H[chosen], solution[:, :-1])
+    product = b - H[chosen].T @ solution[:, -1]
+    independent = rest > 1e-6 * np.diag(H)
+    return np.where(independent, product**2 / np.where(independent, rest, 1.0), 0.0)

@@ -1,0 +1,82 @@
+"""A hypothesis: a base model and further effects, some of whose parameters are to be fitted."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.effects.base import Effect, Parameter
+from rovsim.model import Model
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """An effect with its values, of which the parameters in `free` may change."""
+
+    effect: Effect
+    free: tuple[str, ...]
+
+    @property
+    def id(self) -> str:
+        """The effect's id."""
+        return self.effect.id
+
+    @property
+    def parameters(self) -> list[Parameter]:
+        """The free parameters."""
+        by_name = {p.name: p for p in self.effect.parameters}
+        return [by_name[name] for name in self.free]
+
+    @property
+    def x(self) -> Array:
+        """Values of the free parameters, in units of their scale."""
+        return np.array([self.effect[p.name] / p.scale for p in self.parameters])
+
+    def at(self, x: Array) -> "Term":
+        """The same term at other scaled values, kept inside their range."""
+        values = {
+            p.name: float(np.clip(v * p.scale, p.low, p.high))
+            for p, v in zip(self.parameters, x, strict=True)
+        }
+        return replace(self, effect=self.effect.with_values(values))
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """A base model and terms that are added to it."""
+
+    base: Model
+    terms: tuple[Term, ...] = ()
+
+    @cached_property
+    def model(self) -> Model:
+        """The base with all terms."""
+        model = self.base
+        for term in self.terms:
+            model = model + term.effect
+        return model
+
+    @property
+    def x(self) -> Array:
+        """All free parameters, scaled."""
+        return np.concatenate([np.empty(0), *(term.x for term in self.terms)])
+
+    @property
+    def names(self) -> list[tuple[str, str]]:
+        """Effect and parameter of each entry of x."""
+        return [(term.id, name) for term in self.terms for name in term.free]
+
+    def at(self, x: Array) -> "Hypothesis":
+        """The same hypothesis at other scaled values."""
+        stops = np.cumsum([len(term.free) for term in self.terms])
+        parts = np.split(x, stops[:-1]) if self.terms else []
+        return replace(self, terms=tuple(t.at(p) for t, p in zip(self.terms, parts, strict=True)))
+
+    def with_term(self, term: Term) -> "Hypothesis":
+        """The hypothesis and one more term."""
+        return replace(self, terms=(*self.terms, term))
+
+    def without(self, index: int) -> "Hypothesis":
+        """The hypothesis without one of its terms."""
+        return replace(self, terms=(*self.terms[:index], *self.terms[index + 1 :]))

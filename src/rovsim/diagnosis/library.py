@@ -1,0 +1,63 @@
+"""What each candidate would change in the innovations, to first order, from each of its starts.
+
+The observer keeps every model close to the measurement, so these columns hardly depend on which
+other effects the model has: they are made once.
+"""
+
+from dataclasses import dataclass
+from typing import Callable, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.candidates import Candidate
+from rovsim.diagnosis.evidence import Observatory
+from rovsim.diagnosis.hypothesis import Hypothesis
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """`base` innovations (6, n) of each run, and `columns` (c, 6, n) of each run.
+
+    Candidate i has the columns `secant[i]` (None where it starts from its absence), the change from
+    absence to its start, and `derivatives[i]`, one for each of its free parameters.
+    """
+
+    candidates: tuple[Candidate, ...]
+    base: list[Array]
+    columns: list[Array]
+    secant: tuple[int | None, ...]
+    derivatives: tuple[tuple[int, ...], ...]
+
+    @property
+    def count(self) -> int:
+        """Number of columns."""
+        return len(self.columns[0])
+
+
+def library(
+    observatory: Observatory,
+    base: Hypothesis,
+    candidates: Sequence[Candidate],
+    progress: Progress = lambda done, total: None,
+) -> Library:
+    """Columns of all candidates around a hypothesis."""
+    e0 = [e[0] for e in observatory.innovations([base.model])]
+    parts: list[list[Array]] = [[] for _ in e0]
+    secant: list[int | None] = []
+    derivatives: list[tuple[int, ...]] = []
+    count = 0
+    for done, candidate in enumerate(candidates):
+        e, J = observatory.linearised(Hypothesis(base.model, (candidate.term(),)))
+        secant.append(None if candidate.absent else count)
+        count += not candidate.absent
+        derivatives.append(tuple(range(count, count + len(candidate.free))))
+        count += len(candidate.free)
+        for part, start, first, own in zip(parts, e0, e, J, strict=True):
+            rows = own if candidate.absent else np.concatenate([(first - start)[None], own])
+            part.append(rows.astype(np.float32))  # six digits are enough for columns
+        progress(done + 1, len(candidates))
+    columns = [np.concatenate(part) for part in parts]
+    return Library(tuple(candidates), e0, columns, tuple(secant), tuple(derivatives))

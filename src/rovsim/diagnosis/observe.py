@@ -1,0 +1,87 @@
+"""Innovations of many models on one run, in one compiled call."""
+
+from collections import Counter
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.body import packed
+from rovsim.diagnosis.noise import Tuning
+from rovsim.diagnosis.watch import Watch
+from rovsim.effects import catalogue
+from rovsim.effects.base import Wrench
+from rovsim.engine.at import Inputs, Jobs
+from rovsim.engine.compiled import engine
+from rovsim.model import Model
+from rovsim.replay import place
+from rovsim.thrust import Between
+
+
+def observe(
+    models: Sequence[Model], watch: Watch, tuning: Tuning, between: Between = "held"
+) -> Array:
+    """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle."""
+    slots = _slots(models)
+    inputs = _inputs(models, watch, between)
+    out = np.empty((len(models) * len(watch.time), 6))
+    engine(slots).observe(
+        _jobs(len(models), watch), watch.h, watch.ends, packed([m.body for m in models]), inputs,
+        np.stack([_wrench_parameters(m, slots) for m in models]), place(watch.motion),
+        watch.readings[None], np.zeros(len(models), np.int64), tuning.gains,
+        tuning.decay(watch.h), watch.motion.binned, out,
+    )  # fmt: skip
+    return np.ascontiguousarray(out.reshape(len(models), -1, 6).swapaxes(1, 2))
+
+
+def _slots(models: Sequence[Model]) -> list[type[Wrench]]:
+    """Wrench effects of the one engine that serves all candidates, some perhaps twice."""
+    known = [c for c in catalogue().values() if issubclass(c, Wrench)]
+    most: Counter[type[Wrench]] = Counter(known)
+    for model in models:
+        most |= Counter(type(w) for w in model.wrenches)
+    return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]
+
+
+def _wrench_parameters(model: Model, slots: Sequence[type[Wrench]]) -> Array:
+    """Parameters of every slot; those the model does not use have their defaults."""
+    own = list(model.wrenches)
+    parts = [np.zeros(0)]
+    for cls in slots:
+        used = next((w for w in own if type(w) is cls), None)
+        if used is not None:
+            own.remove(used)
+        parts.append(np.array([p.default for p in cls.parameters]) if used is None else used.values)
+    return np.concatenate(parts)
+
+
+def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
+    """Thrust of all models; those with the same thrust path share a row."""
+    rows: dict[tuple, int] = {}
+    wrench, force, demand, row = [], [], np.empty((0, 6)), []
+    for model in models:
+        path = model.thrust_path
+        acting = (*path.clocks, *path.shapings, *path.strengths, *path.responses)
+        key = (model.body.B.tobytes(), *((e.id, e.values.tobytes()) for e in acting))
+        if key not in rows:
+            rows[key] = len(rows)
+            thrust = path.over_steps(watch.motion.commands, watch.edges, between)
+            wrench.append(thrust.wrench + thrust.force @ model.body.B.T)
+            force.append(thrust.force)
+            demand = thrust.demand
+        row.append(rows[key])
+    duration = np.full(len(watch.edges) - 1, watch.edges[-1] - watch.edges[0])
+    return Inputs(np.stack(wrench), np.stack(force), demand, np.array(row, np.int64), duration)
+
+
+def _jobs(count: int, watch: Watch) -> Jobs:
+    """One job for each model and span."""
+    first = np.array([a for a, _ in watch.spans], np.int64)
+    steps = np.array([b - a for a, b in watch.spans], np.int64)
+    begin = np.array([a for a, _ in watch.rows], np.int64)
+    offset = np.repeat(np.arange(count) * len(watch.time), len(first))
+    return Jobs(
+        np.tile(watch.starts, (count, 1)), np.tile(watch.ends[first] * watch.h, count),
+        np.tile(first, count), np.tile(steps, count), np.repeat(np.arange(count), len(first)),
+        np.tile(begin, count) + offset,
+    )  # fmt: skip

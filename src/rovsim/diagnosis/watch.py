@@ -1,0 +1,117 @@
+"""A run as the observer sees it: readings of the motion capture before any filter."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.replay import clock
+from rovsim.signals.chain import Stage
+from rovsim.signals.motion import Motion, Poses
+
+# The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
+SETTLING = 1.0  # s
+SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
+BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are independent
+
+
+@dataclass(frozen=True, eq=False)
+class Watch:
+    """One run, ready to be observed.
+
+    `readings` (k, 13): pose NED, and mean velocity since the reading before where velocities were
+    measured; `ends` (k,) integration steps at which they hold; `edges` (s+1,) those steps, s;
+    `spans` pairs (first, last) of readings: the observer starts at `first`, whose state is
+    `starts` (., 13), and reads up to `last`.
+    """
+
+    motion: Motion
+    readings: Array
+    ends: Array
+    edges: Array
+    spans: tuple[tuple[int, int], ...]
+    starts: Array
+
+    @property
+    def h(self) -> float:
+        """Integration step, s."""
+        return float(self.edges[1] - self.edges[0])
+
+    @property
+    def period(self) -> float:
+        """Mean time between two readings, s."""
+        return float((self.ends[-1] - self.ends[0]) * self.h / (len(self.ends) - 1))
+
+    @cached_property
+    def rows(self) -> list[tuple[int, int]]:
+        """Rows [first, last) of the innovations that belong to each span."""
+        stops = np.cumsum([b - a for a, b in self.spans])
+        return [(int(s - (b - a)), int(s)) for s, (a, b) in zip(stops, self.spans, strict=True)]
+
+    @cached_property
+    def time(self) -> Array:
+        """Instant of each innovation, s since the start of the run."""
+        parts = [self.ends[a + 1 : b + 1] * self.h for a, b in self.spans]
+        return np.concatenate([np.empty(0), *parts])
+
+    @cached_property
+    def index(self) -> Array:
+        """Sample or bin of the motion that each innovation belongs to."""
+        parts = [np.arange(a + 1, b + 1) for a, b in self.spans]
+        return np.concatenate([np.arange(0), *parts]) - (1 if self.motion.binned else 0)
+
+    @cached_property
+    def settled(self) -> Array:
+        """Which innovations count: those after the observer has forgotten its start."""
+        kept = np.zeros(len(self.time), bool)
+        for (first, last), (a, _) in zip(self.rows, self.spans, strict=True):
+            kept[first:last] = self.time[first:last] > self.ends[a] * self.h + SETTLING
+        return kept
+
+
+def watch(stage: Stage, motion: Motion, step: float) -> Watch:
+    """A run as the observer sees it; without usable stretches it has no spans.
+
+    Args:
+        stage: its poses on a uniform clock, before the filter; binned recordings as they are.
+        motion: the same run, filtered and differentiated.
+        step: longest integration step, s.
+    """
+    steps = clock(motion, step)
+    if motion.binned:
+        return _bins(motion, steps.edges)
+    assert isinstance(stage, Poses)
+    readings = np.hstack([stage.eta, np.zeros((len(stage.eta), 6))])
+    period = float(motion.time[1] - motion.time[0])
+    spans = [(a, b - 1) for a, b in motion.segments() if (b - a) * period > SHORTEST]
+    ends = np.arange(len(motion.time)) * steps.stride
+    return Watch(
+        motion, readings, ends, steps.edges, tuple(spans),
+        np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13),
+    )  # fmt: skip
+
+
+def _bins(motion: Motion, edges: Array) -> Watch:
+    """Readings at the ends of bins: the pose there, and the mean velocity of the bin."""
+    h = edges[1] - edges[0]
+    ends = np.round((motion.time - motion.time[0]) / h).astype(int)
+    means = np.vstack([np.zeros(6), motion.nu[:-1]])
+    readings = np.hstack([motion.eta, means])
+    spans = [
+        (a, b - 1) for a, b in motion.segments() if motion.time[b - 1] - motion.time[a] > SHORTEST
+    ]
+    starts = np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13)
+    return Watch(motion, readings, ends, edges, tuple(spans), starts)
+
+
+def blocks(watches: Sequence[Watch]) -> Array:
+    """Number of the block of some 10 s that each settled innovation lies in, over all runs."""
+    parts, count = [np.arange(0)], 0
+    for one in watches:
+        number = (one.time[one.settled] / BLOCK).astype(int)
+        kept, own = np.unique(number, return_inverse=True)
+        parts.append(own + count)
+        count += len(kept)
+    return np.concatenate(parts)
