@@ -18,7 +18,8 @@ def solved(H: Array, b: Array) -> Array:
     """H^-1 b for a symmetric, perhaps singular H."""
     if not len(H):
         return np.zeros_like(b)
-    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    scale = np.sqrt(np.diag(H))
+    scale = np.where(scale > 0.0, scale, 1.0)
     scaled = H / np.outer(scale, scale) + RIDGE * np.eye(len(H))
     x = np.linalg.solve(scaled, (b.T / scale).T)
     return (x.T / scale).T
