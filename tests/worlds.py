@@ -31,17 +31,23 @@ def model(*effects: Effect) -> Model:
 
 
 def motion(
-    value: np.ndarray, kind: str = "thruster", seconds: float = 2.0, start: np.ndarray | None = None
-) -> Motion:
+    value: np.ndarray, kind: str = "thruster", seconds: float = 2.0,
+    start: np.ndarray | None = None, site: Site | None = None,
+) -> Motion:  # fmt: skip
     """A run whose commands (m, c) are spread evenly over its length; measured as standing still."""
     time = np.round(np.arange(0.0, seconds + 1e-9, 0.01), 6)
     state = at_rest() if start is None else start
     rows = np.repeat(state[None], len(time), axis=0)
     commands = Commands(np.linspace(0, seconds, len(value), endpoint=False), value, kind)
     return Motion(
-        RunInfo("r", "6dof", "test"), Site.unknown(), time, rows[:, :7], rows[:, 7:],
+        RunInfo("r", "6dof", "test"), site or Site.unknown(), time, rows[:, :7], rows[:, 7:],
         0 * rows[:, 7:], rows[:, 7:], np.ones(len(time), bool), commands, False, float(time[-1]),
     )  # fmt: skip
+
+
+def tank() -> Site:
+    """A tank of 4 x 3 x 2 m about the origin, seen by a motion capture with z up."""
+    return Site(np.array([[-2.0, 2.0], [-1.5, 1.5], [-1.0, 1.0]]), np.array([1.0, -1.0, -1.0]))
 
 
 def at_rest() -> np.ndarray:

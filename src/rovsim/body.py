@@ -30,7 +30,8 @@ class Body:
     SI, FRD at CO: `M_RB`, `M_A` (6, 6); `linear`, `quadratic` (6,) damping, positive = drag;
     `weight` N and `weight_moment` (3,) sum of weight times place, N m; `buoyancy` N at
     `center_of_buoyancy` (3,) m; `current` (3,) m/s NED; `B` (6, n) wrench per thruster force and
-    `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m.
+    `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m; `coupling`
+    (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column).
     """
 
     gravity: float
@@ -47,6 +48,7 @@ class Body:
     directions: Array = field(default_factory=lambda: np.zeros((0, 3)))
     spin: Array = field(default_factory=lambda: np.zeros(0))
     advance: float = 0.0
+    coupling: Array = field(default_factory=lambda: np.zeros((2, 6, 6)))
 
     def add_mass(self, mass: float, place: Array, inertia: Array) -> None:
         """Add a mass in kg at a place (3,), with its own inertia (3, 3), and its weight."""
@@ -89,6 +91,8 @@ def packed(bodies: Sequence[Body]) -> Constants:
         righting=stack(lambda b: b.weight_moment - b.buoyancy * b.center_of_buoyancy),
         current=stack(lambda b: b.current),
         advance=stack(lambda b: b.advance),
+        coupled=stack(lambda b: np.any(b.coupling)),
+        coupling=stack(lambda b: b.coupling),
         B=stack(lambda b: b.B),
         directions=np.ascontiguousarray(bodies[0].directions, dtype=float),
     )

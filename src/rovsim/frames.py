@@ -5,7 +5,7 @@ scalar first (w, x, y, z), and rotate body vectors into the world: x_world = R(q
 Every function takes arrays with any leading axes.
 """
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -143,3 +143,25 @@ def body_rates(q: Array, q_dot: Array) -> Array:
 def body_rate_derivative(q: Array, q_ddot: Array) -> Array:
     """Derivative (..., 3) of `body_rates`: the product q_dot* q_dot is real, so 2 q* q_ddot."""
     return 2.0 * multiply(conjugate(q), q_ddot)[..., 1:]
+
+
+class Rigid(NamedTuple):
+    """A rigid transform x -> R(rotation) x + translation; quaternion (4,) and vector (3,)."""
+
+    rotation: Array
+    translation: Array
+
+    def after(self, first: "Rigid") -> "Rigid":
+        """The transform that applies `first`, then this one."""
+        shifted = rotate(self.rotation, first.translation) + self.translation
+        return Rigid(multiply(self.rotation, first.rotation), shifted)
+
+    @property
+    def inverse(self) -> "Rigid":
+        """The transform that undoes this one."""
+        return Rigid(conjugate(self.rotation), -unrotate(self.rotation, self.translation))
+
+    @staticmethod
+    def by(turn: Array | float = 0.0, shift: Array | float = 0.0) -> "Rigid":
+        """A turn by a rotation vector (3,) in rad, then a shift (3,) in m."""
+        return Rigid(exp(np.zeros(3) + turn), np.zeros(3) + shift)

@@ -12,15 +12,17 @@ from pydantic import BeforeValidator, Field
 
 from rovsim.body import Body, packed
 from rovsim.effects import effect
-from rovsim.effects.base import Coefficients, Effect, Wrench
+from rovsim.effects.base import Coefficients, Effect, Sensing, Wrench
 from rovsim.engine.at import Constants
 from rovsim.engine.compiled import engine
 from rovsim.errors import BadInput, nearest
 from rovsim.files import plain, read_yaml, write_yaml
+from rovsim.recording.recording import CommandKind, Site
 from rovsim.residual.storage import Residual, read_residual
 from rovsim.strict import Number, Section, checked
 from rovsim.thrust import ThrustPath
 from rovsim.vehicle import VEHICLES, Thrusters, Vehicle, check_layout, load_vehicle
+from rovsim.view import View
 
 SCHEMA = "rovsim.model/1"
 
@@ -133,6 +135,21 @@ class Model:
     def wrenches(self) -> list[Wrench]:
         """Effects evaluated at every instant."""
         return [e for e in self.effects if isinstance(e, Wrench)]
+
+    @cached_property
+    def view(self) -> View:
+        """What the motion capture makes of the true motion."""
+        sensing = sorted((e for e in self.effects if isinstance(e, Sensing)), key=lambda e: e.rank)
+        return View.through(e.transforms() for e in sensing)
+
+    def check(self, site: Site, kind: CommandKind) -> None:
+        """Refuse a run that lacks what an effect needs.
+
+        Raises:
+            BadInput: says what is missing.
+        """
+        for one in self.effects:
+            one.check(site, kind)
 
     @cached_property
     def engine(self) -> ModuleType:

@@ -4,7 +4,7 @@ Open loop starts once and is never corrected; windows of h seconds start anew ev
 back is aligned with the measurement and went through the same filter.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Iterator, Sequence
 
@@ -100,7 +100,12 @@ def clock(motion: Motion, step: float) -> Clock:
 
 
 def inputs(model: Model, motion: Motion, edges: Array, between: Between) -> Inputs:
-    """Thrust of one model over each step, as the engine takes it."""
+    """Thrust of one model over each step, as the engine takes it.
+
+    Raises:
+        BadInput: the run lacks what an effect of the model needs.
+    """
+    model.check(motion.site, motion.commands.kind)
     thrust = model.thrust_path.over_steps(motion.commands, edges, between)
     return packed_inputs(model, thrust, float(edges[-1] - edges[0]))
 
@@ -126,7 +131,7 @@ def trajectories(
     starts: Sequence[tuple[float, int, Array]],
     settings: ReplaySettings,
 ) -> list[Array]:
-    """Simulate from several states of one run.
+    """Simulate from several true states of one run.
 
     Args:
         model: the model to drive.
@@ -166,15 +171,28 @@ def residual_data(model: Model) -> Array:
 def replay(
     model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
 ) -> Replay:
-    """Replay one run open loop and in windows; an unusable run predicts nothing."""
+    """Replay one run open loop and in windows; an unusable run predicts nothing.
+
+    What comes back is what the motion capture would report of the model's motion.
+    """
+    true = as_true(model, motion)
     spans = {OPEN_LOOP: _whole(motion)}
     for seconds in settings.horizons:
         spans[f"{seconds:g}"] = list(windows(motion, seconds))
     predict = _predict_bins if motion.binned else _predict_samples
     horizons = {
-        name: predict(model, motion, found, signals, settings) for name, found in spans.items()
+        name: predict(model, true, found, signals, settings) for name, found in spans.items()
     }
     return Replay(model.name, motion.run, motion.time, horizons)
+
+
+def as_true(model: Model, motion: Motion) -> Motion:
+    """The motion behind the reported one, if the motion capture sees as the model says."""
+    back = model.view.inverse
+    return motion if back.identity else replace(
+        motion, eta=back.poses(motion.eta), nu=back.twists(motion.nu),
+        nu_dot=back.twists(motion.nu_dot), state_nu=back.twists(motion.state_nu),
+    )  # fmt: skip
 
 
 def _whole(motion: Motion) -> list[tuple[int, int]]:
@@ -223,7 +241,7 @@ def _predict_samples(model, motion, spans, signals, settings) -> Prediction:
         return found
     stride, period = clock(motion, settings.step).stride, float(motion.time[1] - motion.time[0])
     starts = [(a * stride, b - a, motion.state[a]) for a, b in spans]
-    paths = np.stack(trajectories(model, motion, starts, settings))
+    paths = model.view.states(np.stack(trajectories(model, motion, starts, settings)))
     nu, nu_dot = velocities(paths[..., :7], period, signals)
     for i, (a, b) in enumerate(spans):
         at = slice(a + 1, b + 1)
@@ -247,7 +265,7 @@ def _predict_bins(model, motion, spans, signals, settings) -> Prediction:
     ):
         fine = steps.edges[k : k + count + 1]
         edges = np.clip(starts[a : b + 1], fine[0], fine[-1])
-        means = bin_means(fine, path, edges)
+        means = bin_means(fine, model.view.states(path), edges)
         found.eta[a:b] = np.hstack([means[:, :3], normalized(means[:, 3:7])])
         found.nu[a:b] = means[:, 7:]
         found.nu_dot[a:b] = backward_difference(means[:, 7:], motion.time[a:b])

@@ -14,6 +14,7 @@ from rovsim.errors import BadInput
 from rovsim.model import Model
 from rovsim.replay import (
     ReplaySettings,
+    as_true,
     clock,
     inputs,
     place,
@@ -51,13 +52,18 @@ class Samples:
 def samples(
     model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
 ) -> Samples:
-    """Samples of one run at its usable instants."""
+    """Samples of one run at its usable instants.
+
+    All in true axes at CO: where the model says that the motion capture sees another point or other
+    axes, the measurement is turned back first, so that tau_res = M a_res in a free replay.
+    """
+    motion = as_true(model, motion)
     found = _of_bins if motion.binned else _of_samples
     return found(model, motion, signals, settings)
 
 
 def accelerations(model: Model, motion: Motion, at: Inputs) -> Array:
-    """Acceleration (n, 6) of the model at the measured states, under the thrust of step n."""
+    """Acceleration (n, 6) of the model at the motion's states, under the thrust of step n."""
     out = np.empty((len(motion.time), 6))
     model.engine.accelerations(
         motion.time - motion.time[0], motion.state, model.constants, at,

@@ -7,8 +7,9 @@ from rovsim.effects import catalogue, effect
 from rovsim.effects.base import Coefficients, Wrench
 from rovsim.errors import BadInput
 from rovsim.model import read_model
+from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings, trajectories
-from worlds import at_rest, model, motion, sticks
+from worlds import at_rest, model, motion, sticks, tank
 
 # contract, section 2
 PUBLIC = {
@@ -25,13 +26,15 @@ EVERY = pytest.mark.parametrize("cls", catalogue().values(), ids=list(catalogue(
 def driven(world):
     start = at_rest()
     start[7:] = [0.3, -0.2, 0.1, 0.2, -0.1, 0.3]
-    run = motion(sticks(1), seconds=1.0, start=start)
-    return trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
+    run = motion(sticks(1), seconds=1.0, start=start, site=tank())
+    path = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
+    return world.view.states(path)
 
 
 def some(cls):
     """Values that differ from the defaults, inside every range."""
-    return cls(**{p.name: p.default + 0.1 for p in cls.parameters})
+    known = [p for p in cls.parameters if np.isfinite(p.default)]
+    return cls(**{p.name: p.default + 0.1 for p in known})
 
 
 @EVERY
@@ -39,7 +42,19 @@ def test_it_says_what_it_is(cls):
     assert cls.id in PUBLIC
     assert all([cls.__doc__, cls.equation, cls.neglects, cls.source, cls.parameters])
     assert all(p.unit and p.symbol for p in cls.parameters)
-    assert all(p.low <= p.default <= p.high for p in cls.parameters)
+    assert all(p.low <= p.default <= p.high or np.isnan(p.default) for p in cls.parameters)
+    assert all(0 < p.scale <= p.high - p.low for p in cls.parameters)
+
+
+@EVERY
+def test_a_fit_can_begin(cls):
+    """Every start is valid, and some parameter is fitted without being asked for."""
+    assert any(p.fitted for p in cls.parameters)
+    for site in (tank(), Site.unknown()):
+        starts = cls.starts_at(site)
+        assert len(starts) == len({tuple(sorted(start.items())) for start in starts}) > 0
+        for start in starts:
+            assert cls(**start).given() == {k: v for k, v in start.items() if v}
 
 
 @EVERY
@@ -96,12 +111,12 @@ def test_it_pushes_the_right_way(name, parameter):
 
 def test_lift_and_tether_by_hand():
     from rovsim.effects.lift import Lift
-    from rovsim.effects.tether_tension import TetherTension
+    from rovsim.effects.tether import TetherTension
     from rovsim.engine.at import At
 
     level = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     nu = (0.5, 0.2, -0.1, 0.0, 0.0, 0.0)
-    at = At(0.0, 1.0, (1.0, -2.0, -1.0), level, nu, nu, nu, nu, ((0, 1),) * 3, (1.0, -1.0, -1.0))
+    at = At(0.0, 1.0, (1.0, -2.0, -1.0), level, *[nu] * 6, ((0, 1),) * 3, (1.0, -1.0, -1.0))
     assert Lift.wrench(at, Lift.named_parameters()(10.0)) == pytest.approx((0, -1, 0.5, 0, 0, 0))
     # anchor at MoCap (3, 2, 1) is NED (3, -2, -1): 2 m north of CO, 2.2 m from the attachment
     values = TetherTension(stiffness=3, slack_length=1.2, anchor_x=3, anchor_y=2, anchor_z=1).values

@@ -1,5 +1,7 @@
 """Laws that hold whatever the numbers are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,14 +9,15 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from rovsim.body import Body, cross_matrix, inertia_at, packed
-from rovsim.effects.added_mass import AddedMass
+from rovsim.effects.added_mass import AddedMass, AddedMassCoupling
 from rovsim.effects.current import Current
+from rovsim.effects.proximity import SurfaceProximity, WallProximity
 from rovsim.engine.equation import coriolis
 from rovsim.engine.vectors import matrix6
 from rovsim.errors import BadInput
 from rovsim.frames import exp, multiply, rotate
 from rovsim.replay import ReplaySettings, trajectories
-from worlds import at_rest, model, motion, sticks
+from worlds import at_rest, model, motion, sticks, tank
 
 speeds = arrays(float, 6, elements=st.floats(-2, 2))
 factors = arrays(float, (6, 6), elements=st.floats(-1, 1))
@@ -38,6 +41,33 @@ def test_coriolis_does_no_work_and_is_fossens(A, nu):
     tau = np.array(coriolis(rows(M), tuple(float(x) for x in nu)))
     assert abs(nu @ tau) < 1e-9
     np.testing.assert_allclose(tau, fossen_coriolis(M, nu) @ nu, atol=1e-9)
+
+
+@given(values=arrays(float, 15, elements=st.floats(-0.1, 0.1)))
+def test_coupled_added_mass_is_symmetric_and_exists(values):
+    names = [p.name for p in AddedMassCoupling.parameters]
+    M = model(AddedMassCoupling(**dict(zip(names, values, strict=True)))).body.M
+    np.testing.assert_array_equal(M, M.T)
+    assert np.linalg.eigvalsh(M).min() > 0
+
+
+@settings(max_examples=15, deadline=None)
+@given(nu=speeds, place=arrays(float, 3, elements=st.floats(-3, 3)))
+def test_boundaries_only_take_energy(nu, place):
+    """Whatever the place, even outside: the damping grows, by no more than the gains allow."""
+    start, still = at_rest(), ReplaySettings(step=1e-4)
+    start[:3], start[7:] = place, 0.2 * nu
+    run = motion(np.zeros((1, 8)), seconds=0.1, start=start, site=tank())
+    run = replace(run, time=run.time * 0.01)  # one step of 0.1 ms
+    near = model(WallProximity(gain=1.0), SurfaceProximity(gain=2.0))
+    rates = [
+        (trajectories(world, run, [(0, 1, start)], still)[0][1, 7:] - start[7:]) / 1e-4
+        for world in (near, model())
+    ]
+    extra = (rates[0] - rates[1]) @ model().body.M @ start[7:]
+    v, body = start[7:], model().body
+    drag = (body.linear + body.quadratic * np.abs(v)) @ (v * v)
+    assert -4.01 * drag - 1e-6 <= extra <= 1e-6
 
 
 def test_matrix6_keeps_rows():

@@ -179,7 +179,7 @@ KERNEL = """
 from rovsim.effects.base import Parameter, Wrench
 class Push(Wrench):
     id, listed, equation, neglects, source = "push", False, "-", "-", "test"
-    parameters = (Parameter("force", "N", "F"),)
+    parameters = (Parameter("force", "N", "F", scale=1.0),)
     @staticmethod
     def wrench(at, p):
         return {factor} * p.force, 0.0, 0.0, 0.0, 0.0, 0.0

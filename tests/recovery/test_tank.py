@@ -51,7 +51,27 @@ def test_the_nominal_model_explains_an_empty_tank(tmp_path, seed):
     assert np.all(window_error(true_model(chosen), motion) < FLOOR)
 
 
-@pytest.mark.parametrize("hidden", [(LAG,), (DRAG,), (TETHER,), (LAG, DRAG)])
+def entry(effect, **parameters):
+    return EffectEntry(effect=effect, parameters=parameters)
+
+
+NEW = [
+    entry("coupled_damping", yaw_from_sway=8.0, pitch_from_surge_quadratic=15.0),
+    entry("added_mass_coupling", surge_pitch=1.0, sway_yaw=1.0),
+    entry("tether_drag", coefficient=30.0),
+    entry("wall_proximity", gain=4.0, length_scale=2.0),
+    entry("surface_proximity", gain=3.0, length_scale=2.0),
+    entry("marker_offset", x=0.2, y=-0.1, z=0.15),
+    entry("marker_misalignment", roll=0.1, pitch=-0.1, yaw=0.3),
+    entry("world_tilt", roll=0.15, pitch=-0.15),
+]
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [(LAG,), (DRAG,), (TETHER,), (LAG, DRAG), *((one,) for one in NEW)],
+    ids=lambda hidden: "+".join(one.effect for one in hidden),
+)
 def test_a_hidden_effect_is_seen_and_the_true_model_explains_it(tmp_path, hidden):
     """Two integrators, one at 1 ms with streamed thrusters: they must agree."""
     chosen, _, _, motion = recorded(tmp_path, seed=5, effects=hidden)

@@ -4,14 +4,20 @@ import numpy as np
 import pytest
 
 from rovsim.effects import catalogue
+from rovsim.effects.added_mass import AddedMassCoupling
+from rovsim.effects.coupled_damping import CoupledDamping
 from rovsim.effects.current import Current
+from rovsim.effects.damping import LinearDamping
 from rovsim.effects.lift import Lift
+from rovsim.effects.proximity import SurfaceProximity, WallProximity
 from rovsim.effects.rigid_body import Payload
-from rovsim.effects.tether_tension import TetherTension
+from rovsim.effects.tether import TetherDrag, TetherTension
 from rovsim.effects.thrusters import AdvanceLoss, PropellerTorque
 from rovsim.engine.at import Inputs, Place
+from rovsim.errors import BadInput
 from rovsim.frames import from_euler, matrix
-from worlds import at_rest, model
+from rovsim.replay import ReplaySettings, trajectories
+from worlds import at_rest, model, motion
 
 # parameters of contract, section 2, where they are not one per axis
 NAMES = {
@@ -31,6 +37,19 @@ NAMES = {
     "propeller_torque": ["ratio"],
 }
 AXES = ["surge", "sway", "heave", "roll", "pitch", "yaw"]
+ANCHOR = [f"{point}_{axis}" for point in ("anchor", "attachment") for axis in "xyz"]
+PAIRS = [(a, b) for a in AXES for b in AXES if a != b]
+NAMES |= {
+    "coupled_damping": [f"{a}_from_{b}{end}" for end in ("", "_quadratic") for a, b in PAIRS],
+    "added_mass_coupling": [f"{a}_{b}" for a, b in PAIRS if AXES.index(a) < AXES.index(b)],
+    "tether_tension": ["stiffness", "slack_length", *ANCHOR],
+    "tether_drag": ["coefficient", *ANCHOR],
+    "wall_proximity": ["gain", "length_scale"],
+    "surface_proximity": ["gain", "length_scale"],
+    "marker_offset": ["x", "y", "z"],
+    "marker_misalignment": ["roll", "pitch", "yaw"],
+    "world_tilt": ["roll", "pitch"],
+}
 NAMES |= dict.fromkeys(
     ["constant_wrench", "linear_damping", "quadratic_damping", "added_mass"], AXES
 )
@@ -42,14 +61,15 @@ def test_parameters_are_the_public_ones(name):
     assert [p.name for p in catalogue()[name].parameters] == NAMES[name]
 
 
-def push(world, state, force=None):
+def push(world, state, force=None, walls=None):
     """Wrench (6,) that a model feels at a state: M nu_dot, with thruster forces (8,) in N."""
+    walls = np.full((3, 2), np.nan) if walls is None else walls
     force = np.zeros(8) if force is None else force
     given = Inputs(
         (world.body.B @ force)[None, None], force[None, None], np.full((1, 6), np.nan),
         np.zeros(1, np.int64), np.ones(1),
     )  # fmt: skip
-    site, out = Place(np.full((3, 2), np.nan), np.array([1.0, -1.0, -1.0])), np.empty((1, 6))
+    site, out = Place(walls, np.array([1.0, -1.0, -1.0])), np.empty((1, 6))
     world.engine.accelerations(
         np.zeros(1), state[None], world.constants, given, world.wrench_parameters()[None],
         np.empty(0), site, out,
@@ -123,3 +143,68 @@ def test_a_current_carries_a_resting_vehicle_along(axis):
     found = push(model(water), state) - push(model(), state)
     along = matrix(state[3:7]) @ found[:3]
     assert along[axis] > 1.0
+
+
+WALLS = np.array([[-3.0, 3.0], [-3.0, 2.0], [-1.6, 2.0]])  # NED: the surface is at -1.6
+
+
+def test_coupled_damping_pushes_one_axis_by_another(tilted):
+    """N = -3 v - 5 |v| v and X = -2 q: nothing else, nothing mirrored."""
+    values = {"yaw_from_sway": 3.0, "yaw_from_sway_quadratic": 5.0, "surge_from_pitch": 2.0}
+    found = push(model(CoupledDamping(**values)), tilted) - push(model(), tilted)
+    v, q = tilted[8], tilted[11]
+    expected = [-2.0 * q, 0, 0, 0, 0, -3.0 * v - 5.0 * abs(v) * v]
+    np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+def test_added_mass_coupling_is_symmetric_and_its_coriolis_follows(tilted):
+    world = model(AddedMassCoupling(surge_pitch=0.4, sway_yaw=-0.3))
+    change = np.zeros((6, 6))
+    change[0, 4] = change[4, 0] = 0.4
+    change[1, 5] = change[5, 1] = -0.3
+    np.testing.assert_array_equal(world.body.M - model().body.M, change)
+    nu = tilted[7:]
+    h = change @ nu  # momentum of the change: tau = -(omega x h1, v x h1 + omega x h2)
+    moment = np.cross(nu[:3], h[:3]) + np.cross(nu[3:], h[3:])
+    expected = -np.concatenate([np.cross(nu[3:], h[:3]), moment])
+    np.testing.assert_allclose(push(world, tilted) - push(model(), tilted), expected, atol=1e-9)
+
+
+def test_walls_multiply_all_diagonal_damping_and_gains_add(tilted):
+    """At NED (1, -2, -1): 2 m and 1 m from the nearer walls, 0.6 m below the surface."""
+    extra = LinearDamping(sway=4.0)
+    both = model(
+        extra, WallProximity(gain=0.8, length_scale=0.7), SurfaceProximity(gain=0.5),
+        CoupledDamping(yaw_from_sway=3.0),
+    )  # fmt: skip
+    bare = model(extra, CoupledDamping(yaw_from_sway=3.0))
+    body, nu = bare.body, tilted[7:]
+    drag = -(body.linear + body.quadratic * np.abs(nu)) * nu
+    factor = 0.8 * (np.exp(-2 / 0.7) + np.exp(-1 / 0.7)) + 0.5 * np.exp(-0.6 / 0.4)
+    found = push(both, tilted, walls=WALLS) - push(bare, tilted, walls=WALLS)
+    np.testing.assert_allclose(found, factor * drag, atol=1e-9)
+    np.testing.assert_allclose(push(both, tilted), push(bare, tilted), atol=1e-12)  # no walls known
+
+
+@pytest.mark.parametrize("given_anchor", [False, True])
+def test_a_towed_tether_drags_at_its_attachment(tilted, given_anchor):
+    """Without an anchor: over the middle of the tank, NED (0, -0.5, -1.6)."""
+    anchor = {"anchor_x": 2.0, "anchor_y": 1.0, "anchor_z": 1.5} if given_anchor else {}
+    place = np.array([2.0, -1.0, -1.5] if given_anchor else [0.0, -0.5, -1.6])
+    water = Current(north=0.1)
+    v = tilted[7:10] - matrix(tilted[3:7]).T @ [0.1, 0, 0]
+    F = -1.5 * np.linalg.norm(place - tilted[:3]) * np.linalg.norm(v) * v
+    world = model(water, TetherDrag(coefficient=1.5, **anchor))
+    found = push(world, tilted, walls=WALLS) - push(model(water), tilted, walls=WALLS)
+    np.testing.assert_allclose(found, [*F, *np.cross([-0.2, 0, 0], F)], atol=1e-9)
+
+
+def test_a_tether_without_anchor_in_an_unknown_tank_is_refused():
+    run = motion(np.zeros((1, 8)), seconds=0.1)
+    replay(model(TetherDrag(coefficient=1.0, anchor_x=0, anchor_y=0, anchor_z=0)), run)
+    with pytest.raises(BadInput, match="no anchor, and the tank is not known"):
+        replay(model(TetherDrag(coefficient=1.0)), run)
+
+
+def replay(world, run):
+    return trajectories(world, run, [(0, 10, at_rest())], ReplaySettings())

@@ -7,6 +7,7 @@ from rovsim.diagnosis.hypothesis import Term
 from rovsim.diagnosis.watch import Watch
 from rovsim.effects import catalogue
 from rovsim.effects.base import Effect
+from rovsim.errors import BadInput
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +31,19 @@ class Candidate:
 def candidates(watches: Sequence[Watch]) -> list[Candidate]:
     """All candidates that these runs could show."""
     site = watches[0].motion.site
-    kinds = {w.motion.commands.kind for w in watches}
     found = []
     for cls in catalogue().values():
-        if not cls.can_act(site, kinds):
-            continue
-        for start in cls.starts_at(site):
-            free = tuple(p.name for p in cls.parameters if p.fitted)
-            found.append(Candidate(cls, cls(**start), free))
+        free = tuple(p.name for p in cls.parameters if p.fitted)
+        starts = [cls(**start) for start in cls.starts_at(site)]
+        found += [Candidate(cls, s, free) for s in starts if _possible(s, watches)]
     return found
+
+
+def _possible(start: Effect, watches: Sequence[Watch]) -> bool:
+    """Whether all runs have what the effect needs."""
+    try:
+        for one in watches:
+            start.check(one.motion.site, one.motion.commands.kind)
+    except BadInput:
+        return False
+    return True

@@ -24,11 +24,12 @@ def observe(
     """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle."""
     slots = _slots(models)
     inputs = _inputs(models, watch, between)
+    readings, starts, row = _seen(models, watch)
     out = np.empty((len(models) * len(watch.time), 6))
     engine(slots).observe(
-        _jobs(len(models), watch), watch.h, watch.ends, packed([m.body for m in models]), inputs,
+        _jobs(watch, starts), watch.h, watch.ends, packed([m.body for m in models]), inputs,
         np.stack([_wrench_parameters(m, slots) for m in models]), place(watch.motion),
-        watch.readings[None], np.zeros(len(models), np.int64), tuning.gains,
+        readings, row, tuning.gains,
         tuning.decay(watch.h), watch.motion.binned, out,
     )  # fmt: skip
     return np.ascontiguousarray(out.reshape(len(models), -1, 6).swapaxes(1, 2))
@@ -74,14 +75,30 @@ def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
     return Inputs(np.stack(wrench), np.stack(force), demand, np.array(row, np.int64), duration)
 
 
-def _jobs(count: int, watch: Watch) -> Jobs:
+def _seen(models: Sequence[Model], watch: Watch) -> tuple[Array, Array, Array]:
+    """What each model takes for true: readings (r, k, 13), starts (m, ., 13), and rows (m,)."""
+    views: dict[bytes, int] = {}
+    readings, starts, row = [], [], []
+    for model in models:
+        back = model.view.inverse
+        key = back.key
+        if key not in views:
+            views[key] = len(views)
+            readings.append(back.states(watch.readings))
+        starts.append(back.states(watch.starts))
+        row.append(views[key])
+    return np.stack(readings), np.stack(starts), np.array(row, np.int64)
+
+
+def _jobs(watch: Watch, starts: Array) -> Jobs:
     """One job for each model and span."""
+    count = len(starts)
     first = np.array([a for a, _ in watch.spans], np.int64)
     steps = np.array([b - a for a, b in watch.spans], np.int64)
     begin = np.array([a for a, _ in watch.rows], np.int64)
     offset = np.repeat(np.arange(count) * len(watch.time), len(first))
     return Jobs(
-        np.tile(watch.starts, (count, 1)), np.tile(watch.ends[first] * watch.h, count),
+        starts.reshape(-1, 13), np.tile(watch.ends[first] * watch.h, count),
         np.tile(first, count), np.tile(steps, count), np.repeat(np.arange(count), len(first)),
         np.tile(begin, count) + offset,
     )  # fmt: skip

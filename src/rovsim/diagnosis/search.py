@@ -136,7 +136,7 @@ def _weakest_dropped(desk: Desk, current: Fit) -> Hypothesis | None:
 def _without_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
     term = h.terms[i]
     left = tuple(n for n in term.free if n != name)
-    if not left or not term.effect.singly:
+    if not left or {} not in term.effect.starts:
         return h.without(i)
     default = next(p.default for p in term.effect.parameters if p.name == name)
     smaller = Term(term.effect.with_values({name: default}), left)

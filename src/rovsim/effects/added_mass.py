@@ -2,8 +2,13 @@
 
 import numpy as np
 
+from rovsim import AXES
 from rovsim.body import Body
-from rovsim.effects.base import Coefficients, per_axis
+from rovsim.effects.base import Coefficients, Parameter, per_axis
+
+PAIRS = [(i, j) for i in range(6) for j in range(i + 1, 6)]
+UNITS = ("kg", "kg m", "kg m2")  # by how many of the two axes are rotations
+SCALES = (1.0, 0.2, 0.05)  # 1 kg displaced by 0.2 m; its moment of inertia there
 
 
 class AddedMass(Coefficients):
@@ -13,8 +18,30 @@ class AddedMass(Coefficients):
     equation = r"\tau = -M_A\dot\nu_r - C_A(\nu_r)\nu_r"
     neglects = "coupling between axes and frequency dependence"
     source = "Fossen 2021, sec. 6.3"
-    parameters = per_axis("kg", "kg m2", "m_A")
+    parameters = per_axis("kg", "kg m2", "m_A", scales=(3.0, 0.1))
 
     def enter(self, body: Body) -> None:
         """Add to the diagonal of M_A."""
         body.M_A += np.diag(self.values)
+
+
+class AddedMassCoupling(Coefficients):
+    """Water accelerated along one axis pushes along another; its Coriolis terms follow."""
+
+    id = "added_mass_coupling"
+    equation = r"M_{A,ij} = M_{A,ji} \mathrel{+}= m_{ij}"
+    neglects = "frequency dependence"
+    source = "Fossen 2021, sec. 6.3 (M_A is symmetric)"
+    parameters = tuple(
+        Parameter(
+            f"{AXES[i]}_{AXES[j]}", UNITS[i // 3 + j // 3], f"m_{{{AXES[i]},{AXES[j]}}}",
+            scale=SCALES[i // 3 + j // 3],
+        )
+        for i, j in PAIRS
+    )  # fmt: skip
+
+    def enter(self, body: Body) -> None:
+        """Add to both sides of the diagonal of M_A."""
+        for (i, j), value in zip(PAIRS, self.values, strict=True):
+            body.M_A[i, j] += value
+            body.M_A[j, i] += value

@@ -10,11 +10,12 @@ method. Effects are immutable and add: a model is a list of them.
     Shaping         the thruster command                       shaped(command) -> command
     Strength        the static thruster force                  scaled(force, t, duration) -> force
     Response        the dynamic thruster force                 respond(force, h, state) -> ...
+    Sensing         what the motion capture reports            transforms() -> two rigid transforms
 """
 
 from abc import ABC, abstractmethod
 from collections import namedtuple
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Mapping
 
 import numpy as np
@@ -24,11 +25,17 @@ from rovsim import AXES
 from rovsim.body import Body
 from rovsim.engine.at import At, Vector6
 from rovsim.errors import BadInput, nearest
+from rovsim.frames import Rigid
+from rovsim.recording.recording import CommandKind, Site
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number of an effect: its name, SI unit, symbol, allowed range and value when absent."""
+    """One number of an effect: its name, SI unit, symbol, allowed range and value when absent.
+
+    A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
+    change worth looking for: a fit works in multiples of it. Not `fitted`: only when asked for.
+    """
 
     name: str
     unit: str
@@ -36,12 +43,16 @@ class Parameter:
     low: float = -np.inf
     high: float = np.inf
     default: float = 0.0
+    scale: float = field(kw_only=True)
+    fitted: bool = field(default=True, kw_only=True)
 
 
-def per_axis(translation: str, rotation: str, symbol: str) -> tuple[Parameter, ...]:
-    """Six parameters named surge ... yaw, with the units of the two kinds of axes."""
+def per_axis(
+    translation: str, rotation: str, symbol: str, *, scales: tuple[float, float]
+) -> tuple[Parameter, ...]:
+    """Six parameters named surge ... yaw; units and scales of the two kinds of axes."""
     return tuple(
-        Parameter(axis, translation if i < 3 else rotation, f"{symbol}_{axis}")
+        Parameter(axis, (translation, rotation)[i // 3], f"{symbol}_{axis}", scale=scales[i // 3])
         for i, axis in enumerate(AXES)
     )
 
@@ -58,6 +69,7 @@ class Effect(ABC):
     neglects: ClassVar[str]
     source: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
+    starts: ClassVar[tuple[dict[str, float], ...]] = ({},)  # where fits begin; {} = the defaults
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
 
@@ -71,7 +83,10 @@ class Effect(ABC):
                     expected=f"one of {', '.join(known)}",
                     remedy=nearest(name, known),
                 )
-        numbers = [self._checked(p, values.get(p.name, p.default)) for p in self.parameters]
+        numbers = [
+            self._checked(p, values[p.name]) if p.name in values else p.default
+            for p in self.parameters
+        ]
         self.values: Array = np.array(numbers, dtype=float)
         self.values.setflags(write=False)
 
@@ -98,13 +113,24 @@ class Effect(ABC):
         return {
             p.name: float(v)
             for p, v in zip(self.parameters, self.values, strict=True)
-            if v != p.default
+            if v != p.default and np.isfinite(v)
         }
 
     def with_values(self, values: Mapping[str, float]) -> "Effect":
         """The same effect with some values replaced."""
-        names = [p.name for p in self.parameters]
-        return type(self)(**dict(zip(names, self.values.tolist(), strict=True)) | dict(values))
+        return type(self)(**self.given() | dict(values))
+
+    @classmethod
+    def starts_at(cls, site: Site) -> tuple[dict[str, float], ...]:
+        """Values from which fits begin at this site; more than one where zero is a flat place."""
+        return cls.starts
+
+    def check(self, site: Site, kind: CommandKind) -> None:  # noqa: B027 - most need nothing
+        """Refuse a run that lacks what this effect needs.
+
+        Raises:
+            BadInput: no tank is known, or the commands are of another kind.
+        """
 
 
 class Coefficients(Effect):
@@ -165,3 +191,11 @@ class Response(Effect):
 
         `state` is what an earlier call returned; None starts at rest at the first force.
         """
+
+
+class Sensing(Effect):
+    """Changes what the motion capture reports of a motion, never the motion itself."""
+
+    @abstractmethod
+    def transforms(self) -> tuple[Rigid, Rigid]:
+        """World side and body side: measured pose = world o true pose o body."""

@@ -11,7 +11,7 @@ class NetBuoyancy(Coefficients):
     equation = r"B \mathrel{+}= \Delta B"
     neglects = "the mass of what floats"
     source = "Fossen 2021, sec. 4.1"
-    parameters = (Parameter("force", "N", r"\Delta B"),)
+    parameters = (Parameter("force", "N", r"\Delta B", scale=2.0),)
 
     def enter(self, body: Body) -> None:
         """Add to the buoyancy."""
@@ -25,7 +25,8 @@ class BuoyancyCenter(Coefficients):
     equation = r"r_B \mathrel{+}= \Delta r_B"
     neglects = "compression with depth"
     source = "Fossen 2021, sec. 4.1"
-    parameters = tuple(Parameter(axis, "m", rf"\Delta {axis}_B") for axis in "xyz")
+    # centimetres: the vehicle's own righting arm is 10 mm (vehicle file)
+    parameters = tuple(Parameter(axis, "m", rf"\Delta {axis}_B", scale=0.005) for axis in "xyz")
 
     def enter(self, body: Body) -> None:
         """Move the centre of buoyancy."""

@@ -10,7 +10,7 @@ class ConstantWrench(Wrench):
     equation = r"\tau_i = c_i"
     neglects = "everything it might depend on"
     source = "definition"
-    parameters = per_axis("N", "N m", "c")
+    parameters = per_axis("N", "N m", "c", scales=(2.0, 0.2))
 
     @staticmethod
     def wrench(at, p):

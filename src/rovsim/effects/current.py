@@ -11,7 +11,9 @@ class Current(Coefficients):
     equation = r"\nu_r = \nu - R^\top v_c"
     neglects = "shear, turbulence and anything unsteady"
     source = "Fossen 2021, sec. 10.3"
-    parameters = tuple(Parameter(name, "m/s", f"v_{name[0]}") for name in ("north", "east", "down"))
+    parameters = tuple(
+        Parameter(name, "m/s", f"v_{name[0]}", scale=0.05) for name in ("north", "east", "down")
+    )
 
     def enter(self, body: Body) -> None:
         """Add to the velocity of the water."""

@@ -11,7 +11,7 @@ class LinearDamping(Coefficients):
     equation = r"\tau_i = -d_i\,\nu_{r,i}"
     neglects = "coupling between axes"
     source = "Fossen 2021, sec. 6.4"
-    parameters = per_axis("N s/m", "N m s/rad", "d")
+    parameters = per_axis("N s/m", "N m s/rad", "d", scales=(10.0, 0.5))
 
     def enter(self, body: Body) -> None:
         """Add to the linear damping coefficients."""
@@ -25,7 +25,7 @@ class QuadraticDamping(Coefficients):
     equation = r"\tau_i = -d_i\,|\nu_{r,i}|\,\nu_{r,i}"
     neglects = "coupling between axes; valid above about 0.1 m/s"
     source = "Fossen 2021, sec. 6.4"
-    parameters = per_axis("N s2/m2", "N m s2/rad2", "d")
+    parameters = per_axis("N s2/m2", "N m s2/rad2", "d", scales=(40.0, 0.5))
 
     def enter(self, body: Body) -> None:
         """Add to the quadratic damping coefficients."""

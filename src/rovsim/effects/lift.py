@@ -10,7 +10,7 @@ class Lift(Wrench):
     equation = r"Y = -c\,|u_r|\,v_r,\quad Z = -c\,|u_r|\,w_r"
     neglects = "stall, and the moment of the lift"
     source = "Fossen 2021, sec. 6.4 (lift), small angles"
-    parameters = (Parameter("coefficient", "kg/m", "c"),)
+    parameters = (Parameter("coefficient", "kg/m", "c", scale=30.0),)
 
     @staticmethod
     def wrench(at, p):

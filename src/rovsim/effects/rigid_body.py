@@ -5,7 +5,7 @@ import numpy as np
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
 
-PLACE = tuple(Parameter(axis, "m", axis) for axis in "xyz")
+PLACE = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
 
 
 class RigidBody(Coefficients):
@@ -17,8 +17,11 @@ class RigidBody(Coefficients):
     neglects = "products of inertia"
     source = "Fossen 2021, sec. 3.3"
     parameters = (
-        Parameter("mass", "kg", "m", low=0.0),
-        *(Parameter(name, "kg m2", f"I_{name[1:]}", low=0.0) for name in ("Ixx", "Iyy", "Izz")),
+        Parameter("mass", "kg", "m", low=0.0, scale=1.0),
+        *(
+            Parameter(name, "kg m2", f"I_{name[1:]}", low=0.0, scale=0.05)
+            for name in ("Ixx", "Iyy", "Izz")
+        ),
         *PLACE,
     )
 
@@ -35,7 +38,12 @@ class Payload(Coefficients):
     equation = r"M_{RB} \mathrel{+}= m H^\top(r) H(r),\quad \text{weight } m g \text{ at } r"
     neglects = "its displaced water and its drag"
     source = "Fossen 2021, sec. 3.3 (parallel-axis theorem)"
-    parameters = (Parameter("mass", "kg", "m", low=0.0), *PLACE)
+    parameters = (Parameter("mass", "kg", "m", low=0.0, scale=0.5), *PLACE)
+    # without a mass its place means nothing; so: at CO, and at the ends of a frame 0.4 m long
+    starts = (
+        {"mass": 0.3},
+        *({"mass": 0.3, axis: place} for axis in "xyz" for place in (-0.15, 0.15)),
+    )
 
     def enter(self, body: Body) -> None:
         """Add the point mass and its weight."""

@@ -18,7 +18,7 @@ class InputDelay(Clock):
     equation = r"u(t - \delta)"
     neglects = "jitter"
     source = "definition"
-    parameters = (Parameter("delay", "s", r"\delta"),)
+    parameters = (Parameter("delay", "s", r"\delta", scale=0.05),)
 
     def arrival(self, time: Array) -> Array:
         """Every line arrives later by the delay."""
@@ -32,7 +32,7 @@ class ClockDrift(Clock):
     equation = r"t_\text{command} = (1 + r)\,t"
     neglects = "a rate that changes with temperature"
     source = "definition"
-    parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5),)
+    parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002),)
 
     def arrival(self, time: Array) -> Array:
         """Instant on the MoCap clock at which the command clock shows `time`."""
@@ -46,7 +46,8 @@ class ThrusterDeadband(Shaping):
     equation = r"F = 0 \text{ for } |c| \le w"
     neglects = "hysteresis between starting and stopping"
     source = "definition"
-    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0),)
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03),)
+    starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
 
     def shaped(self, command: Array) -> Array:
         """Commands inside the band become zero."""
@@ -61,7 +62,7 @@ class ThrusterGain(Strength):
     neglects = "a change of the curve's shape"
     source = "definition"
     parameters = tuple(
-        Parameter(name, "1", f"g_{name}", default=1.0) for name in (*THRUSTERS, "all")
+        Parameter(name, "1", f"g_{name}", default=1.0, scale=0.1) for name in (*THRUSTERS, "all")
     )
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
@@ -79,7 +80,7 @@ class ThrustAsymmetry(Strength):
     equation = r"F \to a F \text{ where } F < 0"
     neglects = "a ratio that depends on speed"
     source = "definition"
-    parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0),)
+    parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0, scale=0.1),)
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
         """Negative forces times the ratio."""
@@ -94,7 +95,7 @@ class VoltageSag(Strength):
     equation = r"F \to F\,(1 - s\,t/T_\text{run})"
     neglects = "recovery at rest and sag under load"
     source = "definition"
-    parameters = (Parameter("fraction", "1", "s", high=1.0),)
+    parameters = (Parameter("fraction", "1", "s", high=1.0, scale=0.1),)
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
         """Forces that fade linearly with time."""
@@ -108,7 +109,8 @@ class ThrusterLag(Response):
     equation = r"T \dot F + F = F_\text{static}"
     neglects = "that spinning up and down differ"
     source = "Fossen 2021, sec. 9.4 (first-order actuator)"
-    parameters = (Parameter("time_constant", "s", "T", low=0.0),)
+    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1),)
+    starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
         """Exact response to forces that are constant over each step, and its mean over it."""
@@ -129,7 +131,7 @@ class AdvanceLoss(Coefficients):
     equation = r"F \to F\,(1 - c\,\operatorname{sign}(F)\,d_i \cdot v_r)"
     neglects = "the velocity of the thruster relative to CO"
     source = "Fossen 2021, sec. 9.4 (linear in the advance speed)"
-    parameters = (Parameter("coefficient", "s/m", "c"),)
+    parameters = (Parameter("coefficient", "s/m", "c", scale=0.2),)
 
     def enter(self, body: Body) -> None:
         """Add to the loss per speed of advance."""
@@ -143,7 +145,7 @@ class PropellerTorque(Coefficients):
     equation = r"\tau_\text{rotation} \mathrel{+}= q\,s_i F_i d_i"
     neglects = "the torque of spinning up"
     source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"
-    parameters = (Parameter("ratio", "m", "q"),)
+    parameters = (Parameter("ratio", "m", "q", scale=0.01),)
 
     def enter(self, body: Body) -> None:
         """Add each propeller's moment to its column of the allocation."""

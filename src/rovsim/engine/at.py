@@ -13,9 +13,10 @@ class At(NamedTuple):
 
     `t` s since the start of the recording, `duration` s of the whole recording, `position` (3),
     `R` rows of the rotation body to world, `nu` (6) velocity, `nu_r` (6) velocity through the
-    water, `nu_c_dot` (6) acceleration of the current in body axes, `demand` (6) pilot demand per
-    axis in [-1, 1] (NaN if not logged), `tank` (low, high) per world axis (NaN if unknown),
-    `axes` (3) signs between MoCap world axes and NED.
+    water, `nu_c_dot` (6) acceleration of the current in body axes, `drag` (6) wrench of the six
+    diagonal damping terms, `inertia` (6) diagonal of the whole M, `demand` (6) pilot demand per
+    axis in [-1, 1] (NaN if not logged), `tank` (low, high) per world axis (NaN if unknown; the
+    surface is the low end in z), `axes` (3) signs between MoCap world axes and NED.
     """
 
     t: float
@@ -25,6 +26,8 @@ class At(NamedTuple):
     nu: Vector6
     nu_r: Vector6
     nu_c_dot: Vector6
+    drag: Vector6
+    inertia: Vector6
     demand: Vector6
     tank: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     axes: Vector3
@@ -43,7 +46,9 @@ class Constants(NamedTuple):
 
     `M_RB`, `M_A`, `M_inv` (m, 6, 6); `linear`, `quadratic` (m, 6); `heaviness` (m,) weight minus
     buoyancy in N; `righting` (m, 3) weight at CG minus buoyancy at CB in N m; `current` (m, 3) NED;
-    `advance` (m,) s/m; `B` (m, 6, n) thruster allocation; `directions` (n, 3) of positive thrust.
+    `advance` (m,) s/m; `coupling` (m, 2, 6, 6) linear and quadratic damping between axes, read only
+    where `coupled` (m,) is not 0; `B` (m, 6, n) thruster allocation; `directions` (n, 3) of
+    positive thrust.
     """
 
     M_RB: Array
@@ -55,6 +60,8 @@ class Constants(NamedTuple):
     righting: Array
     current: Array
     advance: Array
+    coupled: Array
+    coupling: Array
     B: Array
     directions: Array
 

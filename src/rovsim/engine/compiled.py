@@ -20,8 +20,8 @@ from platformdirs import user_cache_path
 
 from rovsim.files import write_text
 
-TEMPLATE = Path(__file__).with_name("equation.py")
-APPENDED = (Path(__file__).with_name("observer.py"),)  # what follows their marker
+FOLDER = Path(__file__).parent
+PARTS = "integration", "observer"  # what uses the equation
 
 
 def cache_folder() -> Path:
@@ -36,17 +36,20 @@ def engine(wrenches: Sequence[Any]) -> ModuleType:
 
 @cache
 def _engine(wrenches: tuple[Any, ...]) -> ModuleType:
-    text = TEMPLATE.read_text(encoding="utf-8")
-    before, rest = text.split("# <extra>")
-    after = rest.split("# </extra>")[1]
-    more = (path.read_text(encoding="utf-8").split("# <template>")[1] for path in APPENDED)
-    source = before + _chain(wrenches) + after + "".join(more)
+    equation = _replaced("equation", "extra", _chain(wrenches))
+    source = equation + "".join(_replaced(part, "equation", "") for part in PARTS)
     name = f"rovsim_engine_{_digest(source, wrenches)}"
     path = cache_folder() / f"{name}.py"
     with FileLock(_made(path.parent) / f"{name}.lock"):
         if not path.exists():
             write_text(path, source)
         return _imported(name, path, wrenches)
+
+
+def _replaced(template: str, mark: str, text: str) -> str:
+    """A template file in which what stands between two marks is replaced."""
+    before, rest = (FOLDER / f"{template}.py").read_text(encoding="utf-8").split(f"# <{mark}>")
+    return before + text + rest.split(f"# </{mark}>")[1]
 
 
 def _made(folder: Path) -> Path:
@@ -87,7 +90,7 @@ def _digest(source: str, wrenches: tuple[Any, ...]) -> str:
     """Digest of the engine's source, of all that its kernels may call, and of Numba."""
     from rovsim.residual import features, predictor
 
-    package = TEMPLATE.parents[1]
+    package = FOLDER.parent
     files = {*package.glob("engine/*.py"), *package.glob("effects/*.py")}
     files |= {Path(str(inspect.getsourcefile(m))) for m in (features, predictor, *wrenches)}
     content = hashlib.sha256(f"{source}{numba.__version__}".encode())

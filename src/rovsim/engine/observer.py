@@ -1,6 +1,6 @@
 """One-step prediction errors: a model that runs along a measurement and is corrected by it.
 
-The second half of the engine's template: `rovsim.engine.compiled` appends it to `equation.py`.
+A part of the engine's template, like `integration`.
 
     x_dot = f(x, u) + a,   a_dot = -a / T + white noise,   reading = pose or mean velocity + noise
 
@@ -10,18 +10,21 @@ A steady-state Kalman filter per axis; its innovations are what the model could 
 from numba import njit, prange
 
 from rovsim.engine.at import State
-from rovsim.engine.equation import (
+
+# <equation>
+from rovsim.engine.equation import rotation
+from rovsim.engine.integration import (
     constants_of,
     renormalised,
-    rotation,
     runge_kutta,
     site_of,
     state_of,
     step_of,
 )
+
+# </equation>
 from rovsim.engine.vectors import add3, add6, compiled, inlined, into_body, into_world, vector6
 
-# <template>
 
 
 @inlined

@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from rovsim.frames import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.tank.settings import Camera, Log
 from rovsim.tank.simulate import Truth
+from rovsim.view import View
 
 BODY = "BlueROV2"
 COLUMNS = (
@@ -15,11 +16,11 @@ COLUMNS = (
 )
 
 
-def qtm_tsv(truth: Truth, camera: Camera, random) -> str:
+def qtm_tsv(truth: Truth, camera: Camera, view: View, random) -> str:
     """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras."""
     stride = round(1.0 / (camera.rate * (truth.time[1] - truth.time[0])))
     time, state = truth.time[:-1:stride], truth.state[:-1:stride]
-    position, attitude = _measured(state, camera, random)
+    position, attitude = _measured(view.poses(state[:, :7]), camera, random)
     rows = _rows(position, attitude, random)
     rows[_hidden(len(time), camera, random)] = [0.0] * 6 + [-1.0] + [0.0] * 9
     text = io.StringIO()
@@ -30,11 +31,11 @@ def qtm_tsv(truth: Truth, camera: Camera, random) -> str:
     return text.getvalue()
 
 
-def _measured(state: Array, camera: Camera, random) -> tuple[Array, Array]:
-    """Noisy poses in the MoCap's own axes. What a sensing effect would change belongs here."""
-    n, flip = len(state), np.concatenate([[1.0], HALF_TURN_X])
-    attitude = multiply(state[:, 3:7], exp(camera.attitude_noise * random.normal(size=(n, 3))))
-    position = state[:, :3] + camera.position_noise * random.normal(size=(n, 3))
+def _measured(eta: Array, camera: Camera, random) -> tuple[Array, Array]:
+    """Noisy poses in the MoCap's own axes, of poses (n, 7) of what it calls the body."""
+    n, flip = len(eta), np.concatenate([[1.0], HALF_TURN_X])
+    attitude = multiply(eta[:, 3:7], exp(camera.attitude_noise * random.normal(size=(n, 3))))
+    position = eta[:, :3] + camera.position_noise * random.normal(size=(n, 3))
     for k in np.flatnonzero(random.random(n) < camera.outliers_per_minute / (60 * camera.rate)):
         direction = random.normal(size=3)
         size = random.uniform(*camera.outlier_size)

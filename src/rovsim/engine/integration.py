@@ -1,0 +1,170 @@
+"""Integration of the equation of motion. With `equation` this file is a template.
+
+`rovsim.engine.compiled` writes both into one module, where these functions meet the `slope` of one
+model instead of the imported one.
+"""
+
+from math import sqrt
+
+import numpy as np
+from numba import njit, prange
+
+from rovsim.engine.at import Constants, State
+
+# <equation>
+from rovsim.engine.equation import rotation, slope
+
+# </equation>
+from rovsim.engine.vectors import add3, add4, add6, compiled, inlined, matrix6, vector3, vector6
+from rovsim.residual.features import assemble_one
+from rovsim.residual.predictor import FEATURES, evaluate
+
+
+@inlined
+def moved(x, h, dx):
+    """x + h dx."""
+    return State(
+        add3(x.position, h, dx.position),
+        add4(x.attitude, h, dx.attitude),
+        add6(x.nu, h, dx.nu),
+    )
+
+
+@inlined
+def renormalised(x):
+    """The state with its quaternion scaled to unit length."""
+    w, i, j, k = x.attitude
+    length = sqrt(w * w + i * i + j * j + k * k)
+    return State(x.position, (w / length, i / length, j / length, k / length), x.nu)
+
+
+@inlined
+def runge_kutta(t, x, h, body, p, step, correction, site):
+    """One classical Runge-Kutta 4 step."""
+    k1 = slope(t, x, body, p, step, correction, site)
+    k2 = slope(t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)
+    k3 = slope(t + 0.5 * h, moved(x, 0.5 * h, k2), body, p, step, correction, site)
+    k4 = slope(t + h, moved(x, h, k3), body, p, step, correction, site)
+    x = moved(moved(x, h / 6.0, k1), h / 3.0, k2)
+    return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
+
+
+@compiled
+def learned(t, x, body, p, step, data, site, features, a_res):
+    """Learned acceleration error at x. tau_res = M a_res, so it simply adds to nu_dot."""
+    base = slope(t, x, body, p, step, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), site)
+    assemble_one(data, x.nu, base.nu, step[0], rotation(x.attitude), features)
+    evaluate(data, features, a_res)
+    return vector6(a_res)
+
+
+@inlined
+def constants_of(bodies, m):
+    """Constants of parameter set m alone, as tuples."""
+    return Constants(
+        matrix6(bodies.M_RB[m]), matrix6(bodies.M_A[m]), matrix6(bodies.M_inv[m]),
+        vector6(bodies.linear[m]), vector6(bodies.quadratic[m]), bodies.heaviness[m],
+        vector3(bodies.righting[m]), vector3(bodies.current[m]), bodies.advance[m],
+        bodies.coupled[m], bodies.coupling[m], bodies.B[m], bodies.directions,
+    )  # fmt: skip
+
+
+@inlined
+def step_of(inputs, row, k):
+    """Commands of step k: thruster wrench, thruster forces, demand, duration of the recording."""
+    return (
+        vector6(inputs.wrench[row, k]), inputs.force[row, k], vector6(inputs.demand[k]),
+        inputs.duration[k],
+    )  # fmt: skip
+
+
+@inlined
+def state_of(a):
+    """State of an array (13,)."""
+    return State((a[0], a[1], a[2]), (a[3], a[4], a[5], a[6]), vector6(a[7:]))
+
+
+@inlined
+def store(x, out):
+    """Write a state into an array (13,)."""
+    for i in range(3):
+        out[i] = x.position[i]
+    for i in range(4):
+        out[3 + i] = x.attitude[i]
+    for i in range(6):
+        out[7 + i] = x.nu[i]
+
+
+@inlined
+def site_of(site):
+    """Walls (low, high per world axis) and MoCap axes as tuples."""
+    tank = site.tank
+    walls = ((tank[0, 0], tank[0, 1]), (tank[1, 0], tank[1, 1]), (tank[2, 0], tank[2, 1]))
+    return walls, vector3(site.axes)
+
+
+@compiled
+def run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out):
+    """Integrate one job; after every `stride` steps its state goes into the next row of out.
+
+    A learned residual is evaluated at the start of each step and held over it.
+    """
+    m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
+    x, body, own, place = state_of(jobs.state[job]), constants_of(bodies, m), p[m], site_of(site)
+    features, a_res, correction = np.empty(FEATURES), np.empty(6), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for n in range(jobs.steps[job]):
+        step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
+        if data.size:
+            correction = learned(t, x, body, own, step, data, place, features, a_res)
+        x = runge_kutta(t, x, h, body, own, step, correction, place)
+        if (n + 1) % stride == 0:
+            store(x, out[row + n // stride])
+
+
+@compiled
+def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
+    """Run the jobs one after the other on this core."""
+    for job in range(jobs.first.size):
+        run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out)
+
+
+@njit(cache=True, parallel=True)
+def integrate_parallel(jobs, h, stride, bodies, inputs, p, data, site, out):
+    """Run the jobs on all cores; each is independent, so the numbers do not depend on how many."""
+    for job in prange(jobs.first.size):
+        run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out)
+
+
+@compiled
+def heun(state, t, h, pushes, bodies, inputs, p, data, site, out):
+    """Heun's method over the steps of the inputs, each with an extra acceleration pushes (k, 6).
+
+    For the synthetic tank, whose truth must not share the replay's integrator.
+    """
+    x, body, place = state_of(state), constants_of(bodies, 0), site_of(site)
+    features, a_res, none = np.empty(FEATURES), np.empty(6), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for n in range(pushes.shape[0]):
+        step, now, push = step_of(inputs, 0, n), t + n * h, vector6(pushes[n])
+        if data.size:
+            a_learned = learned(now, x, body, p, step, data, place, features, a_res)
+            push = add6(push, 1.0, a_learned)
+        else:
+            push = add6(push, 1.0, none)
+        k1 = slope(now, x, body, p, step, push, place)
+        k2 = slope(now + h, moved(x, h, k1), body, p, step, push, place)
+        x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
+        store(x, out[n])
+
+
+@compiled
+def accelerations(times, states, bodies, inputs, p, data, site, out):
+    """nu_dot (n, 6) of parameter set 0 at each state (n, 13) under the commands of step n."""
+    body, own, place = constants_of(bodies, 0), p[0], site_of(site)
+    features, a_res, correction = np.empty(FEATURES), np.empty(6), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for n in range(times.size):
+        x, step = state_of(states[n]), step_of(inputs, inputs.row[0], n)
+        if data.size:
+            correction = learned(times[n], x, body, own, step, data, place, features, a_res)
+        nu_dot = slope(times[n], x, body, own, step, correction, place).nu
+        for i in range(6):
+            out[n, i] = nu_dot[i]
