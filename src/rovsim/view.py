@@ -37,6 +37,11 @@ class View:
         return all(np.array_equal(np.concatenate(one), none) for one in (self.world, self.body))
 
     @cached_property
+    def key(self) -> bytes:
+        """The same for equal views."""
+        return np.concatenate([*self.world, *self.body]).tobytes()
+
+    @cached_property
     def inverse(self) -> "View":
         """From reported to true."""
         return View(self.world.inverse, self.body.inverse)

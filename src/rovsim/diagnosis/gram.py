@@ -5,6 +5,7 @@ from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.optimize import lsq_linear
 
 RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
 
@@ -40,10 +41,16 @@ class Gain:
     x: Array
 
 
-def joint(H: Array, b: Array, offset: float = 0.0) -> Gain:
-    """All columns together; `b` (k,) their products with the target, `offset` what the target cost."""
-    x = -solved(H, b)
-    return Gain(float(-b @ x) - offset, tuple(range(len(b))), x)
+def joint(H: Array, b: Array, offset: float, low: Array, high: Array) -> Gain:
+    """All columns together, their coefficients (k,) between bounds.
+
+    `b` (k,) are their products with the target, `offset` is what the target itself costs more.
+    """
+    values, vectors = np.linalg.eigh(H)
+    root = np.sqrt(np.maximum(values, RIDGE * max(values[-1], 1e-300)))
+    A = root[:, None] * vectors.T  # A'A = H
+    x = lsq_linear(A, -(vectors.T @ b) / root, (low, high), method="bvls").x
+    return Gain(float(-2.0 * b @ x - x @ H @ x) - offset, tuple(range(len(b))), x)
 
 
 def greedy(H: Array, b: Array, price: float) -> Gain:

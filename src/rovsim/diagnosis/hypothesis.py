@@ -33,6 +33,13 @@ class Term:
         """Values of the free parameters, in units of their scale."""
         return np.array([self.effect[p.name] / p.scale for p in self.parameters])
 
+    def reach(self, trusted: float) -> tuple[Array, Array]:
+        """Lowest and highest scaled step that stays in range, and within `trusted` scales."""
+        scale = np.array([p.scale for p in self.parameters])
+        low = np.array([p.low for p in self.parameters]) / scale - self.x
+        high = np.array([p.high for p in self.parameters]) / scale - self.x
+        return np.maximum(low, -trusted) - 1e-9, np.minimum(high, trusted) + 1e-9
+
     def at(self, x: Array) -> "Term":
         """The same term at other scaled values, kept inside their range."""
         values = {

@@ -18,6 +18,9 @@ from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.library import Library
 from rovsim.diagnosis.noise import Noise
 
+FEW = 4
+TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
+
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
@@ -53,8 +56,17 @@ def products(desk: Desk, current: Fit, noise: Noise) -> tuple[Array, int, int]:
         np.concatenate([e[None], J, columns])
         for e, J, columns in zip(current.e, current.J, desk.library.columns, strict=True)
     ]
-    white = desk.observatory.white(stacked, noise)
+    white = coarse(desk.observatory.white(stacked, noise))
     return inner_products(white.reshape(len(white), -1)), 1, 1 + len(current.J[0])
+
+
+def coarse(white: Array) -> Array:
+    """Means of a few neighbours (..., n // few), still of unit variance.
+
+    What a vehicle of this size does is slower than 10 Hz; frames come ten times as fast.
+    """
+    n = white.shape[-1] // FEW * FEW
+    return white[..., :n].reshape(*white.shape[:-1], -1, FEW).sum(axis=-1) / np.sqrt(FEW)
 
 
 def proposals(desk: Desk, current: Fit) -> list[Proposal]:
@@ -65,7 +77,7 @@ def proposals(desk: Desk, current: Fit) -> list[Proposal]:
     for candidate, secant, columns in zip(
         desk.library.candidates, desk.library.secant, desk.library.derivatives, strict=True
     ):
-        gain, free = _gain(M, at, secant, columns, desk.price)
+        gain = _gain(M, at, secant, columns, desk.price, candidate.term())
         term = candidate.term([candidate.free[j] for j in gain.chosen])
         worth = gain.decrease - desk.price * len(gain.chosen)
         proposal = Proposal(term.at(term.x + gain.x), worth)
@@ -75,13 +87,16 @@ def proposals(desk: Desk, current: Fit) -> list[Proposal]:
     return sorted(best.values(), key=lambda p: -p.gain)
 
 
-def _gain(M: Array, at: int, secant: int | None, columns: Sequence[int], price: float):
+def _gain(
+    M: Array, at: int, secant: int | None, columns: Sequence[int], price: float, term: Term
+) -> Gain:
     own = [at + j for j in columns]
     H, b = M[np.ix_(own, own)], M[own, 0]
     if secant is None:
-        return greedy(H, b, price), None
+        return greedy(H, b, price)
     s = at + secant
-    return joint(H, b + M[own, s], 2.0 * M[0, s] + M[s, s]), None
+    low, high = term.reach(TRUSTED)
+    return joint(H, b + M[own, s], 2.0 * M[0, s] + M[s, s], low, high)
 
 
 def chance(desk: Desk, current: Fit, draws: int, seed: int) -> Array:
