@@ -1,6 +1,7 @@
 """Innovations of many models on one run, in one compiled call."""
 
 from collections import Counter
+from types import ModuleType
 from typing import Sequence
 
 import numpy as np
@@ -22,17 +23,24 @@ def observe(
     models: Sequence[Model], watch: Watch, tuning: Tuning, between: Between = "held"
 ) -> Array:
     """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle."""
-    slots = _slots(models)
-    inputs = _inputs(models, watch, between)
+    module, inputs, p = batch(models, watch, between)
     readings, starts, row = _seen(models, watch)
     out = np.empty((len(models) * len(watch.time), 6))
-    engine(slots).observe(
-        _jobs(watch, starts), watch.h, watch.ends, packed([m.body for m in models]), inputs,
-        np.stack([_wrench_parameters(m, slots) for m in models]), place(watch.motion),
-        readings, row, tuning.gains,
-        tuning.decay(watch.h), watch.motion.binned, out,
+    module.observe(
+        _jobs(watch, starts), watch.h, watch.ends, packed([m.body for m in models]), inputs, p,
+        place(watch.motion), readings, row, tuning.gains, tuning.decay(watch.h),
+        watch.motion.binned, out,
     )  # fmt: skip
     return np.ascontiguousarray(out.reshape(len(models), -1, 6).swapaxes(1, 2))
+
+
+def batch(
+    models: Sequence[Model], watch: Watch, between: Between
+) -> tuple[ModuleType, Inputs, Array]:
+    """One engine for all models, their thrust on one run, and their wrench parameters (m, k)."""
+    slots = _slots(models)
+    p = np.stack([_wrench_parameters(m, slots) for m in models])
+    return engine(slots), _inputs(models, watch, between), p
 
 
 def _slots(models: Sequence[Model]) -> list[type[Wrench]]:

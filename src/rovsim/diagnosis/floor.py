@@ -1,0 +1,92 @@
+"""The noise floor: what a perfect model would score.
+
+Its errors come from three sources, all drawn at random here: the disturbance that pushes the
+vehicle while the model does not know of it, the noise of the state it starts from, and the noise of
+the velocity it is compared with, both after the filter. Level and memory are those of `noise.py`,
+fitted to the train runs.
+"""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import frames
+from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.windows import SECONDS, differences
+from rovsim.model import Model
+from rovsim.replay import windows
+from rovsim.scores import normalised, rms
+from rovsim.signals.chain import SignalSettings, velocities
+from rovsim.thrust import Between
+
+DRAWS = 8
+
+
+def noise_floor(
+    model: Model,
+    watches: Sequence[Watch],
+    noise: Noise,
+    signals: SignalSettings,
+    between: Between,
+    seed: int = 0,
+) -> float | None:
+    """The `windows_2s` error (see scores.normalised) of a perfect model on these runs."""
+    random = np.random.default_rng(seed)
+    errors = [_errors(model, w, noise, signals, between, random) for w in watches]
+    return normalised([w.motion for w in watches], rms(np.concatenate(errors)))
+
+
+def _errors(model, watch, noise, signals, between, random) -> Array:
+    """Errors (n, 6) of a perfect model on one run, all draws."""
+    pushes = _pushes(model, watch, noise, random)
+    anchors = np.array([a for a, _ in windows(watch.motion, SECONDS)], int)
+    reported = [_noisy(watch, noise, signals, random) for _ in range(DRAWS)]
+    truth = np.tile(watch.motion.state[anchors], (DRAWS, 1, 1))
+    starts = np.array([state[anchors] for state in reported])
+    happened = differences([model] * DRAWS, watch, between, truth, pushes)
+    predicted = differences([model] * DRAWS, watch, between, starts)
+    at = _rows(watch)
+    read = np.array([state[at, 7:] - watch.motion.state[at, 7:] for state in reported])
+    return (predicted - happened - read).reshape(-1, 6)
+
+
+def _rows(watch: Watch) -> Array:
+    """Samples or bins of all windows, in the order of `differences`."""
+    shift = 0 if watch.motion.binned else 1
+    parts = [np.arange(a + shift, b + shift) for a, b in windows(watch.motion, SECONDS)]
+    return np.concatenate([np.arange(0), *parts])
+
+
+def _pushes(model: Model, watch: Watch, noise: Noise, random) -> Array:
+    """Wrench (draws, k, 6) of the disturbance over the integration steps."""
+    fade = np.exp(-watch.h / noise.memory)
+    kicks = random.normal(size=(len(watch.edges) - 1, DRAWS, 6)) * np.sqrt(1.0 - fade**2)
+    a, x = np.empty_like(kicks), random.normal(size=(DRAWS, 6))
+    for k, kick in enumerate(kicks):
+        x = fade * x + kick
+        a[k] = x
+    return (a * noise.level).swapaxes(0, 1) @ model.body.M.T
+
+
+def _noisy(watch: Watch, noise: Noise, signals: SignalSettings, random) -> Array:
+    """States (n, 13) as another measurement of the same motion would have reported them."""
+    motion, state = watch.motion, watch.motion.state.copy()
+    kicks = noise.reading * random.normal(size=(len(state), 6))
+    if motion.binned:
+        state[:, 7:] += kicks
+        return state
+    for a, b in motion.segments():
+        state[a:b, :3] += frames.rotate(state[a:b, 3:7], kicks[a:b, :3])
+        state[a:b, 3:7] = frames.multiply(state[a:b, 3:7], frames.exp(kicks[a:b, 3:]))
+        state[a:b] = _measured(state[a:b, :7], motion.eta[a:b], motion.state_nu[a:b], watch, signals)
+    return state
+
+
+def _measured(noisy: Array, eta: Array, nu: Array, watch: Watch, signals: SignalSettings) -> Array:
+    """Filtered pose and velocity of noisy poses; what the filter does to the motion is left out."""
+    clean, _ = velocities(eta, watch.period, signals)
+    found, _ = velocities(noisy, watch.period, signals)
+    smooth = np.concatenate([eta, nu + found - clean], axis=1)
+    return smooth

@@ -1,0 +1,50 @@
+"""What a force nobody named might vary with."""
+
+from itertools import combinations
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.signal import lfilter
+
+from rovsim import AXES
+from rovsim.diagnosis.watch import Watch
+from rovsim.frames import matrix
+
+SMOOTH = 0.02  # m/s or rad/s: a sign that turns over within the noise of the velocity
+MEMORIES = (0.5, 2.0)  # s
+
+
+def shapes(watch: Watch) -> dict[str, Array]:
+    """Functions (n,) of state, place and time at the readings of one run, by their names."""
+    at = np.clip(watch.index, 0, len(watch.motion.time) - 1)
+    state = np.nan_to_num(watch.motion.state[at])
+    nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
+    t = 2.0 * watch.time / max(watch.time[-1], 1e-9) - 1.0 if len(watch.time) else watch.time
+    found = {"nothing (a constant)": np.ones(len(t)), "time": t, "time squared": t**2}
+    for i, axis in enumerate(AXES):
+        v = nu[:, i]
+        found[f"{axis} velocity"] = v
+        found[f"{axis} speed"] = np.abs(v)
+        found[f"{axis} velocity, squared"] = np.abs(v) * v
+        found[f"{axis} velocity, cubed"] = v**3
+        found[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
+        for memory in MEMORIES:
+            found[f"{axis} velocity some {memory:g} s ago"] = _remembered(v, watch, memory)
+    for i, j in combinations(range(6), 2):
+        found[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
+    for name, x in zip(("north", "east", "down"), place.T, strict=True):
+        found[f"place along {name}"] = x
+        found[f"place along {name}, squared"] = x**2
+    for name, x in zip(("pitch", "roll", "upright"), R[:, 2].T, strict=True):
+        found[f"attitude ({name})"] = x - np.mean(x)
+    for name, x in zip(("north", "east", "down"), np.swapaxes(R, 1, 2)[:, :, 0].T, strict=True):
+        found[f"heading ({name})"] = x
+    return found
+
+
+def _remembered(v: Array, watch: Watch, memory: float) -> Array:
+    """v through a first-order lag, stretch by stretch."""
+    keep, out = np.exp(-watch.period / memory), np.empty_like(v)
+    for first, last in watch.rows:
+        out[first:last] = lfilter([1.0 - keep], [1.0, -keep], v[first:last])
+    return out

@@ -1,0 +1,96 @@
+"""Errors of many models in windows of 2 s, in one compiled call: what users see of a model.
+
+The same number as `windows_2s` of the ladder, on the train runs, but for one thing: predictions are
+not filtered once more. Disturbances may push, so the same code tells what noise alone would give.
+"""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.body import packed
+from rovsim.diagnosis.observe import batch
+from rovsim.diagnosis.watch import Watch
+from rovsim.engine.at import Jobs
+from rovsim.model import Model
+from rovsim.replay import place, windows
+from rovsim.scores import normalised, rms
+from rovsim.thrust import Between
+
+SECONDS = 2.0  # contract, section 3
+
+
+def window_errors(
+    models: Sequence[Model], watches: Sequence[Watch], between: Between = "held"
+) -> tuple[Array, list[float | None]]:
+    """Velocity RMSE (m, 6) of models in windows of 2 s, and the normalised mean of each."""
+    parts = [differences(models, w, between) for w in watches]
+    rmse = np.array([rms(np.concatenate([p[m] for p in parts])) for m in range(len(models))])
+    return rmse, [normalised([w.motion for w in watches], row) for row in rmse]
+
+
+def differences(
+    models: Sequence[Model],
+    watch: Watch,
+    between: Between = "held",
+    starts: Array | None = None,
+    pushes: Array | None = None,
+) -> Array:
+    """Predicted minus measured velocity (m, n, 6) at the samples or bins of all windows.
+
+    Args:
+        models: to predict with.
+        watch: the run.
+        between: how commands are held between two lines.
+        starts: states (m, w, 13) as measured to start from; None: the measured ones.
+        pushes: further wrench (m, k, 6) over the integration steps, N and N m.
+    """
+    spans = list(windows(watch.motion, SECONDS))
+    own = np.array([a for a, _ in spans], int)
+    if starts is None:
+        starts = np.tile(watch.motion.state[own], (len(models), 1, 1))
+    paths = _paths(models, watch, spans, starts, between, pushes)
+    nu = [[m.view.twists(p[:, 7:]) for p in of_model] for m, of_model in zip(models, paths, strict=True)]
+    return np.array([
+        np.concatenate([_at_readings(watch, span, v) for span, v in zip(spans, of_model, strict=True)]
+                       or [np.empty((0, 6))])
+        for of_model in nu
+    ])  # fmt: skip
+
+
+def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:
+    """States (steps + 1, 13) of each model and window, every integration step."""
+    module, inputs, p = batch(models, watch, between)
+    if pushes is not None:
+        wrench = inputs.wrench[inputs.row] + pushes
+        force = inputs.force[inputs.row]
+        inputs = inputs._replace(wrench=wrench, force=force, row=np.arange(len(models)))
+    first = np.array([watch.ends[a] for a, _ in spans], np.int64)
+    steps = np.array([watch.ends[b] - watch.ends[a] for a, b in spans], np.int64)
+    begin = np.array([m.view.inverse.states(s) for m, s in zip(models, starts, strict=True)])
+    count, total = len(models), int(steps.sum())
+    rows = np.concatenate([[0], np.cumsum(np.tile(steps, count))])
+    jobs = Jobs(
+        begin.reshape(-1, 13), np.tile(first * watch.h, count), np.tile(first, count),
+        np.tile(steps, count), np.repeat(np.arange(count), len(spans)), rows[:-1],
+    )  # fmt: skip
+    out = np.empty((count * total, 13))
+    module.integrate_parallel(
+        jobs, watch.h, 1, packed([m.body for m in models]), inputs, p, np.empty(0),
+        place(watch.motion), out,
+    )  # fmt: skip
+    found = [
+        np.vstack([s, out[a:b]]) for s, a, b in zip(jobs.state, rows[:-1], rows[1:], strict=True)
+    ]
+    return [found[i : i + len(spans)] for i in range(0, len(found), len(spans))]
+
+
+def _at_readings(watch: Watch, span: tuple[int, int], nu: Array) -> Array:
+    """Predicted minus measured velocity at the samples or bins of one window."""
+    a, b = span
+    at = watch.ends[a : b + 1] - watch.ends[a]
+    if not watch.motion.binned:
+        return nu[at[1:]] - watch.motion.nu[a + 1 : b + 1]
+    total = np.vstack([np.zeros(6), np.cumsum(0.5 * (nu[1:] + nu[:-1]), axis=0)])
+    return np.diff(total[at], axis=0) / np.diff(at)[:, None] - watch.motion.nu[a:b]
