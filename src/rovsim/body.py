@@ -31,7 +31,8 @@ class Body:
     `weight` N and `weight_moment` (3,) sum of weight times place, N m; `buoyancy` N at
     `center_of_buoyancy` (3,) m; `current` (3,) m/s NED; `B` (6, n) wrench per thruster force and
     `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m; `coupling`
-    (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column).
+    (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column), never
+    changed by walls; `memory` (6,) force per remembered velocity; `forgets` 1/s, 0 = no memory.
     """
 
     gravity: float
@@ -49,6 +50,8 @@ class Body:
     spin: Array = field(default_factory=lambda: np.zeros(0))
     advance: float = 0.0
     coupling: Array = field(default_factory=lambda: np.zeros((2, 6, 6)))
+    memory: Array = field(default_factory=lambda: np.zeros(6))
+    forgets: float = 0.0
 
     def add_mass(self, mass: float, place: Array, inertia: Array) -> None:
         """Add a mass in kg at a place (3,), with its own inertia (3, 3), and its weight."""
@@ -93,6 +96,8 @@ def packed(bodies: Sequence[Body]) -> Constants:
         advance=stack(lambda b: b.advance),
         coupled=stack(lambda b: np.any(b.coupling)),
         coupling=stack(lambda b: b.coupling),
+        memory=stack(lambda b: b.memory),
+        forgets=stack(lambda b: b.forgets),
         B=stack(lambda b: b.B),
         directions=np.ascontiguousarray(bodies[0].directions, dtype=float),
     )

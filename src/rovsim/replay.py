@@ -15,6 +15,7 @@ from pydantic import PositiveFloat
 from rovsim.engine.at import Inputs, Jobs, Place
 from rovsim.files import read_arrays, write_arrays
 from rovsim.frames import normalized
+from rovsim.memory import measured_memory
 from rovsim.model import Model
 from rovsim.recording.recording import RunInfo
 from rovsim.signals.binned import backward_difference, bin_means
@@ -146,10 +147,14 @@ def trajectories(
     first = np.array([s[0] for s in starts], np.int64)
     samples = np.array([s[1] for s in starts], np.int64)
     rows = np.concatenate([[0], np.cumsum(samples)])
-    states = np.array([s[2] for s in starts])
+    states, remembered = (
+        np.array([s[2] for s in starts]),
+        measured_memory(model, motion, steps.edges),
+    )
     jobs = Jobs(
         states, first * steps.h, first, samples * steps.stride,
         np.zeros(len(starts), np.int64), rows[:-1],
+        remembered[first] if remembered.size else remembered,
     )  # fmt: skip
     out = np.empty((rows[-1], 13))
     model.engine.integrate_parallel(

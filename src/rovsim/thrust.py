@@ -1,7 +1,7 @@
 """The thrust path: logged commands to the mean force of each thruster over each step.
 
-Order (contract, section 2): clock -> deadband -> force curve -> gain, asymmetry, sag -> lag. What
-depends on the vehicle's motion (advance loss) happens in the engine.
+Order (contract, section 2): clock -> mixer (demands only) -> deadband -> force curve -> gain,
+asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happens in the engine.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from typing import Literal, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.effects.base import Clock, Effect, Response, Shaping, Strength
+from rovsim.effects.base import Autopilot, Clock, Effect, Response, Shaping, Strength
 from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Commands
 from rovsim.vehicle import Thrusters
@@ -34,6 +34,7 @@ class ThrustPath:
         ranked = sorted(effects, key=lambda effect: effect.rank)
         self.thrusters = thrusters
         self.clocks = [e for e in ranked if isinstance(e, Clock)]
+        self.autopilots = [e for e in ranked if isinstance(e, Autopilot)]
         self.shapings = [e for e in ranked if isinstance(e, Shaping)]
         self.strengths = [e for e in ranked if isinstance(e, Strength)]
         self.responses = [e for e in ranked if isinstance(e, Response)]
@@ -43,6 +44,13 @@ class ThrustPath:
         for clock in self.clocks:
             time = clock.arrival(time)
         return time
+
+    def thruster_commands(self, value: Array, kind: CommandKind) -> Array:
+        """Thruster commands (m, n) of logged values (m, c)."""
+        if kind == "demand":
+            for autopilot in self.autopilots:
+                value = autopilot.mixed(value)
+        return thruster_commands(value, kind, self.thrusters)
 
     def static(self, command: Array, t: Array, duration: float) -> Array:
         """Static forces (m, n) in N of thruster commands (m, n) at times t (m,)."""
@@ -82,7 +90,7 @@ class ThrustPath:
         none = np.full((steps, 6), np.nan)
         if commands.kind == "wrench":
             return Thrust(np.zeros((steps, count)), mean(at_middle), none)
-        command = thruster_commands(at_middle, commands.kind, self.thrusters)
+        command = self.thruster_commands(at_middle, commands.kind)
         duration = float(edges[-1] - edges[0])
         static = mean(self.static(command, middle - edges[0], duration))
         force, _ = self.respond(static, float(edges[1] - edges[0]), None)

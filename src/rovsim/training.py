@@ -11,6 +11,7 @@ from numpy import ndarray as Array
 
 from rovsim.engine.at import Inputs
 from rovsim.errors import BadInput
+from rovsim.memory import measured_memory
 from rovsim.model import Model
 from rovsim.replay import (
     ReplaySettings,
@@ -66,7 +67,8 @@ def accelerations(model: Model, motion: Motion, at: Inputs) -> Array:
     """Acceleration (n, 6) of the model at the motion's states, under the thrust of step n."""
     out = np.empty((len(motion.time), 6))
     model.engine.accelerations(
-        motion.time - motion.time[0], motion.state, model.constants, at,
+        motion.time - motion.time[0], motion.state, measured_memory(model, motion, motion.time),
+        model.constants, at,
         model.wrench_parameters()[None], residual_data(model), place(motion), out,
     )  # fmt: skip
     return out

@@ -12,7 +12,7 @@ from rovsim.replay import ReplaySettings, replay
 from rovsim.scores import errors, rms
 from rovsim.signals.chain import SignalSettings, clean
 from rovsim.tank.campaign import SEALED, describe, make_campaign, true_model
-from rovsim.tank.settings import Camera, TankRun, TankSettings, Turbulence
+from rovsim.tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
 
 RUN = TankRun(id="6dof-1", control="6dof", split="test")
 LAG = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.2})
@@ -64,6 +64,7 @@ NEW = [
     entry("marker_offset", x=0.2, y=-0.1, z=0.15),
     entry("marker_misalignment", roll=0.1, pitch=-0.1, yaw=0.3),
     entry("world_tilt", roll=0.15, pitch=-0.15),
+    entry("fluid_memory", coefficient=25.0, time_constant=0.7),
 ]
 
 
@@ -79,6 +80,29 @@ def test_a_hidden_effect_is_seen_and_the_true_model_explains_it(tmp_path, hidden
     with_it, without = window_error(truth, motion), window_error(nominal(truth.vehicle), motion)
     assert np.all(with_it < FLOOR)
     assert np.max(without / FLOOR) > 1.5
+
+
+LOOPS = {"gain_yaw": 1.5, "bandwidth_yaw": 2.0}
+for axis in ("roll", "pitch"):
+    LOOPS |= {f"gain_{axis}": 0.6, f"bandwidth_{axis}": 3.0}
+
+
+@pytest.mark.parametrize("attitude", [0.0, 1.0])
+def test_a_loop_on_board_is_seen_in_logged_demands(tmp_path, attitude):
+    loops = EffectEntry(effect="onboard_control", parameters=LOOPS | {"attitude": attitude})
+    logged = Log(kind="demand")
+    with pytest.raises(BadInput, match="this log holds none"):
+        recorded(tmp_path, seed=5, effects=(loops,))
+    chosen, _, _, motion = recorded(tmp_path, seed=5, effects=(loops,), log=logged)
+    truth = true_model(chosen)
+    assert motion.commands.kind == "demand"
+    assert np.all(window_error(truth, motion) < FLOOR)
+    assert np.max(window_error(nominal(truth.vehicle), motion) / FLOOR) > 1.5
+
+
+def test_logged_demands_drive_an_empty_tank_too(tmp_path):
+    chosen, _, _, motion = recorded(tmp_path, seed=6, log=Log(kind="demand"))
+    assert np.all(window_error(true_model(chosen), motion) < FLOOR)
 
 
 def test_the_exports_hold_the_stated_noise_and_faults(tmp_path):

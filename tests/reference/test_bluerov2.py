@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
-from rovsim.engine.at import Inputs, Place
+from rovsim.engine.at import NO_MEMORY, Inputs, Place
 from rovsim.engine.compiled import engine
 from rovsim.frames import from_euler, matrix
 from rovsim.replay import ReplaySettings, trajectories
@@ -97,8 +97,9 @@ def engine_acceleration(state, command, world=None):
     given = Inputs(*thrust, np.full((1, 6), np.nan), np.zeros(1, np.int64), np.ones(1))
     site, out = Place(np.full((3, 2), np.nan), np.ones(3)), np.empty((1, 6))
     engine([]).accelerations(
-        np.zeros(1), state[None], world.constants, given, np.empty((1, 0)), np.empty(0), site, out
-    )
+        np.zeros(1), state[None], NO_MEMORY, world.constants, given, np.empty((1, 0)), np.empty(0),
+        site, out,
+    )  # fmt: skip
     return out[0]
 
 

@@ -8,12 +8,14 @@ from rovsim.effects.added_mass import AddedMassCoupling
 from rovsim.effects.coupled_damping import CoupledDamping
 from rovsim.effects.current import Current
 from rovsim.effects.damping import LinearDamping
+from rovsim.effects.fluid_memory import FluidMemory
 from rovsim.effects.lift import Lift
+from rovsim.effects.onboard_control import OnboardControl
 from rovsim.effects.proximity import SurfaceProximity, WallProximity
 from rovsim.effects.rigid_body import Payload
 from rovsim.effects.tether import TetherDrag, TetherTension
 from rovsim.effects.thrusters import AdvanceLoss, PropellerTorque
-from rovsim.engine.at import Inputs, Place
+from rovsim.engine.at import NO_MEMORY, Inputs, Place
 from rovsim.errors import BadInput
 from rovsim.frames import from_euler, matrix
 from rovsim.replay import ReplaySettings, trajectories
@@ -42,6 +44,11 @@ PAIRS = [(a, b) for a in AXES for b in AXES if a != b]
 NAMES |= {
     "coupled_damping": [f"{a}_from_{b}{end}" for end in ("", "_quadratic") for a, b in PAIRS],
     "added_mass_coupling": [f"{a}_{b}" for a, b in PAIRS if AXES.index(a) < AXES.index(b)],
+    "fluid_memory": ["coefficient", "time_constant"],
+    "onboard_control": [
+        *(f"{name}_{axis}" for name in ("gain", "bandwidth") for axis in AXES),
+        "attitude",
+    ],
     "tether_tension": ["stiffness", "slack_length", *ANCHOR],
     "tether_drag": ["coefficient", *ANCHOR],
     "wall_proximity": ["gain", "length_scale"],
@@ -61,17 +68,18 @@ def test_parameters_are_the_public_ones(name):
     assert [p.name for p in catalogue()[name].parameters] == NAMES[name]
 
 
-def push(world, state, force=None, walls=None):
+def push(world, state, force=None, walls=None, demand=None, memory=NO_MEMORY):
     """Wrench (6,) that a model feels at a state: M nu_dot, with thruster forces (8,) in N."""
     walls = np.full((3, 2), np.nan) if walls is None else walls
+    demand = np.full((1, 6), np.nan) if demand is None else demand[None]
     force = np.zeros(8) if force is None else force
     given = Inputs(
-        (world.body.B @ force)[None, None], force[None, None], np.full((1, 6), np.nan),
+        (world.body.B @ force)[None, None], force[None, None], demand,
         np.zeros(1, np.int64), np.ones(1),
     )  # fmt: skip
     site, out = Place(walls, np.array([1.0, -1.0, -1.0])), np.empty((1, 6))
     world.engine.accelerations(
-        np.zeros(1), state[None], world.constants, given, world.wrench_parameters()[None],
+        np.zeros(1), state[None], memory, world.constants, given, world.wrench_parameters()[None],
         np.empty(0), site, out,
     )  # fmt: skip
     return world.body.M @ out[0]
@@ -197,6 +205,51 @@ def test_a_towed_tether_drags_at_its_attachment(tilted, given_anchor):
     world = model(water, TetherDrag(coefficient=1.5, **anchor))
     found = push(world, tilted, walls=WALLS) - push(model(water), tilted, walls=WALLS)
     np.testing.assert_allclose(found, [*F, *np.cross([-0.2, 0, 0], F)], atol=1e-9)
+
+
+def test_remembered_water_pushes_along(tilted):
+    """tau = -c diag(1, 1, 1, k, k, k) (nu_r - m) with k = 0.02 m2, whatever the walls."""
+    m = np.array([0.1, 0.2, -0.3, 0.4, -0.5, 0.6])
+    near = WallProximity(gain=2.0)
+    world = model(FluidMemory(coefficient=6.0, time_constant=0.5), near)
+    found = push(world, tilted, walls=WALLS, memory=m[None]) - push(
+        model(near), tilted, walls=WALLS
+    )
+    expected = -6.0 * np.array([1, 1, 1, 0.02, 0.02, 0.02]) * (tilted[7:] - m)
+    np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("attitude", [0.0, 1.0])
+def test_a_loop_on_board_chases_its_set_point(tilted, attitude):
+    demand = np.array([0.5, np.nan, np.nan, 0.2, -0.4, 0.3])
+    gain = {"gain_surge": 0.8, "gain_roll": 0.6, "gain_pitch": 0.7, "gain_yaw": 1.2}
+    width = {"bandwidth_surge": 2.0, "bandwidth_roll": 3, "bandwidth_pitch": 4, "bandwidth_yaw": 5}
+    world = model(OnboardControl(**gain, **width, attitude=attitude))
+    found = push(world, tilted, demand=demand) - push(model(), tilted)
+    u, p, q, r = tilted[[7, 10, 11, 12]]
+    roll, pitch = 0.6 * 0.2, 0.7 * -0.4
+    if attitude:  # the fixture's angles are 0.4 and -0.3 rad
+        roll, pitch = 3 * (roll - 0.4), 4 * (pitch + 0.3)
+    M = np.diag(model().body.M)
+    rates = [2 * (0.4 - u), 0, 0, 3 * (roll - p), 4 * (pitch - q), 5 * (0.36 - r)]
+    np.testing.assert_allclose(found, M * rates, atol=1e-9)
+
+
+def test_a_loop_replaces_its_axis_of_the_mixer_only():
+    path = model(OnboardControl(bandwidth_yaw=2.0)).thrust_path
+    demand = np.array([[0.2, 0, 0, 0, 0, 0.3]])
+    alone = np.array([[0.2, 0, 0, 0, 0, 0.0]])
+    np.testing.assert_array_equal(
+        path.thruster_commands(demand, "demand"),
+        model().thrust_path.thruster_commands(alone, "demand"),
+    )
+
+
+def test_a_loop_without_logged_demands_is_refused():
+    run = motion(np.zeros((1, 8)), seconds=0.1)
+    replay(model(OnboardControl(gain_yaw=1.0)), run)  # no bandwidth, no loop
+    with pytest.raises(BadInput, match="acts on demands, and this log holds none"):
+        replay(model(OnboardControl(gain_yaw=1.0, bandwidth_yaw=1.0)), run)
 
 
 def test_a_tether_without_anchor_in_an_unknown_tank_is_refused():

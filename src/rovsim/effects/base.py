@@ -7,6 +7,7 @@ method. Effects are immutable and add: a model is a list of them.
     Coefficients    the constants of Fossen's equation         enter(body)
     Wrench          the forces at one instant (compiled)       wrench(at, p) -> 6 numbers
     Clock           when a logged command takes effect         arrival(time) -> time
+    Autopilot       the demand before the mixer                mixed(demand) -> demand
     Shaping         the thruster command                       shaped(command) -> command
     Strength        the static thruster force                  scaled(force, t, duration) -> force
     Response        the dynamic thruster force                 respond(force, h, state) -> ...
@@ -164,6 +165,14 @@ class Clock(Effect):
     @abstractmethod
     def arrival(self, time: Array) -> Array:
         """Instants (m,) in s, increasing, at which lines logged at `time` (m,) take effect."""
+
+
+class Autopilot(Effect):
+    """Acts on some axes itself: their demands do not reach the mixer."""
+
+    @abstractmethod
+    def mixed(self, demand: Array) -> Array:
+        """Demands (m, 6) in [-1, 1] that are left to the mixer."""
 
 
 class Shaping(Effect):

@@ -2,7 +2,10 @@
 
 from typing import NamedTuple
 
+import numpy as np
 from numpy import ndarray as Array
+
+NO_MEMORY = np.empty((0, 6))
 
 Vector3 = tuple[float, float, float]
 Vector6 = tuple[float, float, float, float, float, float]
@@ -47,8 +50,9 @@ class Constants(NamedTuple):
     `M_RB`, `M_A`, `M_inv` (m, 6, 6); `linear`, `quadratic` (m, 6); `heaviness` (m,) weight minus
     buoyancy in N; `righting` (m, 3) weight at CG minus buoyancy at CB in N m; `current` (m, 3) NED;
     `advance` (m,) s/m; `coupling` (m, 2, 6, 6) linear and quadratic damping between axes, read only
-    where `coupled` (m,) is not 0; `B` (m, 6, n) thruster allocation; `directions` (n, 3) of
-    positive thrust.
+    where `coupled` (m,) is not 0; `memory` (m, 6) force per remembered velocity, `forgets` (m,) 1/s
+    (0: nothing is remembered); `B` (m, 6, n) thruster allocation; `directions` (n, 3) of positive
+    thrust.
     """
 
     M_RB: Array
@@ -62,6 +66,8 @@ class Constants(NamedTuple):
     advance: Array
     coupled: Array
     coupling: Array
+    memory: Array
+    forgets: Array
     B: Array
     directions: Array
 
@@ -84,7 +90,8 @@ class Jobs(NamedTuple):
     """Trajectories to integrate, j of them.
 
     `state` (j, 13) to start from, at `time` (j,) s; `first` (j,) step of the inputs, `steps` (j,)
-    to take, `member` (j,) parameter set, `out` (j,) first row of the output.
+    to take, `member` (j,) parameter set, `out` (j,) first row of the output. `memory` (j, 6)
+    velocity through the water that the water remembers at the start; empty: none.
     """
 
     state: Array
@@ -93,6 +100,7 @@ class Jobs(NamedTuple):
     steps: Array
     member: Array
     out: Array
+    memory: Array = NO_MEMORY
 
 
 class Place(NamedTuple):

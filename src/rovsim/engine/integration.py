@@ -4,7 +4,7 @@
 model instead of the imported one.
 """
 
-from math import sqrt
+from math import exp, sqrt
 
 import numpy as np
 from numba import njit, prange
@@ -12,12 +12,25 @@ from numba import njit, prange
 from rovsim.engine.at import Constants, State
 
 # <equation>
-from rovsim.engine.equation import rotation, slope
+from rovsim.engine.equation import flow, rotation, slope
 
 # </equation>
-from rovsim.engine.vectors import add3, add4, add6, compiled, inlined, matrix6, vector3, vector6
+from rovsim.engine.vectors import (
+    add3,
+    add4,
+    add6,
+    compiled,
+    each6,
+    inlined,
+    matrix6,
+    times6,
+    vector3,
+    vector6,
+)
 from rovsim.residual.features import assemble_one
 from rovsim.residual.predictor import FEATURES, evaluate
+
+ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @inlined
@@ -49,10 +62,43 @@ def runge_kutta(t, x, h, body, p, step, correction, site):
     return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
 
 
+@inlined
+def through_water(x, body):
+    """Velocity through the water."""
+    return flow(body.current, rotation(x.attitude), x.nu)[0]
+
+
+@inlined
+def lagged(memory, nu_r, time):
+    """What is remembered after a time, in time constants, of going at nu_r."""
+    kept = exp(-time)
+    return add6(add6(ZERO6, kept, memory), 1.0 - kept, nu_r)
+
+
+@inlined
+def memory_push(body, memory):
+    """Acceleration by the water that still moves as the vehicle did."""
+    return times6(body.M_inv, each6(body.memory, memory))
+
+
 @compiled
-def learned(t, x, body, p, step, data, site, features, a_res):
+def push_over_step(x, memory, h, body):
+    """The same at the middle of a step that begins at x; held, it is of second order."""
+    ahead = lagged(memory, through_water(x, body), 0.5 * h * body.forgets)
+    return memory_push(body, ahead)
+
+
+@compiled
+def memory_after(memory, x, after, h, body):
+    """Memory after a step from one state to another."""
+    mean = add6(through_water(x, body), 1.0, through_water(after, body))
+    return lagged(memory, add6(ZERO6, 0.5, mean), h * body.forgets)
+
+
+@compiled
+def learned(t, x, body, p, step, push, data, site, features, a_res):
     """Learned acceleration error at x. tau_res = M a_res, so it simply adds to nu_dot."""
-    base = slope(t, x, body, p, step, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), site)
+    base = slope(t, x, body, p, step, push, site)
     assemble_one(data, x.nu, base.nu, step[0], rotation(x.attitude), features)
     evaluate(data, features, a_res)
     return vector6(a_res)
@@ -65,7 +111,8 @@ def constants_of(bodies, m):
         matrix6(bodies.M_RB[m]), matrix6(bodies.M_A[m]), matrix6(bodies.M_inv[m]),
         vector6(bodies.linear[m]), vector6(bodies.quadratic[m]), bodies.heaviness[m],
         vector3(bodies.righting[m]), vector3(bodies.current[m]), bodies.advance[m],
-        bodies.coupled[m], bodies.coupling[m], bodies.B[m], bodies.directions,
+        bodies.coupled[m], bodies.coupling[m], vector6(bodies.memory[m]), bodies.forgets[m],
+        bodies.B[m], bodies.directions,
     )  # fmt: skip
 
 
@@ -111,12 +158,19 @@ def run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out):
     """
     m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
     x, body, own, place = state_of(jobs.state[job]), constants_of(bodies, m), p[m], site_of(site)
-    features, a_res, correction = np.empty(FEATURES), np.empty(6), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    features, a_res = np.empty(FEATURES), np.empty(6)
+    memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
     for n in range(jobs.steps[job]):
-        step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
+        step, t, push = step_of(inputs, inputs.row[m], first + n), start + n * h, ZERO6
+        if body.forgets != 0.0:
+            push = push_over_step(x, memory, h, body)
         if data.size:
-            correction = learned(t, x, body, own, step, data, place, features, a_res)
-        x = runge_kutta(t, x, h, body, own, step, correction, place)
+            a_learned = learned(t, x, body, own, step, push, data, place, features, a_res)
+            push = add6(push, 1.0, a_learned)
+        after = runge_kutta(t, x, h, body, own, step, push, place)
+        if body.forgets != 0.0:
+            memory = memory_after(memory, x, after, h, body)
+        x = after
         if (n + 1) % stride == 0:
             store(x, out[row + n // stride])
 
@@ -136,35 +190,47 @@ def integrate_parallel(jobs, h, stride, bodies, inputs, p, data, site, out):
 
 
 @compiled
-def heun(state, t, h, pushes, bodies, inputs, p, data, site, out):
+def heun(state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
     """Heun's method over the steps of the inputs, each with an extra acceleration pushes (k, 6).
 
-    For the synthetic tank, whose truth must not share the replay's integrator.
+    For the synthetic tank, whose truth must not share the replay's integrator. What the water
+    remembers, memory (6,), is integrated with the state and written back.
     """
     x, body, place = state_of(state), constants_of(bodies, 0), site_of(site)
-    features, a_res, none = np.empty(FEATURES), np.empty(6), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    features, a_res, m = np.empty(FEATURES), np.empty(6), vector6(memory)
     for n in range(pushes.shape[0]):
         step, now, push = step_of(inputs, 0, n), t + n * h, vector6(pushes[n])
         if data.size:
-            a_learned = learned(now, x, body, p, step, data, place, features, a_res)
+            recalled = memory_push(body, m)
+            a_learned = learned(now, x, body, p, step, recalled, data, place, features, a_res)
             push = add6(push, 1.0, a_learned)
-        else:
-            push = add6(push, 1.0, none)
-        k1 = slope(now, x, body, p, step, push, place)
-        k2 = slope(now + h, moved(x, h, k1), body, p, step, push, place)
+        k1 = slope(now, x, body, p, step, add6(push, 1.0, memory_push(body, m)), place)
+        m1 = add6(through_water(x, body), -1.0, m)
+        x1, ahead = moved(x, h, k1), add6(m, h * body.forgets, m1)
+        k2 = slope(now + h, x1, body, p, step, add6(push, 1.0, memory_push(body, ahead)), place)
+        m2 = add6(through_water(x1, body), -1.0, ahead)
         x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
+        m = add6(m, 0.5 * h * body.forgets, add6(m1, 1.0, m2))
         store(x, out[n])
+    for i in range(6):
+        memory[i] = m[i]
 
 
 @compiled
-def accelerations(times, states, bodies, inputs, p, data, site, out):
-    """nu_dot (n, 6) of parameter set 0 at each state (n, 13) under the commands of step n."""
+def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
+    """nu_dot (n, 6) of parameter set 0 at each state (n, 13) under the commands of step n.
+
+    `memory` (n, 6) is what the water remembers then; empty: nothing.
+    """
     body, own, place = constants_of(bodies, 0), p[0], site_of(site)
-    features, a_res, correction = np.empty(FEATURES), np.empty(6), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    features, a_res = np.empty(FEATURES), np.empty(6)
     for n in range(times.size):
-        x, step = state_of(states[n]), step_of(inputs, inputs.row[0], n)
+        x, step, push = state_of(states[n]), step_of(inputs, inputs.row[0], n), ZERO6
+        if memory.size:
+            push = memory_push(body, vector6(memory[n]))
         if data.size:
-            correction = learned(times[n], x, body, own, step, data, place, features, a_res)
-        nu_dot = slope(times[n], x, body, own, step, correction, place).nu
+            a_learned = learned(times[n], x, body, own, step, push, data, place, features, a_res)
+            push = add6(push, 1.0, a_learned)
+        nu_dot = slope(times[n], x, body, own, step, push, place).nu
         for i in range(6):
             out[n, i] = nu_dot[i]

@@ -46,6 +46,12 @@ def add6(a, h, b):
 
 
 @inlined
+def each6(a, b):
+    """Products of the elements."""
+    return a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3], a[4] * b[4], a[5] * b[5]
+
+
+@inlined
 def times6(M, v):
     """Matrix (six rows) times 6-vector."""
     return (

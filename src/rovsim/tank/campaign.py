@@ -8,6 +8,7 @@ from typing import Any, Callable
 
 import numpy as np
 
+from rovsim import AXES
 from rovsim.errors import BadInput
 from rovsim.files import write_text, write_yaml
 from rovsim.frames import HALF_TURN_X
@@ -22,13 +23,15 @@ SEALED = "truth.yaml"  # nothing that reads a campaign may open it
 
 def describe(settings: TankSettings) -> dict[str, Any]:
     """The content of `campaign.yaml`, without simulating anything."""
-    thrusters = load_vehicle(settings.vehicle).thrusters.units
+    thrusters = [unit.name for unit in load_vehicle(settings.vehicle).thrusters.units]
+    kind = settings.log.kind
+    columns = thrusters if kind == "pwm" else list(AXES)
     return {
         "name": settings.name,
         "vehicle": settings.vehicle,
         "tank": {axis: list(getattr(settings.tank, axis)) for axis in "xyz"},
         "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
-        "commands": {"format": "csv", "kind": "pwm", "columns": [t.name for t in thrusters]},
+        "commands": {"format": "csv", "kind": kind, "columns": columns},
         "runs": [
             {**run.model_dump(), "mocap": f"{run.id}_6D.tsv", "commands": f"{run.id}_commands.csv"}
             for run in settings.runs

@@ -5,6 +5,7 @@ import io
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim import AXES
 from rovsim.frames import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.tank.settings import Camera, Log
 from rovsim.tank.simulate import Truth
@@ -80,14 +81,17 @@ def _header(frames: int, rate: float) -> str:
 
 
 def commands_csv(truth: Truth, log: Log, random) -> str:
-    """Thruster PWM in us, one line a tick; some lines are lost."""
+    """Thruster PWM in us or demands per axis, one line a tick; some lines are lost."""
     commands = truth.commands
     time = commands.time + log.jitter * random.normal(size=len(commands.time))
     kept = random.random(len(time)) >= log.missing
     kept[0] = True
-    table = np.column_stack([time, np.round(1500.0 + 400.0 * commands.value)])[kept]
+    value, names, shape = commands.value, list(AXES), "%.4f"
+    if commands.kind == "thruster":
+        value, shape = np.round(1500.0 + 400.0 * value), "%d"
+        names = [f"t{i + 1}" for i in range(value.shape[1])]
     text = io.StringIO()
-    names = ",".join(f"t{i + 1}" for i in range(commands.value.shape[1]))
-    text.write(f"time_s,{names}\n")
-    np.savetxt(text, table, fmt=",".join(["%.4f", *["%d"] * commands.value.shape[1]]))
+    text.write(",".join(["time_s", *names]) + "\n")
+    table = np.column_stack([time, value])[kept]
+    np.savetxt(text, table, fmt=",".join(["%.4f", *[shape] * len(names)]))
     return text.getvalue()

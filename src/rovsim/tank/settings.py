@@ -40,8 +40,9 @@ class Camera(Section):
 
 
 class Log(Section):
-    """How the commands are logged."""
+    """How the commands are logged: PWM per thruster, or what the pilot asks for per axis."""
 
+    kind: Literal["pwm", "demand"] = "pwm"
     rate: PositiveFloat = 50.0  # Hz, what an autopilot streams
     jitter: NonNegativeFloat = 0.0  # s, standard deviation of a line's time stamp
     missing: Share = 0.01  # share of lines lost

@@ -11,8 +11,9 @@ from numpy import ndarray as Array
 
 from rovsim.engine.at import Inputs, Place
 from rovsim.errors import BadInput
+from rovsim.frames import HALF_TURN_X
 from rovsim.model import Model
-from rovsim.recording.recording import Commands
+from rovsim.recording.recording import CommandKind, Commands, Site
 from rovsim.tank.pilot import Pilot
 from rovsim.tank.settings import TankSettings, Turbulence
 
@@ -44,35 +45,40 @@ def simulate(model: Model, settings: TankSettings, control: str, tank: Array, ra
     pilot = Pilot(control, tank, ticks, tick, random)
     pushes = disturbance(settings.turbulence, ticks * per_tick, h, random)
     pushes = np.ascontiguousarray(pushes @ model.constants.M_inv[0].T)
-    vehicle = _Vehicle(model, tank, settings.duration, tick, h)
+    vehicle = _Vehicle(model, tank, settings, tick)
     states = np.empty((ticks * per_tick + 1, 13))
     states[0] = pilot.start(random)
     for k in range(ticks):
         first = k * per_tick
-        command = _as_logged(model, pilot.demand(k, states[first]))
+        command = vehicle.as_logged(pilot.demand(k, states[first]))
         rows = slice(first, first + per_tick)
         vehicle.advance(k, command, states[first], pushes[rows], states[first + 1 :][:per_tick])
         _stay_inside(states[first + per_tick], tank, (k + 1) * tick)
     time = np.arange(len(states)) * h
-    return Truth(time, states, Commands(vehicle.times, vehicle.commands, "thruster"))
-
-
-def _as_logged(model: Model, demand: Array) -> Array:
-    """Thruster commands (n,) of a demand (6,), rounded to whole microseconds of PWM."""
-    limit = model.vehicle.thrusters.command_limit
-    command = np.clip(model.thrust_path.thrusters.mixing @ demand, -limit, limit)
-    return np.round(400.0 * command) / 400.0  # PWM = 1500 us + 400 us c (vehicle file)
+    return Truth(time, states, Commands(vehicle.times, vehicle.commands, vehicle.kind))
 
 
 class _Vehicle:
     """The true vehicle, tick by tick; remembers the commands and the thrusters' state."""
 
-    def __init__(self, model: Model, tank: Array, duration: float, tick: float, h: float) -> None:
-        self.model, self.duration, self.tick, self.h = model, duration, tick, h
-        self.place = Place(np.ascontiguousarray(tank), np.array([1.0, -1.0, -1.0]))
-        self.times, self.commands = np.empty(0), np.empty((0, len(model.body.directions)))
+    def __init__(self, model: Model, tank: Array, settings: TankSettings, tick: float) -> None:
+        self.model, self.duration, self.tick, self.h = model, settings.duration, tick, settings.step
+        self.place = Place(np.ascontiguousarray(tank), HALF_TURN_X)
+        self.kind: CommandKind = "demand" if settings.log.kind == "demand" else "thruster"
+        model.check(Site(*self.place), self.kind)
+        columns = 6 if self.kind == "demand" else len(model.body.directions)
+        self.times, self.commands = np.empty(0), np.empty((0, columns))
         self.lag: list | None = None
+        self.memory = np.zeros(6)
         self.heun = model.engine.heun
+
+    def as_logged(self, demand: Array) -> Array:
+        """What a demand (6,) leaves in the log: itself, or thruster PWM in whole microseconds."""
+        if self.kind == "demand":
+            return np.round(demand, 4)
+        limit = self.model.vehicle.thrusters.command_limit
+        command = np.clip(self.model.thrust_path.thrusters.mixing @ demand, -limit, limit)
+        return np.round(400.0 * command) / 400.0  # PWM = 1500 us + 400 us c (vehicle file)
 
     def advance(self, k: int, command: Array, state: Array, pushes: Array, out: Array) -> None:
         """Take the command of tick k and move on to the next tick."""
@@ -82,15 +88,16 @@ class _Vehicle:
         middle = t + self.h * (0.5 + np.arange(len(out)))
         arrival = path.arrival(self.times)
         held = self.commands[np.clip(np.searchsorted(arrival, middle, "right") - 1, 0, None)]
-        static = path.static(held, middle, self.duration)
+        command = path.thruster_commands(held, self.kind)
+        static = path.static(command, middle, self.duration)
         force, self.lag = path.respond(static, self.h, self.lag)
-        steps, none = len(out), np.full((len(out), 6), np.nan)
+        demand = held if self.kind == "demand" else np.full((len(out), 6), np.nan)
         inputs = Inputs(
-            (force @ self.model.body.B.T)[None], force[None], none, np.zeros(1, np.int64),
-            np.full(steps, self.duration),
+            (force @ self.model.body.B.T)[None], force[None], demand, np.zeros(1, np.int64),
+            np.full(len(out), self.duration),
         )  # fmt: skip
         self.heun(
-            state, t, self.h, pushes, self.model.constants, inputs,
+            state, self.memory, t, self.h, pushes, self.model.constants, inputs,
             self.model.wrench_parameters(), np.empty(0), self.place, out,
         )  # fmt: skip
 
