@@ -1,0 +1,119 @@
+"""Error by condition: small multiples of the conditions that explain most, one row an axis."""
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rovsim.figures.marks import ACCELERATION_UNITS, AXES, legend, lines, note, nothing, short
+from rovsim.figures.palette import Look, looks
+from rovsim.figures.style import sheet, styled
+
+SECTION = "where"
+CAPTION = (
+    "Mean acceleration error, measured minus model, by the three conditions that explain most of "
+    "it on each axis (for the last model); bars: two standard errors, hollow: too few independent "
+    "samples to judge, grey below: how often the vehicle was there."
+)
+COLUMNS = 3
+SHOWN = 4  # models in one panel
+
+
+@styled()
+def draw(*, where: Mapping[str, Any]) -> Figure:
+    """Draw `where.json`: for each axis the strongest conditions of its last model."""
+    models = dict(list(where.get("models", {}).items())[-SHOWN:])
+    last = list(models.values())[-1] if models else {}
+    style = looks(models)
+    figure = sheet(222)
+    rows = figure.subplots(len(AXES), COLUMNS, sharey="row")
+    for k, (axis, panels) in enumerate(zip(AXES, rows, strict=True)):
+        tables = {name: m["axes"].get(axis, {}) for name, m in models.items()}
+        names = strongest(list(tables.values())[-1] if tables else {})
+        known = {f["condition"] for f in last.get("findings", []) if f["axis"] == axis}
+        for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
+            _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
+            title = _title(name, list(tables.values())[-1]) if name else ""
+            panel.set_title(title, fontsize=8, weight="bold" if name in known else "normal")
+        panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[k]})")
+        panels[0].locator_params(axis="y", nbins=4)
+    figure.align_ylabels(list(rows[:, 0]))
+    legend(figure, lines(style))
+    note(figure, _remarks(models))
+    return figure
+
+
+def strongest(tables: Mapping[str, Any], count: int = COLUMNS) -> list[str]:
+    """Names of the conditions with more than one bin that explain most, the best first."""
+    known = {name: t["share_of_error"] for name, t in tables.items() if len(t["mean"]) > 1}
+    return sorted(known, key=lambda name: -known[name])[:count]
+
+
+def _title(name: str, tables: Mapping[str, Any]) -> str:
+    share = 100 * tables[name]["share_of_error"]
+    unit = "deg" if tables[name]["unit"] == "rad" else tables[name]["unit"]
+    name = name.replace("distance to the nearest", "distance to")
+    return f"{name} ({unit}): {share:.0f} %"
+
+
+def _panel(axes: Axes, tables: Mapping[str, Any], style: Mapping[str, Look]) -> None:
+    axes.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
+    if not tables:
+        nothing(axes, "no values")
+        axes.set_xticks([])
+        return
+    last = list(tables.values())[-1]
+    _counts(axes, last)
+    for order, (name, table) in enumerate(tables.items()):
+        _curve(axes, table, style[name], 2 + order)
+    axes.locator_params(axis="x", nbins=5)
+    axes.margins(x=0.04)
+
+
+def _curve(axes: Axes, table: Mapping[str, Any], look: Look, order: int) -> None:
+    x, mean, error, judged = _columns(table, "center", "mean", "std_error", "judged")
+    judged, there = judged.astype(bool), np.array(table["blocks"]) > 0
+    axes.plot(x[judged], mean[judged], zorder=order, **look.line())
+    for part, face in ((judged, look.color), (there & ~judged, "white")):
+        axes.errorbar(
+            x[part], mean[part], yerr=2 * error[part] if face == look.color else None,
+            fmt="o", markersize=3, color=look.color, markerfacecolor=face, elinewidth=0.8,
+            zorder=order,
+        )  # fmt: skip
+
+
+def _counts(axes: Axes, table: Mapping[str, Any]) -> None:
+    """How many blocks lie in each bin, as grey bars along the lower edge."""
+    count, edges = np.array(table["blocks"], float), _scaled(table, "edges")
+    below = axes.twinx()
+    below.set_zorder(axes.get_zorder() - 1)
+    axes.patch.set_visible(False)
+    below.bar(edges[:-1], count, np.diff(edges), align="edge", color="#e3e3e3", linewidth=0)
+    below.set_ylim(0, 4.0 * max(count.max(), 1.0))
+    below.set_yticks([])
+    below.grid(False)
+    for spine in below.spines.values():
+        spine.set_visible(False)
+
+
+def _columns(table: Mapping[str, Any], *names: str) -> list[np.ndarray]:
+    return [_scaled(table, name) for name in names]
+
+
+def _scaled(table: Mapping[str, Any], name: str) -> np.ndarray:
+    """A column of a table; places along the condition in degrees where it is an angle."""
+    values = np.array(table[name], float)
+    along = name in ("center", "edges") and table["unit"] == "rad"
+    return np.degrees(values) if along else values
+
+
+def _remarks(models: Mapping[str, Any]) -> Sequence[str]:
+    if not models:
+        return ["No model was searched."]
+    splits = {m["split"] for m in models.values()}
+    told = [f"{short(n)}: runs of the {m['split']} split" for n, m in models.items()]
+    return [
+        f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(told)}.",
+        "Percent: share of the squared error that varies with the condition; bold: beyond chance.",
+    ]
