@@ -14,7 +14,7 @@ from rovsim.signals.motion import Motion
 def main(*, figure: str, motion: Path, replays: list[Path], budgets: list[Path], out: Path) -> None:
     measured, found = Motion.read(motion), [Replay.read(path) for path in replays]
     run = measured.run.id
-    pushed = {run: Budget.read(path) for path in budgets}
+    pushed = {found.run: found for found in map(Budget.read, budgets)}
     evidence = Evidence({run: measured}, {r.model: {run: r} for r in found}, budgets=pushed)
     drawn = kind(figure).draw(**arguments(figure, evidence, run, [r.model for r in found]))
     save(drawn, out.parent, out.stem)

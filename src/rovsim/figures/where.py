@@ -35,7 +35,7 @@ def draw(*, where: Mapping[str, Any]) -> Figure:
         for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
             _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
             title = _title(name, list(tables.values())[-1]) if name else ""
-            panel.set_title(title, fontsize=8, weight="bold" if name in known else "normal")
+            panel.set_title(title, fontsize=7.5, weight="bold" if name in known else "normal")
         panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[k]})")
         panels[0].locator_params(axis="y", nbins=4)
     figure.align_ylabels(list(rows[:, 0]))
@@ -68,7 +68,9 @@ def _panel(axes: Axes, tables: Mapping[str, Any], style: Mapping[str, Look]) -> 
     for order, (name, table) in enumerate(tables.items()):
         _curve(axes, table, style[name], 2 + order)
     axes.locator_params(axis="x", nbins=5)
-    axes.margins(x=0.04)
+    centers = _scaled(last, "center")[np.array(last["blocks"]) > 0]
+    room = 0.08 * max(float(np.ptp(centers)), 1e-9)
+    axes.set_xlim(float(centers.min()) - room, float(centers.max()) + room)
 
 
 def _curve(axes: Axes, table: Mapping[str, Any], look: Look, order: int) -> None:

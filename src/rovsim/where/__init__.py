@@ -6,5 +6,6 @@ from rovsim.where.findings import Finding, Where, explain
 from rovsim.where.search import Judged, judged
 
 __all__ = [
-    "Blocks", "Finding", "Judged", "Where", "blocks", "content", "explain", "judged", "merged", "together"
+    "Blocks", "Finding", "Judged", "Where", "blocks", "content", "explain", "judged", "merged",
+    "together",
 ]  # fmt: skip

@@ -15,8 +15,8 @@ from rovsim import AXES
 from rovsim.where.bins import Binning, Table, binned, evidence, stretches, table
 from rovsim.where.conditions import THROUGHOUT, Blocks, Condition
 
-LEVEL = 0.01  # chance of a single false finding in a whole search over an adequate model
-FLIPS = 1999
+LEVEL = 0.005  # chance of a single false finding in a whole search over an adequate model
+FLIPS = 3999
 SMALLEST = 0.03  # share of the squared error below which a condition is not worth a sentence
 NEGLIGIBLE = 0.03  # explained error relative to the measured acceleration, likewise (both RMS)
 AS_GOOD = 0.9  # of the best share: conditions the data do not tell apart from it

@@ -31,7 +31,8 @@ USUAL = {
     "time": "a battery that empties, or drifting clocks",
     THROUGHOUT: "net buoyancy, trim, a constant push",
     "heading": "a current, a tether, or a world frame that is not level",
-    "coupled": "a coupling between the axes: allocation, lift, off-diagonal damping or mass",
+    "coupled": "a coupling (allocation, lift, off-diagonal damping or mass), or an autopilot "
+    "that the log does not show",
 }
 
 
@@ -55,11 +56,7 @@ def summary(where: Where) -> list[str]:
 
 def amount(value: float) -> str:
     """Two significant digits without an exponent."""
-    if value == 0 or not np.isfinite(value):
-        return "0"
-    return np.format_float_positional(
-        value, precision=2, unique=False, fractional=False, trim="k"
-    ).rstrip(".")
+    return f"{value:.0f}" if abs(value) >= 10 else f"{value:#.2g}".rstrip(".")
 
 
 def relation(found: Finding) -> float:
