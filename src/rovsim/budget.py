@@ -11,7 +11,7 @@ Where two effects multiply (a current and a damping), the later one is charged w
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Iterator, Sequence
+from typing import Any, Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -85,6 +85,12 @@ def budget(model: Model, motion: Motion, found: Samples, settings: ReplaySetting
     missing = np.full((len(motion.time), 6), np.nan)
     missing[found.index] = found.a_res @ model.body.M.T
     return Budget(model.name, motion.run.id, motion.time, parts, missing)
+
+
+def totals(budgets: Sequence[Budget]) -> dict[str, Any]:
+    """`budget.json`: RMS by run, part and axis."""
+    runs = {b.run: {"model": b.model, "rms": b.rms()} for b in budgets}
+    return {"schema": "rovsim.budget/1", "runs": runs}
 
 
 def _cumulative(

@@ -3,12 +3,13 @@
 rovsim compare campaign=DIR model=[nominal,FILE,…] out=OUT
 
 Writes OUT/comparison.json (errors per model, run, axis and horizon), OUT/where.json (under which
-conditions each model fails), figures and OUT/report.html, and prints a summary.
+conditions each model fails), OUT/budget.json (who pushes how much), figures and OUT/report.html,
+and prints a summary.
 """
 
 from pathlib import Path
 
-from rovsim.budget import Budget, budget
+from rovsim.budget import Budget, budget, totals
 from rovsim.config import Settings
 from rovsim.evidence import PER_RUN, Evidence, about, arguments
 from rovsim.files import write_json
@@ -31,6 +32,7 @@ def run(settings: Settings) -> None:
     evidence = _evidence(data, chosen, settings)
     _present(out, data.campaign.name, evidence, settings)
     write_json(out / "where.json", evidence.where)
+    write_json(out / "budget.json", totals(list(evidence.budgets.values())))
     write_json(out / "comparison.json", evidence.comparison)
     motions = list(data.motions.values())
     ladder = [step(n, motions, list(runs.values())) for n, runs in evidence.replays.items()]

@@ -13,7 +13,7 @@ from rovsim.figures.style import sheet, styled
 SECTION = "where"
 CAPTION = (
     "Mean acceleration error, measured minus model, by the three conditions that explain most of "
-    "it on each axis (for the last model); bars: two standard errors, hollow: too few independent "
+    "it on each axis; bars: two standard errors, hollow: too few independent "
     "samples to judge, grey below: how often the vehicle was there."
 )
 COLUMNS = 3
@@ -22,19 +22,20 @@ SHOWN = 4  # models in one panel
 
 @styled()
 def draw(*, where: Mapping[str, Any]) -> Figure:
-    """Draw `where.json`: for each axis the strongest conditions of its last model."""
+    """Draw `where.json`: for each axis the conditions that explain most of any model's error."""
     models = dict(list(where.get("models", {}).items())[-SHOWN:])
-    last = list(models.values())[-1] if models else {}
     style = looks(models)
     figure = sheet(222)
     rows = figure.subplots(len(AXES), COLUMNS, sharey="row")
     for k, (axis, panels) in enumerate(zip(AXES, rows, strict=True)):
         tables = {name: m["axes"].get(axis, {}) for name, m in models.items()}
-        names = strongest(list(tables.values())[-1] if tables else {})
-        known = {f["condition"] for f in last.get("findings", []) if f["axis"] == axis}
+        names = strongest(list(tables.values()))
+        known = {
+            f["condition"] for m in models.values() for f in m["findings"] if f["axis"] == axis
+        }
         for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
             _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
-            title = _title(name, list(tables.values())[-1]) if name else ""
+            title = _title(name, [t[name] for t in tables.values() if name in t]) if name else ""
             panel.set_title(title, fontsize=7.5, weight="bold" if name in known else "normal")
         panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[k]})")
         panels[0].locator_params(axis="y", nbins=4)
@@ -44,17 +45,21 @@ def draw(*, where: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def strongest(tables: Mapping[str, Any], count: int = COLUMNS) -> list[str]:
+def strongest(models: Sequence[Mapping[str, Any]], count: int = COLUMNS) -> list[str]:
     """Names of the conditions with more than one bin that explain most, the best first."""
-    known = {name: t["share_of_error"] for name, t in tables.items() if len(t["mean"]) > 1}
+    known: dict[str, float] = {}
+    for tables in models:
+        for name, table in tables.items():
+            if len(table["mean"]) > 1:
+                known[name] = max(known.get(name, 0.0), table["share_of_error"])
     return sorted(known, key=lambda name: -known[name])[:count]
 
 
-def _title(name: str, tables: Mapping[str, Any]) -> str:
-    share = 100 * tables[name]["share_of_error"]
-    unit = "deg" if tables[name]["unit"] == "rad" else tables[name]["unit"]
+def _title(name: str, tables: Sequence[Mapping[str, Any]]) -> str:
+    shares = ", ".join(f"{100 * t['share_of_error']:.0f}" for t in tables)
+    unit = "deg" if tables[0]["unit"] == "rad" else tables[0]["unit"]
     name = name.replace("distance to the nearest", "distance to")
-    return f"{name} ({unit}): {share:.0f} %"
+    return f"{name} ({unit}): {shares} %"
 
 
 def _panel(axes: Axes, tables: Mapping[str, Any], style: Mapping[str, Look]) -> None:
@@ -117,5 +122,6 @@ def _remarks(models: Mapping[str, Any]) -> Sequence[str]:
     told = [f"{short(n)}: runs of the {m['split']} split" for n, m in models.items()]
     return [
         f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(told)}.",
-        "Percent: share of the squared error that varies with the condition; bold: beyond chance.",
+        "Percent: share of the squared error that varies with the condition, model "
+        "by model; bold: beyond chance.",
     ]
