@@ -1,10 +1,14 @@
 """A small made-up study: the inputs of every figure, table and report, by argument name."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.signal import lfilter
 
 from rovsim import AXES
+from rovsim.where import Blocks, Judged, content, explain
+from rovsim.where.conditions import BLOCK, SPEEDS, THROUGHOUT, Condition
 
 MODELS = (
     "nominal", "knn_3dof", "knn_6dof", "gp_3dof", "gp_6dof", "svgp_3dof", "svgp_6dof",
@@ -32,7 +36,43 @@ def study(
         "timing": _timing(models, rng),
         "ladder": ladder,
         "quality": {run: _quality(run, split, rng) for run, split in runs.items()},
+        "where": where(models, duration, seed),
+        **_forces(motion, rng),
     }
+
+
+def driven(seconds: float, error: np.ndarray, seed: int = 0) -> Blocks:
+    """Blocks (n,) of two made-up runs with these errors (n, 6), speeds and thrusts that wander."""
+    rng, count = np.random.default_rng(seed), int(seconds / BLOCK)
+    slow = lfilter([1.0], [1.0, -0.8], rng.standard_normal((2 * count, 12)), axis=0)
+    kinds = [Condition(THROUGHOUT, "", THROUGHOUT)]
+    kinds += [Condition(n, "m/s", "speed", a) for n, a in zip(SPEEDS, AXES, strict=True)]
+    kinds += [Condition(f"{a} thrust", "N", "thrust", a) for a in AXES]
+    columns = np.column_stack([np.zeros(2 * count), 0.2 * slow[:, :6], 10 * slow[:, 6:]])
+    values = dict(zip(kinds, columns.T, strict=True))
+    time = np.tile(BLOCK * (np.arange(count) + 0.5), 2)
+    run = np.repeat([0, 1], count)
+    return Blocks(error, rng.standard_normal((2 * count, 6)), values, time, run)
+
+
+def where(models: tuple[str, ...], seconds: float, seed: int) -> dict[str, Any]:
+    """`where.json` of models whose surge error grows with the speed."""
+    found = []
+    for k, name in enumerate(models):
+        empty = driven(seconds, np.zeros((2 * int(seconds / BLOCK), 6)), seed)
+        speed = next(x for c, x in empty.values.items() if c.name == "surge speed")
+        noise = np.random.default_rng(k).standard_normal(empty.error.shape)
+        error = _level(name) * (0.1 * noise + np.outer(speed * np.abs(speed), [1, 0, 0, 0, 0, 0]))
+        found.append(Judged(name, "train", ("3dof-1",), explain(replace(empty, error=error))))
+    return content(found)
+
+
+def _forces(motion: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
+    names = ("weight and buoyancy", "Coriolis", "quadratic damping", "thrusters", "+lift")
+    parts = {n: motion["nu"] * rng.uniform(-20, 20, 6) for n in names}
+    parts["+current"] = 1e-3 * motion["nu"]
+    missing = np.where(motion["usable"][:, None], 3 * motion["nu_dot"], np.nan)
+    return {"parts": parts, "missing": missing}
 
 
 def _level(model: str) -> float:

@@ -5,6 +5,7 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
+from rovsim.budget import Budget
 from rovsim.replay import OPEN_LOOP, Replay
 from rovsim.signals.motion import Motion
 
@@ -13,7 +14,10 @@ SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Motions by run, replays by model and run, and the JSON contents made from them."""
+    """Motions by run, replays by model and run, the JSON contents made from them, and budgets.
+
+    A budget is that of one model, by run.
+    """
 
     motions: Mapping[str, Motion]
     replays: Mapping[str, Mapping[str, Replay]]
@@ -22,6 +26,8 @@ class Evidence:
     ladder: Mapping[str, Any] = field(default_factory=dict)
     timing: Mapping[str, Any] = field(default_factory=dict)
     quality: Mapping[str, Any] = field(default_factory=dict)
+    where: Mapping[str, Any] = field(default_factory=dict)
+    budgets: Mapping[str, Budget] = field(default_factory=dict)
 
     def predicted(self, run: str, horizon: str, name: str, models: Sequence[str]) -> dict:
         """One predicted quantity by model."""
@@ -39,14 +45,19 @@ ONCE = {
     "ladder": "ladder",
     "inference_time": "timing",
     "excitation": "quality",
+    "where": "where",
+    "where_map": "where",
 }
-PER_RUN = ("velocities", "residual_series", "path_3d")
+PER_RUN = ("budget", "velocities", "residual_series", "path_3d")
 
 
 def arguments(figure: str, evidence: Evidence, run: str = "", models: Sequence[str] = ()) -> dict:
     """Keyword arguments of a figure's `draw`."""
     if figure in ONCE:
         return {ONCE[figure]: getattr(evidence, ONCE[figure])}
+    if figure == "budget":
+        found = evidence.budgets[run]
+        return {"time": found.time, "parts": found.parts, "missing": found.missing}
     motion = evidence.motions[run]
     common = {"time": motion.time, "usable": motion.usable}
     if figure == "velocities":
@@ -60,7 +71,11 @@ def arguments(figure: str, evidence: Evidence, run: str = "", models: Sequence[s
     return {**common, "eta": motion.eta, "predicted_eta": eta, "tank": tank}
 
 
-def about(figure: str, run: str) -> str:
+def about(figure: str, run: str, evidence: Evidence | None = None) -> str:
     """What a figure of one run shows, in a few words."""
-    span = "open loop" if figure == "path_3d" else f"{SHOWN} s windows"
-    return f"run {run}, {span}" if run else ""
+    if not run:
+        return ""
+    if figure == "budget":
+        model = evidence.budgets[run].model if evidence and run in evidence.budgets else ""
+        return f"run {run}, model {model}" if model else f"run {run}"
+    return f"run {run}, {'open loop' if figure == 'path_3d' else f'{SHOWN} s windows'}"

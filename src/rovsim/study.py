@@ -108,6 +108,11 @@ class Study:
         return [*BASELINES, *self.trained]
 
     @property
+    def searched(self) -> list[str]:
+        """Models searched for conditions in which they fail; the last is reported first."""
+        return [*self.trained, "nominal"]
+
+    @property
     def drawn(self) -> list[str]:
         """Models shown in time series."""
         return [m for m in DRAWN if m in self.models] or self.models[:3]

@@ -147,6 +147,16 @@ def _over_bins(steps: Inputs, nearest: Array) -> Inputs:
     )  # fmt: skip
 
 
+def at_samples(model: Model, motion: Motion, settings: ReplaySettings) -> Inputs:
+    """Inputs of one model at every measured instant: means over the steps or bins around it."""
+    steps = clock(motion, settings.step)
+    found = inputs(model, motion, steps.edges, settings.commands)
+    if not motion.binned:
+        return _around(found, steps.stride)
+    nearest = np.round((np.append(motion.time, motion.end) - motion.time[0]) / steps.h).astype(int)
+    return _over_bins(found, np.clip(nearest, 0, len(steps.edges) - 1))
+
+
 def training_runs(motions: Sequence[Motion], control: str) -> list[Motion]:
     """The runs a residual of this control may learn from.
 

@@ -53,9 +53,9 @@ def test_it_takes_any_models(name, models, tmp_path):
 @EVERY
 def test_nothing_measured_is_said_not_crashed(name, tmp_path):
     content = study()
-    for key in ("comparison", "growth", "ladder", "timing", "quality"):
+    for key in ("comparison", "growth", "ladder", "timing", "quality", "where", "parts"):
         content[key] = {}
-    for key in ("nu", "nu_dot", "eta"):
+    for key in ("nu", "nu_dot", "eta", "missing"):
         content[key] = np.full_like(content[key], np.nan)
     save(drawn(name, content), tmp_path, name)
 
@@ -77,6 +77,23 @@ def test_the_measured_line_is_the_measurement():
         known = content["nu"][content.get("usable", slice(None)), k]
         known = known[np.isfinite(known)]
         assert np.isin(np.round(known, 12), np.round(shown, 12)).mean() > 0.99
+
+
+def test_curves_of_the_error_by_condition_are_the_bin_means():
+    content = study(models=("nominal",))
+    table = content["where"]["models"]["nominal"]["axes"]["surge"]["surge speed"]
+    panel = drawn("where", content).axes[0]
+    assert panel.get_title().startswith("surge speed")
+    judged = np.array(table["judged"])
+    curve = max(panel.lines, key=lambda line: len(line.get_ydata()))
+    assert list(curve.get_ydata()) == pytest.approx(np.array(table["mean"])[judged].tolist())
+
+
+def test_the_map_frames_the_findings():
+    content = study(duration=120.0)
+    model = list(content["where"]["models"].values())[-1]
+    framed = [p for p in drawn("where_map", content).axes[0].patches if isinstance(p, Rectangle)]
+    assert len(framed) == len(model["findings"]) > 0
 
 
 def test_an_unknown_figure_names_the_nearest():

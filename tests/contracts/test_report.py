@@ -28,6 +28,7 @@ def html(content, tmp_path_factory):
     inputs = page.ReportInputs(
         "tank <b>&", content["comparison"], content["ladder"], content["timing"],
         content["quality"], [picture], {"settings": {"seed": 0}},
+        where=content["where"],
     )  # fmt: skip
     return page.render(inputs)
 
@@ -57,13 +58,27 @@ def test_the_page_needs_nothing_but_itself(html):
 
 def test_names_are_escaped_and_every_section_is_there(html):
     assert "tank &lt;b&gt;&amp;" in html
-    for heading in ("Summary", "Compare", "Ladder", "Timing", "Data quality", "Provenance"):
+    for heading in (
+        "Summary",
+        "Where the models fail",
+        "Compare",
+        "Ladder",
+        "Timing",
+        "Data quality",
+        "Provenance",
+    ):
         assert f">{heading}<" in html
 
 
 def test_the_page_shows_the_numbers_of_the_ladder(html, content):
     for step in content["ladder"]["steps"]:
         assert f"{step['windows_2s']:.3g}"[:4] in html
+
+
+def test_the_findings_of_every_model_are_sentences_on_the_page(html, content):
+    for model in content["where"]["models"].values():
+        for sentence in model["sentences"]:
+            assert sentence in html
 
 
 def test_an_empty_study_is_a_page_too():

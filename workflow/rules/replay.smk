@@ -23,6 +23,43 @@ rule replay:
         "../scripts/replay.py"
 
 
+rule search:
+    "Under which conditions one model fails, on all runs it may be judged on."
+    input:
+        motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
+        campaign=lambda w: study.campaign_file,
+        model=model_files,
+    output:
+        f"{R}/where/{{model}}.json",
+    log:
+        f"{R}/logs/search/{{model}}.log",
+    benchmark:
+        f"{R}/benchmarks/search/{{model}}.tsv"
+    params:
+        settings=study.section("replay", "signals"),
+        code=study.code("where", "effects"),
+    script:
+        "../scripts/search.py"
+
+
+rule budget:
+    "Who pushes how much in one run, by the nominal model, and what is missing."
+    input:
+        motion=f"{R}/motions/{{run}}.npz",
+        campaign=lambda w: study.campaign_file,
+    output:
+        f"{R}/budget/{{run}}.npz",
+    log:
+        f"{R}/logs/budget/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/budget/{{run}}.tsv"
+    params:
+        settings=study.section("replay", "signals"),
+        code=study.code("budget", "effects"),
+    script:
+        "../scripts/budget.py"
+
+
 rule score:
     "Errors of one model on one run."
     input:

@@ -14,7 +14,9 @@ rule compare:
         scores=of_models("scores", "json", study.models),
         replays=of_models("replay", "npz", study.models),
         motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
+        searches=expand(f"{R}/where/{{model}}.json", model=study.searched),
     output:
+        where=f"{R}/where.json",
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
         growth=f"{R}/growth.json",
@@ -40,6 +42,7 @@ for figure in ONCE:
             ladder=f"{R}/ladder.json",
             growth=f"{R}/growth.json",
             timing=f"{R}/timing.json",
+            where=f"{R}/where.json",
             quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         output:
             png=report(
@@ -69,6 +72,7 @@ for figure in PER_RUN:
         input:
             motion=f"{R}/motions/{{run}}.npz",
             replays=expand(f"{R}/replay/{{model}}/{{{{run}}}}.npz", model=study.drawn),
+            budget=[f"{R}/budget/{{run}}.npz"] if figure == "budget" else [],
         output:
             png=report(
                 f"{R}/figures/{figure}-{{run}}.png",
@@ -116,6 +120,7 @@ rule report:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
         timing=f"{R}/timing.json",
+        where=f"{R}/where.json",
         quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         figures=expand(f"{R}/figures/{{name}}.png", name=[*ONCE, *study.figures()]),
     output:

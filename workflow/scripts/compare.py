@@ -7,11 +7,12 @@ from rovsim.jobs import job
 from rovsim.replay import Replay
 from rovsim.scores import LADDER, comparison, growth, step
 from rovsim.signals.motion import Motion
+from rovsim.where import merged
 
 
 def main(
     *, scores: list[Path], replays: list[Path], motions: list[Path], models: list[str],
-    out: dict[str, Path],
+    searches: list[Path], out: dict[str, Path],
 ) -> None:  # fmt: skip
     measured = [Motion.read(path) for path in motions]
     steps, curves = [], {}
@@ -19,6 +20,8 @@ def main(
         runs = [Replay.read(p) for p in replays[k * len(measured) : (k + 1) * len(measured)]]
         steps.append(step(name, measured, runs))
         curves[name] = growth(measured, runs)
+    found = [read_json(path) for path in searches]
+    write_json(out["where"], merged(found))
     write_json(out["growth"], {"models": curves})
     write_json(out["ladder"], {"schema": LADDER, "steps": steps})
     write_json(out["comparison"], comparison(read_json(path) for path in scores))
@@ -30,6 +33,7 @@ if __name__ == "__main__":
             scores=[Path(path) for path in snakemake.input.scores],
             replays=[Path(path) for path in snakemake.input.replays],
             motions=[Path(path) for path in snakemake.input.motions],
+            searches=[Path(path) for path in snakemake.input.searches],
             models=list(snakemake.params.models),
             out={name: Path(path) for name, path in snakemake.output.items()},
         )

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from rovsim.budget import Budget
 from rovsim.evidence import Evidence, arguments
 from rovsim.figures import kind
 from rovsim.figures.style import save
@@ -10,10 +11,11 @@ from rovsim.replay import Replay
 from rovsim.signals.motion import Motion
 
 
-def main(*, figure: str, motion: Path, replays: list[Path], out: Path) -> None:
+def main(*, figure: str, motion: Path, replays: list[Path], budgets: list[Path], out: Path) -> None:
     measured, found = Motion.read(motion), [Replay.read(path) for path in replays]
     run = measured.run.id
-    evidence = Evidence({run: measured}, {r.model: {run: r} for r in found})
+    pushed = {found.run: found for found in map(Budget.read, budgets)}
+    evidence = Evidence({run: measured}, {r.model: {run: r} for r in found}, budgets=pushed)
     drawn = kind(figure).draw(**arguments(figure, evidence, run, [r.model for r in found]))
     save(drawn, out.parent, out.stem)
 
@@ -24,5 +26,6 @@ if __name__ == "__main__":
             figure=snakemake.params.figure,
             motion=Path(snakemake.input.motion),
             replays=[Path(path) for path in snakemake.input.replays],
+            budgets=[Path(path) for path in snakemake.input.budget],
             out=Path(snakemake.output.png),
         )

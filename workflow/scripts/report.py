@@ -29,7 +29,8 @@ if __name__ == "__main__":
         main(
             campaign=snakemake.params.campaign,
             contents={
-                name: Path(snakemake.input[name]) for name in ("comparison", "ladder", "timing")
+                name: Path(snakemake.input[name])
+                for name in ("comparison", "ladder", "timing", "where")
             },
             quality=dict(
                 zip(snakemake.params.runs, map(Path, snakemake.input.quality), strict=True)

@@ -2,19 +2,26 @@
 
 rovsim compare campaign=DIR model=[nominal,FILE,…] out=OUT
 
-Writes OUT/comparison.json (errors per model, run, axis and horizon), figures and OUT/report.html.
+Writes OUT/comparison.json (errors per model, run, axis and horizon), OUT/where.json (under which
+conditions each model fails), OUT/budget.json (who pushes how much), figures and OUT/report.html,
+and prints a summary.
 """
 
 from pathlib import Path
 
+from rovsim.budget import Budget, budget, totals
 from rovsim.config import Settings
 from rovsim.evidence import PER_RUN, Evidence, about, arguments
 from rovsim.files import write_json
-from rovsim.loading import measured, models
+from rovsim.loading import Measured, measured, models
+from rovsim.model import Model
 from rovsim.progress import counted
 from rovsim.provenance import provenance
 from rovsim.replay import replay
-from rovsim.scores import comparison, growth, score
+from rovsim.report.terminal import told
+from rovsim.scores import comparison, growth, score, step
+from rovsim.training import samples
+from rovsim.where import content, judged
 
 
 def run(settings: Settings) -> None:
@@ -22,6 +29,19 @@ def run(settings: Settings) -> None:
     data = measured(settings)
     chosen = models(settings, data.vehicle)
     out = Path(settings.out or f"results/{data.campaign.name}/compare")
+    evidence = _evidence(data, chosen, settings)
+    _present(out, data.campaign.name, evidence, settings)
+    write_json(out / "where.json", evidence.where)
+    write_json(out / "budget.json", totals(list(evidence.budgets.values())))
+    write_json(out / "comparison.json", evidence.comparison)
+    motions = list(data.motions.values())
+    ladder = [step(n, motions, list(runs.values())) for n, runs in evidence.replays.items()]
+    print(told({s["model"]: s["windows_2s"] for s in ladder}, evidence.where))
+    print(f"\n{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}")
+
+
+def _evidence(data: Measured, chosen: list[Model], settings: Settings) -> Evidence:
+    """Replays, scores, findings and budgets of all models."""
     replays: dict[str, dict] = {model.name: {} for model in chosen}
     jobs = [(model, motion) for model in chosen for motion in data.motions.values()]
     for model, motion in counted(jobs, "replaying"):
@@ -31,12 +51,23 @@ def run(settings: Settings) -> None:
     motions = list(data.motions.values())
     scores = [score(motion, replays[name][motion.run.id]) for name in replays for motion in motions]
     curves = {name: growth(motions, list(runs.values())) for name, runs in replays.items()}
-    evidence = Evidence(
-        data.motions, replays, comparison(scores), {"models": curves}, quality=data.quality
-    )
-    _present(out, data.campaign.name, evidence, settings)
-    write_json(out / "comparison.json", evidence.comparison)
-    print(f"{out / 'comparison.json'} and {out / 'report.html'}")
+    searched = counted([m for m in chosen if not m.inert], "searching")
+    where = content([judged(m, motions, settings.signals, settings.replay) for m in searched])
+    return Evidence(
+        data.motions, replays, comparison(scores), {"models": curves}, quality=data.quality,
+        where=where, budgets=_budgets(data, chosen[-1], settings),
+    )  # fmt: skip
+
+
+def _budgets(data: Measured, model: Model, settings: Settings) -> dict[str, Budget]:
+    """Budget of the last model, by run."""
+    return {
+        run: budget(
+            model, motion, samples(model, motion, settings.signals, settings.replay),
+            settings.replay,
+        )
+        for run, motion in data.motions.items()
+    }  # fmt: skip
 
 
 def _present(out: Path, name: str, evidence: Evidence, settings: Settings) -> None:
@@ -45,7 +76,8 @@ def _present(out: Path, name: str, evidence: Evidence, settings: Settings) -> No
     from rovsim.report import page
 
     names = list(evidence.replays)
-    wanted = [(figure, "") for figure in ("error_by_axis", "error_growth", "excitation")]
+    once = ("where", "where_map", "error_by_axis", "error_growth", "excitation")
+    wanted = [(figure, "") for figure in once]
     wanted += [(figure, run) for run in evidence.motions for figure in PER_RUN]
     pictures = []
     for figure, one in counted(wanted, "drawing"):
@@ -53,9 +85,9 @@ def _present(out: Path, name: str, evidence: Evidence, settings: Settings) -> No
         stem = f"{figure}-{one}" if one else figure
         save(drawn, out / "figures", stem)
         path = out / "figures" / f"{stem}.png"
-        pictures.append(page.Picture.read(path, figure, about(figure, one)))
+        pictures.append(page.Picture.read(path, figure, about(figure, one, evidence)))
     inputs = page.ReportInputs(
         name, evidence.comparison, quality=evidence.quality, pictures=pictures,
-        provenance=provenance(settings),
+        provenance=provenance(settings), where=evidence.where,
     )  # fmt: skip
     page.write(out / "report.html", inputs)

@@ -67,8 +67,8 @@ class Picture:
 class ReportInputs:
     """Everything the report shows; what is empty is said to be missing, not left out silently.
 
-    `comparison`, `ladder`, `timing`: contents of the JSON files of those names. `quality`: the
-    quality reports by run. `pictures`: in the order of appearance. `provenance`: nested plain
+    `comparison`, `ladder`, `timing`, `where`: contents of the JSON files of those names. `quality`:
+    the quality reports by run. `pictures`: in the order of appearance. `provenance`: nested plain
     values (settings, code digest, versions).
     """
 
@@ -79,6 +79,7 @@ class ReportInputs:
     quality: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     pictures: Sequence[Picture] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    where: Mapping[str, Any] = field(default_factory=dict)
 
 
 def render(inputs: ReportInputs) -> str:
@@ -95,6 +96,7 @@ def render(inputs: ReportInputs) -> str:
     return environment.get_template("report.html").render(
         campaign=inputs.campaign,
         summary=summary(inputs.comparison, inputs.ladder, inputs.timing, inputs.quality),
+        where=inputs.where.get("models", {}),
         errors=_errors(inputs.comparison),
         ladder=ladder_table(inputs.ladder),
         timing=inputs.timing.get("inference", {}),

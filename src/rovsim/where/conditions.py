@@ -1,0 +1,133 @@
+"""In what condition the vehicle was, and what the model missed there: means over short blocks.
+
+The error is the acceleration error a_res = a_real - a_sim of a model that is evaluated at the
+measured state, averaged over blocks of 0.5 s: the velocity a model gains too little in half a
+second, divided by half a second. Why this one: a velocity error at the end of a 2 s window is the
+sum of all that went wrong on the way, under conditions that have changed since; and a single a_res
+is mostly the noise of two differentiations, which the mean over a block removes (what is left is
+the noise of two velocities). Half a second is short against the motion of such a vehicle.
+"""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.frames import to_euler
+from rovsim.signals.motion import Motion
+from rovsim.training import Samples
+
+BLOCK = 0.5  # s
+SEEN = 0.5  # share of a block that must have been seen
+SPEEDS = (
+    "surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate"
+)  # fmt: skip
+THROUGHOUT, HEADING = "throughout", "heading"
+ANGLES = ("roll angle", "pitch angle", HEADING)
+UNITS = {"speed": ("m/s", "rad/s"), "thrust": ("N", "N m"), "change": ("N/s", "N m/s")}
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Something that varied: name, unit, kind, and the axis it belongs to (or "").
+
+    Kinds: throughout, speed, absolute (speed), thrust, change (of thrust), attitude, place, time.
+    """
+
+    name: str
+    unit: str
+    kind: str
+    axis: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Means over blocks of `BLOCK` s, n of them.
+
+    `error` (n, 6) of the acceleration, m/s2 and rad/s2; `measured` (n, 6) acceleration; `values`
+    (n,) by condition; `time` (n,) s and `run` (n,) to which run a block belongs.
+    """
+
+    error: Array
+    measured: Array
+    values: dict[Condition, Array]
+    time: Array
+    run: Array
+
+
+def blocks(motion: Motion, samples: Samples) -> Blocks:
+    """Blocks of one run in which the motion was seen."""
+    time = motion.time[samples.index] - motion.time[0]
+    step = float(np.median(np.diff(motion.time)))
+    block, count = np.unique(np.floor(time / BLOCK).astype(int), return_counts=True)
+    kept = count * step >= SEEN * BLOCK
+    member = np.searchsorted(block, np.floor(time / BLOCK).astype(int))
+
+    def mean(x: Array) -> Array:
+        total = np.zeros((len(block), *x.shape[1:]))
+        np.add.at(total, member, x)
+        return (total.T / count).T[kept]
+
+    values = {
+        c: _mean_angle(mean, x) if c.name == HEADING else mean(x)
+        for c, x in _values(motion, samples, time).items()
+    }
+    measured = motion.nu_dot[samples.index]
+    run = np.zeros(int(kept.sum()), int)
+    return Blocks(mean(samples.a_res), mean(measured), values, mean(time), run)
+
+
+def together(parts: Sequence[Blocks]) -> Blocks:
+    """Blocks of several runs; a condition that is unknown in one of them is left out."""
+    shared = [c for c in parts[0].values if all(c in p.values for p in parts)]
+    joined = {c: np.concatenate([p.values[c] for p in parts]) for c in shared}
+    run = np.concatenate([np.full(len(p.time), k) for k, p in enumerate(parts)])
+
+    def join(name: str) -> Array:
+        return np.concatenate([getattr(p, name) for p in parts])
+
+    return Blocks(join("error"), join("measured"), joined, join("time"), run)
+
+
+def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Array]:
+    """Every condition at the samples."""
+    found = {Condition(THROUGHOUT, "", THROUGHOUT): np.zeros(len(time))}
+    rate = np.gradient(samples.wrench, time, axis=0) if len(time) > 1 else 0 * samples.wrench
+    for k, axis in enumerate(AXES):
+        turning = int(k >= 3)
+        found[Condition(SPEEDS[k], UNITS["speed"][turning], "speed", axis)] = samples.nu[:, k]
+    for k, axis in enumerate(AXES):
+        name, unit = f"absolute {SPEEDS[k]}", UNITS["speed"][int(k >= 3)]
+        found[Condition(name, unit, "absolute", axis)] = np.abs(samples.nu[:, k])
+    for k, axis in enumerate(AXES):
+        unit = UNITS["thrust"][int(k >= 3)]
+        found[Condition(f"{axis} thrust", unit, "thrust", axis)] = samples.wrench[:, k]
+    for k, axis in enumerate(AXES):
+        unit = UNITS["change"][int(k >= 3)]
+        found[Condition(f"change of {axis} thrust", unit, "change", axis)] = rate[:, k]
+    angles = to_euler(samples.attitude)
+    for k, (name, axis) in enumerate(zip(ANGLES, AXES[3:], strict=True)):
+        found[Condition(name, "rad", "attitude", axis)] = angles[:, k]
+    return found | _place(motion, samples.index) | {Condition("time in the run", "s", "time"): time}
+
+
+def _place(motion: Motion, index: Array) -> dict[Condition, Array]:
+    """Position in MoCap axes; distances where walls and surface are known."""
+    position = motion.eta[index, :3]
+    in_mocap = position * motion.site.axes
+    walls, surface = motion.site.tank[:2], motion.site.tank[2, 0]
+    names = "xy" if np.isfinite(surface) else "xyz"
+    found = {Condition(f"MoCap {n}", "m", "place"): in_mocap[:, k] for k, n in enumerate(names)}
+    if np.isfinite(walls).all():
+        away = np.concatenate([position[:, :2] - walls[:, 0], walls[:, 1] - position[:, :2]], 1)
+        found[Condition("distance to the nearest wall", "m", "place")] = away.min(axis=1)
+    if np.isfinite(surface):
+        found[Condition("depth below the surface", "m", "place")] = position[:, 2] - surface
+    return found
+
+
+def _mean_angle(mean, angle: Array) -> Array:
+    """Mean direction, which does not jump where the angle does."""
+    return np.arctan2(mean(np.sin(angle)), mean(np.cos(angle)))

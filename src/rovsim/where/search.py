@@ -1,0 +1,45 @@
+"""Search the runs of a campaign for conditions in which a model fails."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+from rovsim.model import Model
+from rovsim.replay import ReplaySettings
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.training import Samples, samples
+from rovsim.where.conditions import blocks, together
+from rovsim.where.findings import Where, explain
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What was found for one model, on the runs it was judged on, all of one split."""
+
+    model: str
+    split: str
+    runs: tuple[str, ...]
+    where: Where
+
+
+def chosen(model: Model, motions: Sequence[Motion]) -> list[Motion]:
+    """The runs a model is searched on.
+
+    Train runs: whoever decides by the findings what to add has not looked at the test runs yet.
+    Test runs for a model with a trained residual, which knows the train runs by heart. Where the
+    campaign has only the other split, that one.
+    """
+    split = "test" if model.residual is not None else "train"
+    return [m for m in motions if m.run.split == split] or list(motions)
+
+
+def judged(
+    model: Model, motions: Sequence[Motion], signals: SignalSettings, settings: ReplaySettings
+) -> Judged:
+    """Search the runs of a campaign for conditions in which the model fails."""
+    runs = chosen(model, motions)
+    found: list[Samples] = [samples(model, m, signals, settings) for m in runs]
+    parts = [blocks(m, s) for m, s in zip(runs, found, strict=True) if len(s.index) > 1]
+    where = explain(together(parts)) if parts else Where.nothing()
+    names = tuple(m.run.id for m in runs)
+    return Judged(model.name, runs[0].run.split, names, where)

@@ -1,0 +1,153 @@
+"""One plain sentence a finding: axis, condition, direction, size, share, and what often does it."""
+
+import numpy as np
+
+from rovsim.where.conditions import THROUGHOUT, Condition
+from rovsim.where.findings import Finding, Where
+
+UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
+POSITIVE = {
+    "surge": "forward", "sway": "to starboard", "heave": "downward", "roll": "to starboard",
+    "pitch": "nose up", "yaw": "to starboard",
+}  # fmt: skip
+NEGATIVE = {
+    "surge": "backward", "sway": "to port", "heave": "upward", "roll": "to port",
+    "pitch": "nose down", "yaw": "to port",
+}  # fmt: skip
+# On the condition's own axis: what it means that error and condition have equal, or other, signs.
+RELATIONS = {
+    "speed": ("brakes too much when moving fast", "brakes too little when moving fast"),
+    "thrust": ("answers too weakly to its thrust", "answers too strongly to its thrust"),
+    "change": ("answers too late to a change of thrust", "answers too early to a change of thrust"),
+    "attitude": ("rights itself too strongly", "rights itself too weakly"),
+}
+USUAL = {
+    "speed": "damping, or an added mass that is off",
+    "absolute": "lift or coupled damping",
+    "thrust": "thruster gain, or an added mass that is off",
+    "change": "thruster lag, a delay or clock offset of the commands",
+    "attitude": "the centre of buoyancy, or a trim moment",
+    "place": "tether, walls, surface, or a world frame that is not level",
+    "time": "a battery that empties, or drifting clocks",
+    THROUGHOUT: "net buoyancy, trim, a constant push",
+    "heading": "a current, a tether, or a world frame that is not level",
+    "coupled": "a coupling (allocation, lift, off-diagonal damping or mass), or an autopilot "
+    "that the log does not show",
+}
+
+
+def sentence(found: Finding) -> str:
+    """A finding in plain language, complete in itself."""
+    after = f", beyond {' and '.join(found.after)}" if found.after else ""
+    return f"{found.axis.capitalize()}{after}: {_what(found)} {_share(found)} {_usual(found)}"
+
+
+def summary(where: Where) -> list[str]:
+    """Sentences of all findings, or why there are none."""
+    if not where.enough:
+        return ["Too little was recorded to tell under which condition the model fails."]
+    if not where.findings:
+        return [
+            "No condition explains the error: whatever varies (speed, thrust, attitude, place, "
+            "time), the mean error stays within what chance gives."
+        ]
+    return [sentence(found) for found in where.findings]
+
+
+def amount(value: float) -> str:
+    """Two significant digits without an exponent."""
+    return f"{value:.0f}" if abs(value) >= 10 else f"{value:#.2g}".rstrip(".")
+
+
+def relation(found: Finding) -> float:
+    """Correlation of the bin means with the condition, weighted by count; NaN with one bin."""
+    at = found.table.binning
+    x, y, w = at.center[at.judged], found.table.mean[at.judged], at.count[at.judged]
+    if len(x) < 2:
+        return float("nan")
+    x, y = x - np.average(x, weights=w), y - np.average(y, weights=w)
+    spread = np.sqrt(np.sum(w * x * x) * np.sum(w * y * y))
+    return float(np.sum(w * x * y) / spread) if spread > 0 else 0.0
+
+
+def _what(found: Finding) -> str:
+    """What happens, and how large it gets."""
+    condition, unit = found.table.binning.condition, UNITS.get(found.axis, "rad/s²")
+    if condition.kind == THROUGHOUT:
+        return _constant(found, unit)
+    own = RELATIONS.get(condition.kind) if condition.axis == found.axis else None
+    r = relation(found)
+    if own and condition.name != "heading" and abs(r) > 0.6:
+        return f"the model {own[0] if r > 0 else own[1]}; {_extreme(found, unit)}."
+    return f"the error changes with {condition.name}: {_range(found, unit)}."
+
+
+def _constant(found: Finding, unit: str) -> str:
+    mean = float(found.table.mean[0])
+    side = (POSITIVE if mean > 0 else NEGATIVE)[found.axis]
+    return (
+        f"throughout, the vehicle accelerates {amount(abs(mean))} {unit} more {side} "
+        "than the model, whatever else varies."
+    )
+
+
+def _extreme(found: Finding, unit: str) -> str:
+    """Where along the condition the mean error is largest."""
+    b = int(np.argmax(np.where(found.table.binning.judged, np.abs(found.table.mean), -1.0)))
+    mean, condition = abs(float(found.table.mean[b])), found.table.binning.condition
+    return (
+        f"the error varies with {condition.name} and reaches {amount(mean)} {unit} "
+        f"{_span(found, b)}"
+    )
+
+
+def _range(found: Finding, unit: str) -> str:
+    """Lowest and highest mean error and where they are."""
+    judged, mean = found.table.binning.judged, found.table.mean
+    low = int(np.argmin(np.where(judged, mean, np.inf)))
+    high = int(np.argmax(np.where(judged, mean, -np.inf)))
+    return (
+        f"{_signed(mean[low])} {unit} {_span(found, low)}, "
+        f"{_signed(mean[high])} {unit} {_span(found, high)} (measured minus model)"
+    )
+
+
+def _signed(value: float) -> str:
+    return f"{'−' if value < 0 else '+'}{amount(abs(float(value)))}"
+
+
+def _span(found: Finding, b: int) -> str:
+    """A bin in words; the outer bins are open."""
+    edges, condition = found.table.binning.edges, found.table.binning.condition
+    if condition.unit == "rad":
+        return f"near {np.degrees(found.table.binning.center[b]):.0f}°".replace("-", "−")
+    low, high = (_plain(x) for x in edges[b : b + 2])
+    if b == 0:
+        return f"below {high} {condition.unit}"
+    if b == len(edges) - 2:
+        return f"above {low} {condition.unit}"
+    return f"between {low} and {high} {condition.unit}"
+
+
+def _plain(value: float) -> str:
+    return f"{'−' if value < 0 else ''}{amount(abs(float(value)))}"
+
+
+def _share(found: Finding) -> str:
+    """Share of the error, and which other conditions would do as well."""
+    share = f"{100 * found.share_of_error:.0f} % of the squared {found.axis} error"
+    at = found.table.binning.condition
+    text = f"{share} is constant." if at.kind == THROUGHOUT else f"{share} varies with it."
+    others = [c.name for c in found.alike[:2]]
+    return f"{text} (As well with {' or '.join(others)}: they varied together.)" if others else text
+
+
+def _usual(found: Finding) -> str:
+    return f"Often: {USUAL[_cause(found.axis, found.table.binning.condition)]}."
+
+
+def _cause(axis: str, condition: Condition) -> str:
+    if condition.name == "heading":
+        return "heading"
+    moved = condition.kind in ("speed", "thrust", "attitude")
+    return "coupled" if moved and condition.axis not in ("", axis) else condition.kind

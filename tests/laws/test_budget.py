@@ -1,0 +1,78 @@
+"""The budget: parts add up, and each is what its equation says."""
+
+import numpy as np
+import pytest
+
+from rovsim.budget import RESTORING, Budget, budget
+from rovsim.effects import catalogue
+from rovsim.frames import exp
+from rovsim.replay import ReplaySettings
+from rovsim.signals.chain import SignalSettings
+from rovsim.training import accelerations, at_samples, samples
+from worlds import at_rest, model, motion, sticks
+
+
+def run():
+    start = at_rest()
+    start[3:7] = exp(np.array([0.2, -0.1, 0.7]))
+    start[7:] = [0.4, -0.2, 0.1, 0.3, -0.2, 0.5]
+    return motion(sticks(), start=start)
+
+
+def made(world, found=None):
+    found = found or run()
+    return budget(
+        world, found, samples(world, found, SignalSettings(), ReplaySettings()), ReplaySettings()
+    )
+
+
+def some(cls):
+    return cls(**{p.name: min(p.high, max(p.low, p.default + 0.3)) for p in cls.parameters})
+
+
+@pytest.mark.parametrize("cls", catalogue().values(), ids=lambda cls: cls.id)
+def test_the_parts_add_up_to_the_models_inertia_force(cls):
+    world, measured = model(some(cls)), run()
+    at = at_samples(world, measured, ReplaySettings())
+    expected = accelerations(world, measured, at) @ world.body.M.T
+    parts = made(world, measured).parts
+    np.testing.assert_allclose(sum(parts.values()), expected, atol=1e-9)
+    assert f"+{cls.id}" in parts
+
+
+def test_each_part_is_what_its_equation_says(tmp_path):
+    world, measured = model(), run()
+    found = made(world, measured)
+    nu, hydro = measured.nu[0], world.vehicle.hydrodynamics
+    linear = -np.array(hydro.linear_damping) * nu
+    np.testing.assert_allclose(found.parts["linear damping"][0], linear, atol=1e-9)
+    quadratic = -np.array(hydro.quadratic_damping) * np.abs(nu) * nu
+    np.testing.assert_allclose(found.parts["quadratic damping"][0], quadratic, atol=1e-9)
+    for name in ("Coriolis", "added-mass Coriolis"):
+        assert found.parts[name][0] @ nu == pytest.approx(0, abs=1e-9)
+    weight = world.body.weight - world.body.buoyancy
+    assert np.linalg.norm(found.parts[RESTORING][0, :3]) == pytest.approx(abs(weight))
+    found.write(tmp_path / "b.npz")
+    again = Budget.read(tmp_path / "b.npz")
+    assert again.rms() == found.rms()
+    assert list(again.parts) == list(found.parts)
+
+
+def test_the_missing_force_is_the_one_that_was_left_out():
+    """A push the model lacks comes back as missing, newton for newton."""
+    from dataclasses import replace
+
+    from rovsim.effects.constant_wrench import ConstantWrench
+
+    measured, world = run(), model()
+    pushed = model(ConstantWrench(surge=3.0, yaw=-1.0))
+    at = at_samples(pushed, measured, ReplaySettings())
+    moved = replace(measured, nu_dot=accelerations(pushed, measured, at))
+    settings = SignalSettings()
+    found = samples(world, moved, settings, ReplaySettings())
+    plain = samples(world, measured, settings, ReplaySettings())
+    both = [budget(world, moved, s, ReplaySettings()).missing for s in (found, plain)]
+    change = (both[0] - both[1] - moved.nu_dot @ world.body.M.T)[5:-5]
+    np.testing.assert_allclose(change, 0.0, atol=1e-9)
+    assert "+constant_wrench" in made(pushed).parts
+    np.testing.assert_allclose(made(pushed).parts["+constant_wrench"][:, 0], 3.0, atol=1e-9)

@@ -1,0 +1,37 @@
+"""Search one model's errors for what they vary with."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.files import write_json
+from rovsim.jobs import job
+from rovsim.model import load_model
+from rovsim.replay import ReplaySettings
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.strict import checked
+from rovsim.vehicle import campaign_vehicle
+from rovsim.where import content, judged
+
+
+def main(
+    *, motions: list[Path], campaign: Path, file: str, name: str, out: Path, settings: dict
+) -> None:
+    vehicle = campaign_vehicle(load_campaign(campaign))
+    model = load_model(file or name, vehicle).called(name)
+    signals = checked(SignalSettings, settings["signals"], "conf")
+    how = checked(ReplaySettings, settings["replay"], "conf")
+    runs = [Motion.read(path) for path in motions]
+    write_json(out, content([judged(model, runs, signals, how)]))
+
+
+if __name__ == "__main__":
+    with job(snakemake):
+        main(
+            motions=[Path(path) for path in snakemake.input.motions],
+            campaign=Path(snakemake.input.campaign),
+            file=str(snakemake.input.get("model") or ""),
+            name=snakemake.wildcards.model,
+            out=Path(snakemake.output[0]),
+            settings=snakemake.params.settings,
+        )
