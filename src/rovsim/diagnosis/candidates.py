@@ -33,9 +33,10 @@ def candidates(watches: Sequence[Watch]) -> list[Candidate]:
     site = watches[0].motion.site
     found = []
     for cls in catalogue().values():
-        free = tuple(p.name for p in cls.parameters if p.fitted)
-        starts = [cls(**start) for start in cls.starts_at(site)]
-        found += [Candidate(cls, s, free) for s in starts if _possible(s, watches)]
+        for values in cls.starts_at(site):
+            start = cls(**values)
+            if _possible(start, watches):
+                found.append(Candidate(cls, start, cls.free_at(values)))
     return found
 
 

@@ -40,6 +40,14 @@ class Term:
         high = np.array([p.high for p in self.parameters]) / scale - self.x
         return np.maximum(low, -trusted) - 1e-9, np.minimum(high, trusted) + 1e-9
 
+    def merged(self, more: "Term") -> "Term":
+        """This term with the changes of another of the same effect added."""
+        given, added = self.effect.given(), more.effect.given()
+        defaults = {p.name: p.default for p in self.effect.parameters}
+        values = {k: given.get(k, defaults[k]) + v - defaults[k] for k, v in added.items()}
+        free = (*self.free, *(name for name in more.free if name not in self.free))
+        return Term(self.effect.with_values(values), free)
+
     def at(self, x: Array) -> "Term":
         """The same term at other scaled values, kept inside their range."""
         values = {
@@ -81,8 +89,12 @@ class Hypothesis:
         return replace(self, terms=tuple(t.at(p) for t, p in zip(self.terms, parts, strict=True)))
 
     def with_term(self, term: Term) -> "Hypothesis":
-        """The hypothesis and one more term."""
-        return replace(self, terms=(*self.terms, term))
+        """The hypothesis and one more term; two of the same effect become one."""
+        same = [i for i, own in enumerate(self.terms) if own.id == term.id]
+        if not same:
+            return replace(self, terms=(*self.terms, term))
+        both = self.terms[same[0]].merged(term)
+        return replace(self, terms=tuple(both if i == same[0] else t for i, t in enumerate(self.terms)))
 
     def without(self, index: int) -> "Hypothesis":
         """The hypothesis without one of its terms."""

@@ -12,10 +12,11 @@ from rovsim.diagnosis.noise import Tuning
 from rovsim.diagnosis.watch import Watch
 from rovsim.effects import catalogue
 from rovsim.effects.base import Wrench
-from rovsim.engine.at import Inputs, Jobs
+from rovsim.engine.at import NO_MEMORY, Inputs, Jobs
 from rovsim.engine.compiled import engine
+from rovsim.memory import measured_memory
 from rovsim.model import Model
-from rovsim.replay import place
+from rovsim.replay import as_true, place
 from rovsim.thrust import Between
 
 
@@ -27,7 +28,7 @@ def observe(
     readings, starts, row = _seen(models, watch)
     out = np.empty((len(models) * len(watch.time), 6))
     module.observe(
-        _jobs(watch, starts), watch.h, watch.ends, packed([m.body for m in models]), inputs, p,
+        _jobs(models, watch, starts), watch.h, watch.ends, packed([m.body for m in models]), inputs, p,
         place(watch.motion), readings, row, tuning.gains, tuning.decay(watch.h),
         watch.motion.binned, out,
     )  # fmt: skip
@@ -98,9 +99,17 @@ def _seen(models: Sequence[Model], watch: Watch) -> tuple[Array, Array, Array]:
     return np.stack(readings), np.stack(starts), np.array(row, np.int64)
 
 
-def _jobs(watch: Watch, starts: Array) -> Jobs:
+def remembered(models: Sequence[Model], watch: Watch, steps: Array) -> Array:
+    """What the water remembers (m * s, 6) at some integration steps (s,); empty if it never does."""
+    if not any(m.body.forgets for m in models):
+        return NO_MEMORY
+    rows = [measured_memory(m, as_true(m, watch.motion), watch.edges) for m in models]
+    return np.concatenate([r[steps] if r.size else np.zeros((len(steps), 6)) for r in rows])
+
+
+def _jobs(models: Sequence[Model], watch: Watch, starts: Array) -> Jobs:
     """One job for each model and span."""
-    count = len(starts)
+    count = len(models)
     first = np.array([a for a, _ in watch.spans], np.int64)
     steps = np.array([b - a for a, b in watch.spans], np.int64)
     begin = np.array([a for a, _ in watch.rows], np.int64)
@@ -108,5 +117,5 @@ def _jobs(watch: Watch, starts: Array) -> Jobs:
     return Jobs(
         starts.reshape(-1, 13), np.tile(watch.ends[first] * watch.h, count),
         np.tile(first, count), np.tile(steps, count), np.repeat(np.arange(count), len(first)),
-        np.tile(begin, count) + offset,
+        np.tile(begin, count) + offset, remembered(models, watch, watch.ends[first]),
     )  # fmt: skip

@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.body import packed
-from rovsim.diagnosis.observe import batch
+from rovsim.diagnosis.observe import batch, remembered
 from rovsim.diagnosis.watch import Watch
 from rovsim.engine.at import Jobs
 from rovsim.model import Model
@@ -74,6 +74,7 @@ def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:
     jobs = Jobs(
         begin.reshape(-1, 13), np.tile(first * watch.h, count), np.tile(first, count),
         np.tile(steps, count), np.repeat(np.arange(count), len(spans)), rows[:-1],
+        remembered(models, watch, first),
     )  # fmt: skip
     out = np.empty((count * total, 13))
     module.integrate_parallel(

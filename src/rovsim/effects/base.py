@@ -126,6 +126,11 @@ class Effect(ABC):
         """Values from which fits begin at this site; more than one where zero is a flat place."""
         return cls.starts
 
+    @classmethod
+    def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:
+        """Parameters that a fit from these values may change."""
+        return tuple(p.name for p in cls.parameters if p.fitted)
+
     def check(self, site: Site, kind: CommandKind) -> None:  # noqa: B027 - most need nothing
         """Refuse a run that lacks what this effect needs.
 

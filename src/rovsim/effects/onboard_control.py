@@ -1,6 +1,7 @@
 """A control loop on board that the log does not show."""
 
 from math import atan2, sqrt
+from typing import Mapping
 
 import numpy as np
 from numpy import ndarray as Array
@@ -63,6 +64,11 @@ class OnboardControl(Wrench, Autopilot):
         ),
         {"gain_heave": 0.5, "bandwidth_heave": 1.0},
     )
+
+    @classmethod
+    def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:
+        """Only the loops that are closed: a further one would take its demand from the mixer."""
+        return tuple(name for name in super().free_at(start) if name in start)
 
     def check(self, site: Site, kind: CommandKind) -> None:
         """The log must hold demands."""

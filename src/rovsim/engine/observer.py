@@ -9,12 +9,14 @@ A steady-state Kalman filter per axis; its innovations are what the model could 
 
 from numba import njit, prange
 
-from rovsim.engine.at import State
+from rovsim.engine.at import ZERO6, State
 
 # <equation>
 from rovsim.engine.equation import rotation
 from rovsim.engine.integration import (
     constants_of,
+    memory_after,
+    push_over_step,
     renormalised,
     runge_kutta,
     site_of,
@@ -23,14 +25,17 @@ from rovsim.engine.integration import (
 )
 
 # </equation>
-from rovsim.engine.vectors import add3, add6, compiled, inlined, into_body, into_world, vector6
+from rovsim.engine.vectors import (
+    add3,
+    add6,
+    compiled,
+    each6,
+    inlined,
+    into_body,
+    into_world,
+    vector6,
+)
 
-
-
-@inlined
-def product6(a, b):
-    """a times b, element by element."""
-    return a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3], a[4] * b[4], a[5] * b[5]
 
 
 @inlined
@@ -72,10 +77,10 @@ def velocity_error(mean, y):
 @inlined
 def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
     """The state after a reading; where velocities are read, poses are taken as measured."""
-    nu = add6(x.nu, 1.0, product6(gain_nu, e))
+    nu = add6(x.nu, 1.0, each6(gain_nu, e))
     if by_velocity:
         return State((y[0], y[1], y[2]), (y[3], y[4], y[5], y[6]), nu)
-    k = product6(gain_pose, e)
+    k = each6(gain_pose, e)
     position = add3(x.position, 1.0, into_world(rotation(x.attitude), k[:3]))
     return State(position, turned(x.attitude, k[3:]), nu)
 
@@ -88,19 +93,23 @@ def observe_job(
     m, first, at, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
     x, body, own, place = state_of(jobs.state[job]), constants_of(bodies, m), p[m], site_of(site)
     gain_pose, gain_nu, gain_a = vector6(gains[0]), vector6(gains[1]), vector6(gains[2])
-    fade, zero = vector6(decay), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    a, n = zero, ends[first]
+    fade, a, n = vector6(decay), ZERO6, ends[first]
+    memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
     for k in range(first + 1, first + 1 + jobs.steps[job]):
-        mean, count = zero, ends[k] - n
+        mean, count = ZERO6, ends[k] - n
         while n < ends[k]:
-            t, before = start + (n - ends[first]) * h, x.nu
-            x = runge_kutta(t, x, h, body, own, step_of(inputs, inputs.row[m], n), a, place)
-            mean = add6(add6(mean, 0.5 / count, before), 0.5 / count, x.nu)
-            a, n = product6(fade, a), n + 1
+            t, before, push = start + (n - ends[first]) * h, x, a
+            if body.forgets != 0.0:
+                push = add6(a, 1.0, push_over_step(x, memory, h, body))
+            x = runge_kutta(t, x, h, body, own, step_of(inputs, inputs.row[m], n), push, place)
+            if body.forgets != 0.0:
+                memory = memory_after(memory, before, x, h, body)
+            mean = add6(add6(mean, 0.5 / count, before.nu), 0.5 / count, x.nu)
+            a, n = each6(fade, a), n + 1
         y = readings[row[m], k]
         e = velocity_error(mean, y) if by_velocity else pose_error(x, y)
         x = renormalised(corrected(x, y, e, gain_pose, gain_nu, by_velocity))
-        a = add6(a, 1.0, product6(gain_a, e))
+        a = add6(a, 1.0, each6(gain_a, e))
         for i in range(6):
             out[at + k - first - 1, i] = e[i]
 
