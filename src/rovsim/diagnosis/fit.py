@@ -12,6 +12,7 @@ from rovsim.diagnosis.noise import Noise, fit_noise
 
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
+ROUGH = 1e-3  # of what the model does not explain: a wrong model need not be fitted finely
 FIRST_TRUST, LARGEST_TRUST = 1e-4, 1e4  # damping of the steps (Levenberg-Marquardt)
 
 
@@ -68,7 +69,8 @@ def _descend(here: Hypothesis, observatory: Observatory, noise: Noise):
         if better is None:
             return here, e, J, H
         here = better
-        if float(step @ H @ step) < CONVERGED**2 * len(step):
+        excess = max(0.0, cost - len(target))
+        if float(step @ H @ step) < max(CONVERGED**2 * len(step), ROUGH * excess):
             break
     e, J = observatory.linearised(here)
     return here, e, J, H

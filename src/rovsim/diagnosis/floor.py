@@ -19,9 +19,11 @@ from rovsim.model import Model
 from rovsim.replay import windows
 from rovsim.scores import normalised, rms
 from rovsim.signals.chain import SignalSettings, velocities
+from rovsim.signals.filter import filter_eta
 from rovsim.thrust import Between
 
 DRAWS = 8
+PAD = 1.0  # s before and after, so that the filter has settled
 
 
 def noise_floor(
@@ -72,21 +74,16 @@ def _pushes(model: Model, watch: Watch, noise: Noise, random) -> Array:
 
 def _noisy(watch: Watch, noise: Noise, signals: SignalSettings, random) -> Array:
     """States (n, 13) as another measurement of the same motion would have reported them."""
-    motion, state = watch.motion, watch.motion.state.copy()
-    kicks = noise.reading * random.normal(size=(len(state), 6))
-    if motion.binned:
-        state[:, 7:] += kicks
+    state = watch.motion.state.copy()
+    if watch.motion.binned:
+        state[:, 7:] += noise.reading * random.normal(size=(len(state), 6))
         return state
-    for a, b in motion.segments():
-        state[a:b, :3] += frames.rotate(state[a:b, 3:7], kicks[a:b, :3])
-        state[a:b, 3:7] = frames.multiply(state[a:b, 3:7], frames.exp(kicks[a:b, 3:]))
-        state[a:b] = _measured(state[a:b, :7], motion.eta[a:b], motion.state_nu[a:b], watch, signals)
+    pad = round(PAD / watch.period)
+    kicks = noise.reading * random.normal(size=(len(state) + 2 * pad, 6))
+    poses = np.hstack([kicks[:, :3], frames.exp(kicks[:, 3:])])  # about a vehicle at rest
+    inside = slice(pad, len(poses) - pad)
+    poses, nu = filter_eta(poses, watch.period, signals.filter), velocities(poses, watch.period, signals)[0]
+    state[:, :3] += frames.rotate(state[:, 3:7], poses[inside, :3])
+    state[:, 3:7] = frames.multiply(state[:, 3:7], poses[inside, 3:])
+    state[:, 7:] += nu[inside]
     return state
-
-
-def _measured(noisy: Array, eta: Array, nu: Array, watch: Watch, signals: SignalSettings) -> Array:
-    """Filtered pose and velocity of noisy poses; what the filter does to the motion is left out."""
-    clean, _ = velocities(eta, watch.period, signals)
-    found, _ = velocities(noisy, watch.period, signals)
-    smooth = np.concatenate([eta, nu + found - clean], axis=1)
-    return smooth

@@ -22,7 +22,10 @@ from rovsim.diagnosis.watch import Watch
 FALSE_ALARM = 0.002  # of all looks together, for each of the three kinds
 MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score
 HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
+COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
+SUDDEN = 0.2  # s, about what the readings resolve
+HEAVY, HEAVY_TAIL = 6.0, 1.0  # standard deviations of the kurtosis, and the kurtosis beyond 3
 
 
 @dataclass(frozen=True)
@@ -62,8 +65,9 @@ def leftover(
         level = float(noise.level[i])
         used = np.concatenate([one[:, i] for one in J], axis=1)
         found += _shapes(i, w, used, watches, filters, level)
+        found += _lines(i, w, watches, filters, level)
+        found += _sudden(i, w, watches, level)
         for run, watch, f in zip(w, watches, filters, strict=True):
-            found += _lines(i, run, watch, f, level)
             found += _kicks(i, run, watch, f, level)
     return sorted(found, key=lambda s: -s.surprise)
 
@@ -115,48 +119,86 @@ def _if_matters(i, what, size, level, statistic, limit) -> Iterator[Structure]:
         yield Structure(AXES[i], what, float(size), float(share), float(statistic / limit))
 
 
-def _lines(i, w, watch, f, level) -> Iterator[Structure]:
-    """A spectral line of constant strength, and one that grows with speed squared."""
-    speed = np.linalg.norm(watch.motion.state_nu[watch.index[watch.settled], :3], axis=1) ** 2
-    b, a = response(f, watch.period)
-    for envelope, text in ((np.ones(len(w)), ""), (speed / np.sqrt(np.mean(speed**2)), ", growing with speed squared")):
-        spectrum = _spectrum(w * envelope, watch)
-        frequency = np.arange(len(spectrum)) / (2 * len(spectrum) * watch.period)
-        fits = (frequency >= 1.0 / (len(w) * watch.period)) & (frequency <= HIGHEST)
-        statistic = np.where(fits, 2.0 * np.abs(spectrum) ** 2 / np.sum(envelope**2), 0.0)
-        k = int(np.argmax(statistic))
-        z = np.exp(2j * np.pi * frequency[k] * watch.period)
-        gain = abs(np.polyval(b, z) / np.polyval(a, z))
-        size = np.sqrt(2.0) * abs(spectrum[k]) / np.sum(envelope**2) / max(gain, 1e-12)
-        limit = chi2.isf(FALSE_ALARM / (2 * len(AXES) * fits.sum() * RUNS), 2)
-        what = f"a period of {1 / frequency[k]:.3g} s in run {watch.motion.run.id}{text}" if k else ""
-        yield from _if_matters(i, what, size, level, statistic[k], limit)
+def _lines(i, w, watches, filters, level) -> Iterator[Structure]:
+    """One frequency for all runs, alone or with its overtones; perhaps growing with speed squared."""
+    period = watches[0].period
+    longest = max(watch.time[-1] for watch in watches)
+    count = int(longest / period) + 1
+    frequency = np.arange(count + 1) / (2 * count * period)
+    usable = np.flatnonzero((frequency >= 1.0 / longest) & (frequency <= HIGHEST))
+    for text in ("", ", growing with speed squared"):
+        envelopes = [_speed_squared(x) if text else np.ones(x.settled.sum()) for x in watches]
+        spectra = [
+            _spectrum(x * e, watch, count) for x, e, watch in zip(w, envelopes, watches, strict=True)
+        ]
+        power = sum(
+            2.0 * np.abs(s) ** 2 / np.sum(e**2) for s, e in zip(spectra, envelopes, strict=True)
+        )
+        yield from _combs(i, power, frequency, usable, watches, filters, level, text, envelopes)
 
 
-RUNS = 2  # looks: every run is searched by itself
+def _combs(i, power, frequency, usable, watches, filters, level, text, envelopes):
+    looks = len(usable) * len(COMBS) * 2 * len(AXES)
+    samples = sum(float(np.sum(e**2)) for e in envelopes)
+    for comb in COMBS:
+        within = usable[usable * comb[-1] < len(power)]
+        statistic = sum(power[m * within] for m in comb)
+        best = int(np.argmax(statistic))
+        k = within[best]
+        limit = chi2.isf(FALSE_ALARM / looks, 2 * len(comb) * len(watches))
+        b, a = response(filters[0], watches[0].period)
+        size = 0.0
+        for m in comb:  # rms of the push, from the power of its lines
+            z = np.exp(2j * np.pi * frequency[m * k] * watches[0].period)
+            size += power[m * k] / samples / abs(np.polyval(b, z) / np.polyval(a, z)) ** 2
+        what = f"a period of {1.0 / frequency[k]:.3g} s{', with overtones' if len(comb) > 1 else ''}{text}"
+        yield from _if_matters(i, what, np.sqrt(size), level, statistic[best], limit)
 
 
-def _spectrum(w: Array, watch: Watch) -> Array:
+def _speed_squared(watch: Watch) -> Array:
+    """Speed squared at the settled readings, of unit mean square."""
+    at = np.clip(watch.index[watch.settled], 0, len(watch.motion.time) - 1)
+    found = np.sum(np.nan_to_num(watch.motion.state_nu[at, :3]) ** 2, axis=1)
+    return found / np.sqrt(np.mean(found**2))
+
+
+def _spectrum(w: Array, watch: Watch, count: int) -> Array:
     """Fourier sums on the run's own clock, twice as dense as its length gives."""
-    n = int(round(watch.time[-1] / watch.period)) + 1
-    full = np.zeros(n)
-    full[np.clip(np.round(watch.time[watch.settled] / watch.period).astype(int), 0, n - 1)] = w
-    return np.fft.rfft(full, 2 * n)[:n]
+    full = np.zeros(2 * count)
+    full[np.round(watch.time[watch.settled] / watch.period).astype(int) % (2 * count)] = w
+    return np.fft.rfft(full)
+
+
+def _sudden(i, w, watches, level) -> Iterator[Structure]:
+    """Pushes that come at once: innovations with a heavier tail than any Gaussian disturbance."""
+    few = max(1, round(SUDDEN / watches[0].period))
+    sums = np.concatenate([_sums(x, few) for x in w])
+    n = len(sums)
+    kurtosis = float(np.mean(sums**4) / np.mean(sums**2) ** 2) - 3.0
+    z = kurtosis * np.sqrt(n / 24.0)
+    if z > HEAVY and kurtosis > HEAVY_TAIL:
+        often = n * SUDDEN / max(1, np.sum(np.abs(sums) > 3.0 * np.std(sums)))
+        what = f"sudden pushes, one in about {often:.2g} s"
+        yield Structure(AXES[i], what, level, 1.0, z / HEAVY)
+
+
+def _sums(w: Array, few: int) -> Array:
+    return w[: len(w) // few * few].reshape(-1, few).sum(axis=1)
 
 
 def _kicks(i, w, watch, f, level) -> Iterator[Structure]:
-    """A push that lasts a moment, at any time."""
+    """A single push that lasts a moment, at any time."""
     b, a = response(f, watch.period)
     for duration in KICKS:
         n = max(1, round(duration / watch.period))
         template = lfilter(b, a, np.concatenate([np.ones(n), np.zeros(round(2.0 / watch.period))]))
         if len(template) >= len(w):
             continue
-        factor = np.correlate(w, template, "valid") / float(template @ template)
+        power = float(template @ template)
+        factor = np.correlate(w, template, "valid") / power
         k = int(np.argmax(np.abs(factor)))
-        statistic = factor[k] ** 2 * float(template @ template)
-        limit = chi2.isf(FALSE_ALARM / (len(KICKS) * len(AXES) * len(factor)), 1)
+        limit = chi2.isf(FALSE_ALARM / (2 * len(KICKS) * len(AXES) * len(factor)), 1)
         at = watch.time[watch.settled][k]
         what = f"a push of {duration:g} s at {at:.1f} s in run {watch.motion.run.id}"
         # one moment counts by its own size, not by its mean over the run
-        yield from _if_matters(i, what, abs(factor[k]), 4.0 * level, statistic, limit)
+        yield from _if_matters(i, what, abs(factor[k]), 4.0 * level, factor[k] ** 2 * power, limit)

@@ -12,7 +12,11 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.candidates import Candidate
 from rovsim.diagnosis.evidence import Observatory
+from rovsim.diagnosis.gram import coarse, inner_products
 from rovsim.diagnosis.hypothesis import Hypothesis
+from rovsim.diagnosis.noise import Noise
+
+SHRINK = 1e-4  # of each column's own square: parallel candidates share
 
 Progress = Callable[[int, int], None]
 
@@ -61,3 +65,19 @@ def library(
         progress(done + 1, len(candidates))
     columns = [np.concatenate(part) for part in parts]
     return Library(tuple(candidates), e0, columns, tuple(secant), tuple(derivatives))
+
+
+def remainder(found: Library, observatory: Observatory, noise: Noise) -> list[Array]:
+    """What no candidate explains, all together: innovations (6, n) of each run.
+
+    Their noise is close to the true one whatever is missing, so candidates can be compared under it.
+    """
+    stacked = [np.concatenate([e[None], c]) for e, c in zip(found.base, found.columns, strict=True)]
+    white = coarse(observatory.white(stacked, noise))
+    M = inner_products(white.reshape(len(white), -1))
+    H = M[1:, 1:] + np.diag(SHRINK * np.diag(M)[1:] + 1e-9)
+    x = -np.linalg.solve(H, M[1:, 0])
+    return [
+        e + np.tensordot(x, c, axes=1)
+        for e, c in zip(found.base, found.columns, strict=True)
+    ]

@@ -5,21 +5,40 @@ The price of a parameter is 2 log P for P columns to choose from (risk inflation
 single number.
 """
 
-from dataclasses import dataclass, field
-from typing import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from pydantic import Field, PositiveInt
 
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import Fit, fit
-from rovsim.diagnosis.gram import Gain, greedy, inner_products, joint, without
+from rovsim.diagnosis.gram import Gain, coarse, greedy, inner_products, joint, without
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.library import Library
 from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.windows import window_errors
+from rovsim.model import Model
+from rovsim.strict import Section
 
-FEW = 4
+CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
+
+
+class SearchSettings(Section):
+    """How effects are chosen.
+
+    `false_alarm` is the chance of naming an effect where none is missing, per addition. `relevant`:
+    an effect without which no axis' error in 2 s windows is larger by this share is left out,
+    however sure it is: at that size the laboratory's clocks and roundings look like effects.
+    """
+
+    false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.01
+    draws: PositiveInt = 1000  # of noise alone, for the best gain by chance
+    trials: PositiveInt = 3
+    most_effects: PositiveInt = 6
+    relevant: Annotated[float, Field(ge=0)] = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +51,14 @@ class Proposal:
 
 @dataclass(frozen=True, eq=False)
 class Desk:
-    """Everything a search looks at."""
+    """Everything a search looks at; `trials` proposals are refitted before one is chosen."""
 
     observatory: Observatory
     library: Library
     noise: Noise
     price: float
-    trials: int = 3
-    log: list[str] = field(default_factory=list)
+    trials: int
+    relevant: float
 
     def fit(self, hypothesis: Hypothesis) -> Fit:
         """Fit under the common noise."""
@@ -58,15 +77,6 @@ def products(desk: Desk, current: Fit, noise: Noise) -> tuple[Array, int, int]:
     ]
     white = coarse(desk.observatory.white(stacked, noise))
     return inner_products(white.reshape(len(white), -1)), 1, 1 + len(current.J[0])
-
-
-def coarse(white: Array) -> Array:
-    """Means of a few neighbours (..., n // few), still of unit variance.
-
-    What a vehicle of this size does is slower than 10 Hz; frames come ten times as fast.
-    """
-    n = white.shape[-1] // FEW * FEW
-    return white[..., :n].reshape(*white.shape[:-1], -1, FEW).sum(axis=-1) / np.sqrt(FEW)
 
 
 def proposals(desk: Desk, current: Fit) -> list[Proposal]:
@@ -130,7 +140,6 @@ def pruned(desk: Desk, current: Fit) -> Fit:
         trial = desk.fit(smaller)
         if desk.score(trial) < desk.score(current):
             return current
-        desk.log.append(f"dropped: now {trial.hypothesis.names}")
         current = trial
     return current
 
@@ -158,27 +167,66 @@ def _without_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
     return Hypothesis(h.base, (*h.terms[:i], smaller, *h.terms[i + 1 :]))
 
 
+def worth_trying(desk: Desk, current: Fit, but: Sequence[str] = ()) -> list[Proposal]:
+    """The proposals that could turn out best once refitted."""
+    ranked = [p for p in proposals(desk, current) if p.term.id not in but and p.gain > 0.0]
+    return [p for p in ranked[: desk.trials] if p.gain > CLOSE * ranked[0].gain]
+
+
 def forward(desk: Desk, current: Fit, threshold: float) -> Fit | None:
-    """The best single addition, refitted; None when none is better than chance."""
-    ranked = [p for p in proposals(desk, current) if p.gain > 0.0][: desk.trials]
-    tried = [desk.fit(current.hypothesis.with_term(p.term)) for p in ranked]
-    for p, t in zip(ranked, tried):
-        desk.log.append(f"  try {p.term.id} {p.term.free} predicted {p.gain:.1f} got {desk.score(t)-desk.score(current):.1f} {p.term.effect!r} -> {t.hypothesis.terms[-1].effect!r}")
-    best = max(tried, key=desk.score, default=None)
-    if best is None or desk.score(best) - desk.score(current) < threshold:
-        return None
-    return best
+    """The best single addition, refitted and pruned; None when none beats chance and matters."""
+    tried = [
+        desk.fit(current.hypothesis.with_term(p.term)) for p in worth_trying(desk, current)
+    ]
+    for best in sorted(tried, key=desk.score, reverse=True):
+        if desk.score(best) - desk.score(current) < threshold:
+            break
+        if matters(desk, best, current.hypothesis.model):
+            return pruned(desk, best)
+    return None
 
 
-def swapped(desk: Desk, current: Fit) -> Fit:
-    """Replace any one term by any other effect while that is more likely."""
-    for i in range(len(current.hypothesis.terms)):
+def matters(desk: Desk, found: Fit, without_it: Model) -> bool:
+    """Whether some axis' error in 2 s windows is noticeably larger without an effect."""
+    between, watches = desk.observatory.between, desk.observatory.watches
+    rmse, _ = window_errors([found.hypothesis.model, without_it], watches, between)
+    return float(np.max(rmse[1] / rmse[0])) - 1.0 > desk.relevant
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An effect that could stand in for a selected one, and by how much it is less likely.
+
+    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1.
+    """
+
+    effect: str
+    instead_of: str
+    deficit: float
+
+
+def contested(desk: Desk, current: Fit) -> tuple[Fit, list[Rival]]:
+    """Replace any one term by another effect while that is more likely; then what comes close."""
+    rivals = []
+    for i, term in enumerate(current.hypothesis.terms):
         rest = desk.fit(current.hypothesis.without(i))
-        gone = current.hypothesis.terms[i].id
-        ranked = [p for p in proposals(desk, rest) if p.term.id != gone and p.gain > 0.0]
-        for p in ranked[: desk.trials - 1]:
+        for p in worth_trying(desk, rest, but=[term.id]):
             trial = desk.fit(rest.hypothesis.with_term(p.term))
-            desk.log.append(f"  swap {gone} by {p.term.id} {desk.score(trial)-desk.score(current):.1f}")
-            if desk.score(trial) > desk.score(current):
-                return swapped(desk, trial)
-    return current
+            deficit = desk.score(current) - desk.score(trial)
+            if deficit < 0.0:
+                return contested(desk, pruned(desk, trial))
+            rivals.append(Rival(p.term.id, term.id, deficit))
+    return current, rivals
+
+
+def search(desk: Desk, base: Fit, settings: SearchSettings, seed: int) -> tuple[Fit, list[Rival]]:
+    """From the base to the model to which nothing can be added, swapped or taken away."""
+    current, rivals = base, []
+    while len(current.hypothesis.terms) < settings.most_effects:
+        by_chance = chance(desk, current, settings.draws, seed)
+        threshold = max(0.0, float(np.quantile(by_chance, 1.0 - settings.false_alarm)))
+        found = forward(desk, current, threshold)
+        if found is None:
+            break
+        current, rivals = contested(desk, found)
+    return current, rivals

@@ -9,11 +9,12 @@ A steady-state Kalman filter per axis; its innovations are what the model could 
 
 from numba import njit, prange
 
-from rovsim.engine.at import ZERO6, State
+from rovsim.engine.at import State
 
 # <equation>
 from rovsim.engine.equation import rotation
 from rovsim.engine.integration import (
+    ZERO6,
     constants_of,
     memory_after,
     push_over_step,

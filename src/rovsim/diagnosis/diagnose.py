@@ -1,0 +1,249 @@
+"""Diagnosis: which physical effects a model lacks, how sure that is, and what is left unexplained.
+
+    observe      the base model runs along the train runs, corrected by a filter (observe, noise)
+    library      how each candidate would change what the filter could not foresee
+    search       add, refit, swap, prune; against what chance gives to the best of all candidates
+    held out     an addition must help on blocks it was not fitted to, and matter in 2 s windows
+    leftover     structure that no candidate explains
+    test runs    opened once, for the errors that are reported
+"""
+
+from dataclasses import dataclass
+from typing import Callable, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.diagnosis.candidates import candidates
+from rovsim.diagnosis.evidence import Observatory
+from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.heldout import held_out_gain
+from rovsim.diagnosis.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.leftover import Structure, leftover
+from rovsim.diagnosis.library import Library, library, remainder
+from rovsim.diagnosis.noise import Noise, fit_noise, tuning
+from rovsim.diagnosis.search import (
+    Desk,
+    Proposal,
+    Rival,
+    SearchSettings,
+    matters,
+    proposals,
+    search,
+)
+from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.windows import window_errors
+from rovsim.model import Model
+from rovsim.recording.quality import EXCITED
+from rovsim.thrust import Between
+
+Stages = Callable[[str], None]
+
+# Turbulence that moves this vehicle by some mm/s2, and a usual motion capture: only a first guess.
+FIRST_NOISE = Noise(np.array([0.02] * 3 + [0.05] * 3), np.ones(6), np.array([1e-3] * 3 + [3e-3] * 3))
+NOISE_ROUNDS = 3
+SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
+
+
+@dataclass(frozen=True, eq=False)
+class Selected:
+    """A selected effect: its share of the base's error that it removes, and how sure its name is."""
+
+    term: Term
+    std: dict[str, float]
+    error_reduction: float
+    probability: float
+
+
+@dataclass(frozen=True, eq=False)
+class Ranked:
+    """One effect by itself on top of the base."""
+
+    term: Term
+    error_reduction: float
+    probability: float
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What was found on the train runs.
+
+    `ladder` the base and the models after each selected effect; `noise` what remains.
+    """
+
+    base: Model
+    fit: Fit | None
+    selected: list[Selected]
+    ranking: list[Ranked]
+    rivals: list[Rival]
+    structures: list[Structure]
+    still: list[str]
+    seconds: float
+
+    @property
+    def enough(self) -> bool:
+        """Whether there was enough to judge anything."""
+        return self.fit is not None
+
+    @property
+    def verdict(self) -> str:
+        """One of the four of the contract."""
+        if not self.enough:
+            return "insufficient_data"
+        if self.structures:
+            return "unexplained"
+        if self.selected:
+            return "missing_effects"
+        return "insufficient_data" if self.still else "adequate"
+
+    def models(self) -> list[Model]:
+        """The base, then one model more for each selected effect."""
+        found = [self.base]
+        for one in self.selected:
+            found.append((found[-1] + one.term.effect).called(f"+{one.term.id}"))
+        return found
+
+
+def diagnose(
+    base: Model,
+    train: Sequence[Watch],
+    settings: SearchSettings,
+    between: Between,
+    seed: int = 0,
+    stage: Stages = lambda name: None,
+) -> Diagnosis:
+    """Find what a model lacks on the train runs of a campaign."""
+    watches = [w for w in train if len(w.spans)]
+    seconds = float(sum(w.settled.sum() * w.period for w in watches))
+    still = not_excited(watches)
+    if seconds < SHORTEST or len(still) == len(AXES):
+        return Diagnosis(base, None, [], [], [], [], still, seconds)
+    stage("observing")
+    observatory, known, noise = _observed(base, watches, between)
+    price = 2.0 * float(np.log(known.count))
+    desk = Desk(observatory, known, noise, price, settings.trials, settings.relevant)
+    nothing = desk.fit(Hypothesis(base))
+    alone = proposals(desk, nothing)
+    stage("searching")
+    found, rivals = search(desk, nothing, settings, seed)
+    stage("checking")
+    found = _checked(desk, found)
+    rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
+    structures = _leftover(found, observatory)
+    return Diagnosis(
+        base, found, _selected(found, rivals, watches, between),
+        _ranking(alone, base, watches, between), rivals, structures, still, seconds,
+    )  # fmt: skip
+
+
+def not_excited(watches: Sequence[Watch]) -> list[str]:
+    """Axes that no train run moved: nothing can be said about them."""
+    moved = np.zeros(len(AXES), bool)
+    for one in watches:
+        moved |= np.std(one.motion.nu[one.motion.usable], axis=0) > EXCITED
+    return [axis for axis, yes in zip(AXES, moved, strict=True) if not yes]
+
+
+def _observed(base: Model, watches, between) -> tuple[Observatory, Library, Noise]:
+    """Filters, columns and noise that suit these runs, found in turns."""
+    noise, start = FIRST_NOISE, Hypothesis(base)
+    found = Observatory.built(watches, base, noise, between)
+    possible = candidates(watches)
+    for _ in range(2):
+        known = library(found, start, possible)
+        for _ in range(NOISE_ROUNDS):
+            left = remainder(known, found, noise)
+            noise, _ = fit_noise(left, watches, found.tunings, found.damping, noise)
+        tuned = Observatory.built(watches, base, noise, between)
+        if _alike(found, tuned):
+            break
+        found = tuned
+    return found, known, noise
+
+
+def _alike(a: Observatory, b: Observatory) -> bool:
+    """Whether the gains of two observatories agree within a third: whitening does the rest."""
+    pairs = zip(a.tunings, b.tunings, strict=True)
+    return all(np.allclose(one.gains, other.gains, rtol=0.33) for one, other in pairs)
+
+
+def _checked(desk: Desk, found: Fit) -> Fit:
+    """Without effects that do not help on held-out blocks, or that no user would see."""
+    while found.hypothesis.terms:
+        h = found.hypothesis
+        idle = [
+            i
+            for i, columns in enumerate(h.columns)
+            if held_out_gain(found, desk.observatory, columns) <= 0.0
+            or not matters(desk, found, h.without(i).model)
+        ]
+        if not idle:
+            break
+        found = desk.fit(h.without(idle[-1]))  # the one that came last
+    return found
+
+
+def _leftover(found: Fit, observatory: Observatory) -> list[Structure]:
+    """Structure in the innovations of the final model."""
+    wanted = [tuning(found.noise, observatory.damping, w) for w in observatory.watches]
+    counts = np.cumsum([int(w.settled.sum()) for w in observatory.watches])[:-1]
+    white = observatory.white(found.e, found.noise)
+    J = observatory.white(found.J, found.noise)
+    return leftover(
+        np.split(white, counts, axis=-1), np.split(J, counts, axis=-1), observatory.watches,
+        wanted, found.noise,
+    )  # fmt: skip
+
+
+def _selected(found: Fit, rivals, watches, between) -> list[Selected]:
+    """Selected effects, the one that removes most error first, then the next on top of it."""
+    left, order, errors = list(range(len(found.hypothesis.terms))), [], []
+    model = found.hypothesis.base
+    start = _error([model], watches, between)[0]
+    now = start
+    while left:
+        tried = [model + found.hypothesis.terms[i].effect for i in left]
+        after = _error(tried, watches, between)
+        best = int(np.argmin(after))
+        order.append(left.pop(best))
+        errors.append((now - after[best]) / start)
+        model, now = tried[best], after[best]
+    return [
+        Selected(
+            found.hypothesis.terms[i], _std(found, i), float(gain), _probability(found, i, rivals)
+        )
+        for i, gain in zip(order, errors, strict=True)
+    ]
+
+
+def _error(models, watches, between) -> Array:
+    return np.array([np.nan if e is None else e for e in window_errors(models, watches, between)[1]])
+
+
+def _std(found: Fit, i: int) -> dict[str, float]:
+    term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
+    return {
+        p.name: float(found.std[k] * p.scale)
+        for p, k in zip(term.parameters, columns, strict=True)
+    }
+
+
+def _probability(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
+    """Of this name among all that were tried in its place, from their likelihoods."""
+    name = found.hypothesis.terms[i].id
+    odds = sum(np.exp(-0.5 * min(r.deficit, 700.0)) for r in rivals if r.instead_of == name)
+    return float(1.0 / (1.0 + odds))
+
+
+def _ranking(alone: Sequence[Proposal], base: Model, watches, between) -> list[Ranked]:
+    """Every candidate by itself, to first order, best gain first."""
+    models = [base, *(base + p.term.effect for p in alone)]
+    errors = _error(models, watches, between)
+    gains = np.array([0.5 * max(p.gain, 0.0) for p in alone])
+    weight = np.exp(gains - gains.max()) * (gains > 0.0)
+    share = weight / (weight.sum() + np.exp(-gains.max()))
+    return [
+        Ranked(p.term, float(max(0.0, 1.0 - e / errors[0])), float(s))
+        for p, e, s in zip(alone, errors[1:], share, strict=True)
+    ]
