@@ -7,6 +7,7 @@ from rovsim.study import Study
 
 study = Study(config)
 try:
+    config["effects_file"] = study.effect_files
     study.trained
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)

@@ -9,7 +9,7 @@ from typing import Any, Sequence
 from rovsim.errors import BadInput, RovsimError, nearest
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
-PLAIN = ("campaign", "model", "effects", "out", "diagnosis", "to")
+PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to")
 COMMANDS = Path(__file__).with_name("commands")
 
 
@@ -50,8 +50,11 @@ def _main(words: list[str]) -> None:
         _sweep([f"command={command}", *overrides])
     else:
         from rovsim.config import compose
+        from rovsim.effects import use_effect_files
 
-        _command(command).run(compose([f"command={command}", *overrides]))
+        settings = compose([f"command={command}", *overrides])
+        use_effect_files(settings.effect_files)
+        _command(command).run(settings)
 
 
 def _help(names: Sequence[str]) -> str:

@@ -44,6 +44,7 @@ class Settings(Section):
     campaign: str | None
     model: str | list[str]
     out: str | None
+    effects_file: str | list[str] | None = None
     control: Literal["3dof", "6dof"]
     seed: int = Field(ge=0)
     signals: SignalSettings
@@ -53,6 +54,12 @@ class Settings(Section):
     study: StudySettings
     timing: TimingSettings
     tracking: TrackingSettings
+
+    @property
+    def effect_files(self) -> list[Path]:
+        """Files that declare the user's own effects."""
+        named = self.effects_file or []
+        return [Path(name) for name in ([named] if isinstance(named, str) else named)]
 
     @property
     def learner(self) -> LearnerSettings:

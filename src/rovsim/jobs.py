@@ -4,8 +4,10 @@ import logging
 import sys
 import traceback
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Iterator
 
+from rovsim.effects import use_effect_files
 from rovsim.errors import RovsimError
 
 
@@ -16,6 +18,7 @@ def job(snakemake: Any) -> Iterator[None]:
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s")
     logging.info("rule %s %s", snakemake.rule, dict(snakemake.wildcards))
     try:
+        use_effect_files([Path(name) for name in snakemake.config.get("effects_file", [])])
         yield
     except RovsimError as error:
         logging.error("%s", error)

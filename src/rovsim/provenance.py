@@ -5,7 +5,7 @@ import platform
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import rovsim
 from rovsim.strict import Section
@@ -14,10 +14,11 @@ SOURCE = Path(rovsim.__file__).parent
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch")
 
 
-def digest(*names: str) -> str:
+def digest(*names: str, effects: Sequence[Path] = ()) -> str:
     """Digest of modules of rovsim and of all they import, however deep.
 
-    A package stands for all its modules: what is found by looking has no import to follow.
+    A package stands for all its modules: what is found by looking has no import to follow. So do
+    files of `effects` from elsewhere, for modules that use the catalogue.
     """
     graph = _graph()
     wanted: set[str] = set()
@@ -28,8 +29,9 @@ def digest(*names: str) -> str:
     for package in _discovered(wanted):
         wanted |= graph.find_descendants(package)
     content = hashlib.sha256()
-    for name in sorted(wanted):
-        content.update(_file(name).read_bytes())
+    outside = effects if "rovsim.effects" in wanted else ()
+    for path in (*map(_file, sorted(wanted)), *outside):
+        content.update(path.read_bytes())
     return content.hexdigest()[:16]
 
 
@@ -64,7 +66,8 @@ def provenance(settings: Section) -> dict[str, Any]:
     packages = {name: version(name) for name in PACKAGES}
     versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
     chosen = settings.model_dump(mode="json", exclude={"command", "tracking", "timing"})
-    return {"settings": chosen, "code": digest("rovsim"), "versions": versions}
+    code = digest("rovsim", effects=getattr(settings, "effect_files", ()))
+    return {"settings": chosen, "code": code, "versions": versions}
 
 
 def flattened(content: Mapping[str, Any], above: str = "") -> dict[str, Any]:

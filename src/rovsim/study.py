@@ -7,6 +7,7 @@ from typing import Any, Mapping
 
 from rovsim.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.config import Settings, compose
+from rovsim.effects import use_effect_files
 from rovsim.errors import BadInput
 from rovsim.evidence import PER_RUN
 from rovsim.provenance import digest, own_digest, provenance
@@ -19,19 +20,33 @@ DRAWN = ("nominal", "knn_6dof", "gp_6dof")  # few enough to be told apart in a t
 
 @dataclass(frozen=True)
 class Study:
-    """One campaign, one configuration. `config` is Snakemake's: `campaign`, `overrides`."""
+    """One campaign, one configuration.
+
+    `config` is Snakemake's: `campaign`, `overrides`, `effects_file`.
+    """
 
     config: Mapping[str, Any]
 
     @cached_property
     def settings(self) -> Settings:
-        """conf/, with the overrides given to Snakemake."""
-        return compose(self._overrides)
+        """conf/, with the overrides and effect files given to Snakemake."""
+        composed, named = compose(self._overrides), self.config.get("effects_file")
+        return composed.model_copy(update={"effects_file": named}) if named else composed
 
     @cached_property
     def _overrides(self) -> list[str]:
         given = self.config.get("overrides", [])
         return given.split() if isinstance(given, str) else list(given)
+
+    @cached_property
+    def effect_files(self) -> list[str]:
+        """Files of the user's own effects, in use from now on.
+
+        Raises:
+            BadInput: one of them cannot be used.
+        """
+        use_effect_files(self.settings.effect_files)
+        return [str(path) for path in self.settings.effect_files]
 
     @cached_property
     def campaign_path(self) -> str | None:
@@ -141,10 +156,10 @@ class Study:
         dumped = self.settings.signals.model_dump(mode="json")
         return {name: dumped[name] for name in names}
 
-    @staticmethod
-    def code(*modules: str) -> str:
+    def code(self, *modules: str) -> str:
         """Digest of modules and all they import: an edit re-runs what it touches."""
-        return digest(*(f"rovsim.{module}" for module in modules))
+        names = (f"rovsim.{module}" for module in modules)
+        return digest(*names, effects=self.settings.effect_files)
 
     @staticmethod
     def own_code(package: str) -> str:

@@ -5,6 +5,7 @@ import sys
 from typing import Any
 
 from rovsim.config import settings_of
+from rovsim.effects import use_effect_files
 from rovsim.errors import RovsimError
 
 
@@ -16,6 +17,7 @@ def job(composed: Any) -> None:
     if settings.out is None:
         settings = settings.model_copy(update={"out": HydraConfig.get().runtime.output_dir})
     try:
+        use_effect_files(settings.effect_files)
         importlib.import_module(f"rovsim.commands.{settings.command}").run(settings)
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim.effects import catalogue, effect
+from rovsim.effects import built_in, effect
 from rovsim.effects.base import Autopilot, Coefficients, Wrench
 from rovsim.errors import BadInput
 from rovsim.model import read_model
@@ -20,7 +20,7 @@ PUBLIC = {
     "thruster_gain", "thrust_asymmetry", "voltage_sag", "advance_loss", "propeller_torque",
     "onboard_control", "marker_offset", "marker_misalignment", "world_tilt",
 }  # fmt: skip
-EVERY = pytest.mark.parametrize("cls", catalogue().values(), ids=list(catalogue()))
+EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))
 
 
 def driven(world):
@@ -60,7 +60,7 @@ def test_a_fit_can_begin(cls):
 
 
 def test_the_catalogue_is_the_public_one():
-    assert set(catalogue()) == PUBLIC
+    assert set(built_in()) == PUBLIC
 
 
 @EVERY
@@ -132,5 +132,5 @@ def test_lift_and_tether_by_hand():
 
 
 def test_kinds_are_used_as_declared():
-    for cls in catalogue().values():
+    for cls in built_in().values():
         assert issubclass(cls, Coefficients) + issubclass(cls, Wrench) <= 1

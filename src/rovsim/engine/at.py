@@ -36,6 +36,15 @@ class At(NamedTuple):
     axes: Vector3
 
 
+_NONE: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+# Some instant: what a kernel can be tried on.
+EXAMPLE = At(
+    0.0, 1.0, (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    _NONE, _NONE, _NONE, _NONE, _NONE, _NONE,
+    ((-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0)), (1.0, -1.0, -1.0),
+)  # fmt: skip
+
+
 class State(NamedTuple):
     """Position NED m, quaternion body to world, body velocity; or their rates of change."""
 

@@ -1,0 +1,140 @@
+"""A user's own effect: the page that explains it works as printed, and mistakes are explained."""
+
+import json
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from rovsim.cli import main
+from rovsim.effects import catalogue, effect, use_effect_files
+from rovsim.errors import BadInput
+from rovsim.study import Study
+
+PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")
+
+
+def blocks(kind):
+    """Fenced blocks of the page of one kind."""
+    return re.findall(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.fixture(autouse=True)
+def only_here(tmp_path, monkeypatch):
+    """Files named in a test are forgotten after it."""
+    monkeypatch.chdir(tmp_path)
+    yield
+    use_effect_files([])
+
+
+def write_files():
+    """The page's files, each called as its first line says."""
+    for text in [*blocks("python"), *blocks("yaml")]:
+        Path(text.split("\n")[0].removeprefix("# ")).write_text(text, encoding="utf-8")
+
+
+def test_the_page_works_as_printed():
+    write_files()
+    commands = [line for text in blocks("sh") for line in text.replace("\\\n", " ").splitlines()]
+    assert len(commands) == 2
+    for command in commands:
+        program, *words = shlex.split(command)
+        assert program == "rovsim"
+        main(words)
+    models = json.loads(Path("with_and_without/comparison.json").read_text())["models"]
+    error = {
+        name: models[name]["runs"]["6dof-2"]["windows"]["2"]["velocity_rmse"]["heave"]
+        for name in models
+    }
+    assert error["with_cushion"] < 0.02 < 0.05 < error["nominal"]
+    assert Path("with_and_without/report.html").exists()
+
+
+def test_a_file_counts_only_where_it_is_named():
+    write_files()
+    use_effect_files([Path("floor_cushion.py")])
+    first = effect("floor_cushion")
+    assert first(strength=1.0).given() == {"strength": 1.0}
+    use_effect_files([Path("floor_cushion.py")])
+    assert effect("floor_cushion") is first  # so that nothing is compiled twice
+    use_effect_files([])
+    with pytest.raises(BadInput, match="effects_file"):
+        effect("floor_cushion")
+    assert "floor_cushion" not in catalogue()
+
+
+def test_the_study_takes_it_and_sees_edits():
+    write_files()
+    study = Study({"effects_file": "floor_cushion.py"})
+    assert study.effect_files == ["floor_cushion.py"]
+    assert "floor_cushion" in catalogue()
+    before = {name: study.code(name) for name in ("replay", "signals")}
+    with Path("floor_cushion.py").open("a") as file:
+        file.write("# later\n")
+    assert study.code("replay") != before["replay"]
+    assert study.code("signals") == before["signals"]
+    assert Study({}).effect_files == []
+
+
+COMPLETE = """
+from rovsim.effects.base import Coefficients, Parameter, Wrench
+
+class Hose(Wrench):
+    "A hose drags behind."
+    id = "hose"
+    equation, neglects, source = "X = -c", "all else", "a test"
+    parameters = (Parameter("force", "N", "c", scale=1.0),)
+
+    @staticmethod
+    def wrench(at, p):
+        return -p.force, 0.0, 0.0, 0.0, 0.0, 0.0
+"""
+BAD = {  # what is replaced, by what: what the message says
+    ("class Hose(Wrench):", "class Hose(Wrench"): r"hose.py, line 4: .*never closed",
+    ("from rovsim", "from rovsinn"): r"line 2: ModuleNotFoundError",
+    ("class Hose(Wrench)", "class Hose"): "declares no effect",
+    ('    "A hose drags behind."\n', ""): "has no 'docstring'",
+    ("equation, neglects, source =", "equation, neglects, other ="): "has no 'source'",
+    ("def wrench", "def wrnch"): "has no 'wrench'",
+    ("    @staticmethod\n", ""): "no @staticmethod",
+    ('id = "hose"', 'id = "lift"'): "id 'lift' is taken",
+    ('id = "hose"', 'id = "Hose 2"'): "lower-case",
+    ('(Parameter("force", "N", "c", scale=1.0),)', "()"): "has no 'parameters'",
+    ('(Parameter("force", "N", "c", scale=1.0),)', '("force",)'): "tuple of Parameter",
+    (", scale=1.0", ""): r"line 8: TypeError: .*scale",
+    ("scale=1.0", "scale=-1.0"): "scale above 0",
+    ('"force", "N"', '"my force", "N"'): "parameter 'my force'",
+    ("p.force", "p.farce"): "does not compile: Unknown attribute 'farce'",
+    ("-p.force", "-unknown"): "does not compile: NameError: name 'unknown'",
+    ("-p.force", "'much'"): "returns",
+    ("-p.force, 0.0,", "-p.force,"): "six numbers",
+    ("Hose(Wrench)", "Hose(Coefficients)"): "has no 'enter'",
+}
+
+
+@pytest.mark.parametrize("change", BAD)
+def test_a_mistake_is_one_message(change, tmp_path, capsys):
+    path = tmp_path / "hose.py"
+    assert change[0] in COMPLETE
+    path.write_text(COMPLETE.replace(*change))
+    with pytest.raises(SystemExit) as ended:
+        main(["tank", f"effects_file={path}", f"out={tmp_path / 'out'}"])
+    text = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert re.search(BAD[change], text), text
+    assert "Traceback" not in text
+    assert text.startswith("rovsim: ")
+    assert len(text.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_missing_files_and_twins_are_refused(tmp_path):
+    with pytest.raises(BadInput, match="no such file"):
+        use_effect_files([tmp_path / "none.py"])
+    for name in ("a b.py", "b,c.py"):
+        (tmp_path / name).write_text(COMPLETE)
+    with pytest.raises(BadInput, match="'hose' is taken"):
+        use_effect_files([tmp_path / "a b.py", tmp_path / "b,c.py"])
+    use_effect_files([tmp_path / "b,c.py"])
+    assert "hose" in catalogue()
