@@ -5,6 +5,7 @@ from typing import Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt
 
+from rovsim.diagnosis.search import SearchSettings
 from rovsim.errors import BadInput, nearest
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import LearnerSettings, learner_settings
@@ -51,6 +52,10 @@ class Settings(Section):
     replay: ReplaySettings
     residual: dict[str, Any]
     tank: TankSettings
+    search: SearchSettings
+    diagnosis: str | None = None
+    effects: list[str] | None = None
+    to: str = "nominal"
     study: StudySettings
     timing: TimingSettings
     tracking: TrackingSettings

@@ -10,19 +10,20 @@ from rovsim.errors import BadInput
 from rovsim.model import Model, load_model
 from rovsim.quality import quality_of
 from rovsim.recording import read_run, usable_reason
-from rovsim.signals.chain import clean
+from rovsim.signals.chain import Stage, differentiated, filtered, resampled
 from rovsim.signals.motion import Motion
 from rovsim.vehicle import Vehicle, campaign_vehicle
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A campaign as measured: its motions by run, and the quality report of each run."""
+    """A campaign as measured: motions by run, their poses before the filter, quality reports."""
 
     campaign: Campaign
     vehicle: Vehicle
     motions: dict[str, Motion]
     quality: dict[str, dict[str, Any]]
+    stages: dict[str, Stage]
 
 
 def given_campaign(settings: Settings) -> Campaign:
@@ -41,20 +42,23 @@ def given_campaign(settings: Settings) -> Campaign:
     return load_campaign(Path(settings.campaign))
 
 
-def measured(settings: Settings) -> Measured:
+def measured(settings: Settings, even_unusable: bool = False) -> Measured:
     """Read, check and clean all usable runs of the campaign.
 
     Raises:
-        BadInput: the campaign cannot be read, or no run of it can be used.
+        BadInput: the campaign cannot be read, or no run of it can be used (unless that is a result).
     """
     campaign = given_campaign(settings)
-    motions, quality = {}, {}
+    motions, quality, stages = {}, {}, {}
     for run in campaign.runs:
         recording, anomalies = read_run(campaign, run.id)
         quality[run.id] = quality_of(recording, anomalies, settings.signals.outliers)
         if usable_reason(recording) is None:
-            motions[run.id] = clean(recording, settings.signals)
-    if not motions:
+            stages[run.id] = resampled(recording, settings.signals)
+            motions[run.id] = differentiated(
+                filtered(stages[run.id], settings.signals), settings.signals
+            )
+    if not motions and not even_unusable:
         reasons = "; ".join(f"{run}: {q['unusable']}" for run, q in quality.items())
         raise BadInput(
             f"no run can be used ({reasons})",
@@ -62,7 +66,7 @@ def measured(settings: Settings) -> Measured:
             expected="at least one run that moves and is long enough",
             remedy="Record longer runs in which the vehicle moves.",
         )
-    return Measured(campaign, campaign_vehicle(campaign), motions, quality)
+    return Measured(campaign, campaign_vehicle(campaign), motions, quality, stages)
 
 
 def models(settings: Settings, vehicle: Vehicle) -> list[Model]:

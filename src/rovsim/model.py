@@ -160,14 +160,19 @@ class Model:
         """Their parameters (k,), one after the other."""
         return np.concatenate([np.zeros(0), *(e.values for e in self.wrenches)])
 
-    def write(self, path: Path, residual: dict | None = None, provenance: dict | None = None):
-        """Write a model file; `residual` describes arrays that lie beside it."""
+    def content(self) -> dict[str, Any]:
+        """A model file's content, without a residual."""
         known = (VEHICLES / f"{self.vehicle.name}.yaml").is_file() and (
             load_vehicle(self.vehicle.name) == self.vehicle
         )
         content: dict[str, Any] = {"schema": SCHEMA}
         content["vehicle"] = self.vehicle.name if known else self.vehicle.model_dump(mode="json")
         content["effects"] = [entry.plain() for entry in self.entries]
+        return content
+
+    def write(self, path: Path, residual: dict | None = None, provenance: dict | None = None):
+        """Write a model file; `residual` describes arrays that lie beside it."""
+        content = self.content()
         content |= {"residual": plain(residual)} if residual else {}
         content |= {"provenance": plain(provenance)} if provenance else {}
         write_yaml(path, content)
@@ -210,7 +215,16 @@ def read_model(path: Path) -> Model:
     Raises:
         BadInput: it is missing, or something in it is unknown or out of range.
     """
-    file = checked(ModelFile, read_yaml(path), path)
+    return model_of(read_yaml(path), path)
+
+
+def model_of(content: Any, path: Path) -> Model:
+    """The model of a file's content.
+
+    Raises:
+        BadInput: something in it is unknown or out of range.
+    """
+    file = checked(ModelFile, content, path)
     if isinstance(file.vehicle, str):
         vehicle = load_vehicle(file.vehicle, beside=path.parent)
     else:

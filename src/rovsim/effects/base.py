@@ -71,6 +71,7 @@ class Effect(ABC):
     source: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
     starts: ClassVar[tuple[dict[str, float], ...]] = ({},)  # where fits begin; {} = the defaults
+    revealed_by: ClassVar[str] = ""  # what to record to be sure of it, one sentence
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
 

@@ -1,0 +1,58 @@
+"""A model file from a diagnosis."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Sequence
+
+from rovsim.errors import BadInput, nearest
+from rovsim.files import read_json
+from rovsim.model import EffectEntry, Model, load_model, model_of
+from rovsim.strict import checked
+
+
+def read_diagnosis(path: Path) -> dict[str, Any]:
+    """Read diagnosis.json.
+
+    Raises:
+        BadInput: it is missing, or it is not a diagnosis.
+    """
+    found = read_json(path)
+    if isinstance(found, dict) and found.get("schema") == "rovsim.diagnosis/1":
+        if all(key in found for key in ("selected", "ranking", "base")):
+            return found
+    raise BadInput(
+        "is not a diagnosis of this program",
+        where=path,
+        expected="what `rovsim diagnose` wrote, its schema rovsim.diagnosis/1",
+        remedy="Run `rovsim diagnose` again.",
+    )
+
+
+def added(
+    diagnosis: dict[str, Any], source: Path, to: str, effects: Sequence[str] | None
+) -> tuple[Model, list[str]]:
+    """The base model and the effects named, or selected, with their fitted values.
+
+    Raises:
+        BadInput: an effect the diagnosis has no values for, or values no model can have.
+    """
+    fitted = {one["effect"]: one for one in diagnosis["ranking"]}
+    fitted |= {one["effect"]: one for one in diagnosis["selected"]}
+    names = [one["effect"] for one in diagnosis["selected"]] if effects is None else list(effects)
+    for name in names:
+        if name not in fitted:
+            raise BadInput(
+                f"has no values for '{name}'",
+                where=source,
+                expected=f"one of {', '.join(fitted)}",
+                remedy=nearest(name, fitted),
+            )
+    vehicle = model_of(diagnosis["base"], source).vehicle
+    base = load_model(to, vehicle)
+    entries = [
+        checked(EffectEntry, {k: fitted[name][k] for k in ("effect", "parameters")}, source)
+        for name in names
+    ]
+    model = replace(base, name="new", entries=(*base.entries, *entries))
+    _ = model.body.M, model.effects  # refuse a model that cannot move
+    return model, names

@@ -1,0 +1,35 @@
+"""Write a model file with the effects that a diagnosis found.
+
+rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml [effects=[id,…]] [to=nominal|FILE]
+
+Takes the selected effects with their fitted values and intervals, or the named ones of the ranking,
+and adds them to the base model `to`. NEW.yaml is plain YAML, and a model wherever a model is asked.
+"""
+
+from pathlib import Path
+
+from rovsim.adding import added, read_diagnosis
+from rovsim.config import Settings
+from rovsim.errors import BadInput
+from rovsim.provenance import provenance
+
+
+def run(settings: Settings) -> None:
+    """Write the new model, and say what is in it."""
+    if settings.diagnosis is None or not isinstance(settings.model, str) or not Path(settings.model).suffix:
+        raise BadInput(
+            "no diagnosis or no model file was named",
+            where="command line",
+            expected="diagnosis=OUT/diagnosis.json model=NEW.yaml",
+            remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
+        )
+    source = Path(settings.diagnosis)
+    model, names = added(read_diagnosis(source), source, settings.to, settings.effects)
+    known = provenance(settings)
+    story = {"diagnosis": str(source), "base": settings.to}
+    story |= {key: known[key] for key in ("code", "versions")}
+    model.write(Path(settings.model), provenance=story)
+    if names:
+        print(f"{settings.model}: {settings.to} + {' + '.join(names)}")
+    else:
+        print(f"{settings.model}: {settings.to} as it is, for the diagnosis selected no effect")

@@ -1,0 +1,40 @@
+"""What to record next, so that the next diagnosis is surer."""
+
+from typing import Sequence
+
+from rovsim.diagnosis.diagnose import Diagnosis
+from rovsim.effects import effect
+
+
+def next_experiment(found: Diagnosis, groups: Sequence[Sequence[str]]) -> str:
+    """One or two sentences."""
+    if not found.enough:
+        return (
+            "Record train runs of at least a minute in which the vehicle moves: "
+            f"only {found.seconds:.0f} s could be used."
+        )
+    parts = []
+    if groups:
+        names = " and ".join(groups[0])
+        parts.append(f"{names} cannot be told apart with these runs. {_revealed(groups[0])}")
+    if found.still:
+        axes = ", ".join(found.still)
+        parts.append(f"Move {axes} in a train run: nothing can be said about what acts there.")
+    if found.structures:
+        first = found.structures[0]
+        parts.append(
+            f"Hold station without commands, then move slowly in {first.axis} alone: whether the "
+            f"remainder ({first.what}) stays tells if it comes from the vehicle or from outside."
+        )
+    return " ".join(parts) or _confirm(found)
+
+
+def _revealed(names: Sequence[str]) -> str:
+    return " ".join(effect(name).revealed_by for name in names if effect(name).revealed_by)
+
+
+def _confirm(found: Diagnosis) -> str:
+    if not found.selected:
+        return "Nothing is needed: drive faster or in other places to look for rarer effects."
+    weakest = min(found.selected, key=lambda one: one.error_reduction)
+    return f"To be surer of {weakest.term.id}: {effect(weakest.term.id).revealed_by}"
