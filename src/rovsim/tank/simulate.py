@@ -82,7 +82,8 @@ class _Vehicle:
 
     def advance(self, k: int, command: Array, state: Array, pushes: Array, out: Array) -> None:
         """Take the command of tick k and move on to the next tick."""
-        self.times = np.append(self.times, k * self.tick)
+        sent = np.array([k * self.tick])
+        self.times = np.append(self.times, self.model.thrust_path.stamped(sent))
         self.commands = np.vstack([self.commands, command])
         path, t = self.model.thrust_path, k * self.tick
         middle = t + self.h * (0.5 + np.arange(len(out)))
