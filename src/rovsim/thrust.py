@@ -52,12 +52,6 @@ class ThrustPath:
                 value = autopilot.mixed(value)
         return thruster_commands(value, kind, self.thrusters)
 
-    def stamped(self, time: Array) -> Array:
-        """Times that are logged for commands sent at `time`."""
-        for clock in reversed(self.clocks):
-            time = clock.stamped(time)
-        return time
-
     def static(self, command: Array, t: Array, duration: float) -> Array:
         """Static forces (m, n) in N of thruster commands (m, n) at times t (m,)."""
         for shaping in self.shapings:

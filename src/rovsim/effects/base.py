@@ -172,10 +172,6 @@ class Clock(Effect):
     def arrival(self, time: Array) -> Array:
         """Instants (m,) in s, increasing, at which lines logged at `time` (m,) take effect."""
 
-    def stamped(self, time: Array) -> Array:
-        """What the logger's clock shows when a command is sent at `time` (m,)."""
-        return time
-
 
 class Autopilot(Effect):
     """Acts on some axes itself: their demands do not reach the mixer."""

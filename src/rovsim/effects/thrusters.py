@@ -38,10 +38,6 @@ class ClockDrift(Clock):
         """Instant on the MoCap clock at which the command clock shows `time`."""
         return time / (1.0 + self["rate"])
 
-    def stamped(self, time: Array) -> Array:
-        """A fast clock shows more."""
-        return time * (1.0 + self["rate"])
-
 
 class ThrusterDeadband(Shaping):
     """A thruster that does not start below a small command; above it the curve is unchanged."""
