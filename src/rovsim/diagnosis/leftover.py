@@ -15,7 +15,8 @@ from scipy.signal import lfilter
 from scipy.stats import chi2
 
 from rovsim import AXES
-from rovsim.diagnosis.noise import AxisFilter, Noise, Tuning, characteristic
+from rovsim.diagnosis.kalman import AxisFilter
+from rovsim.diagnosis.noise import Noise, Tuning
 from rovsim.diagnosis.shapes import shapes
 from rovsim.diagnosis.watch import Watch
 
@@ -72,21 +73,9 @@ def leftover(
     return sorted(found, key=lambda s: -s.surprise)
 
 
-def response(f: AxisFilter, period: float) -> tuple[Array, Array]:
-    """Filter (b, a) from a push on the axis (m/s2, rad/s2) to its innovations of unit variance.
-
-    C (z I - A)^-1 B = det(z I - A + B C) / det(z I - A) - 1 with A = F (I - K C).
-    """
-    n = len(f.C)
-    A = f.F @ (np.eye(n) - np.outer(f.gain, f.C))
-    B = np.array([0.5 * period**2, period, 0.0][-n:])
-    a = characteristic(A)
-    return (characteristic(A - np.outer(B, f.C)) - a) / np.sqrt(f.variance), a
-
-
 def seen(push: Array, f: AxisFilter, watch: Watch) -> Array:
     """How a push (n,) on one axis shows in the settled innovations."""
-    b, a = response(f, watch.period)
+    b, a = f.response
     out = np.empty(len(watch.time))
     for first, last in watch.rows:
         out[first:last] = lfilter(b, a, push[first:last])
@@ -147,7 +136,7 @@ def _combs(i, power, frequency, usable, watches, filters, level, text, envelopes
         best = int(np.argmax(statistic))
         k = within[best]
         limit = chi2.isf(FALSE_ALARM / looks, 2 * len(comb) * len(watches))
-        b, a = response(filters[0], watches[0].period)
+        b, a = filters[0].response
         size = 0.0
         for m in comb:  # rms of the push, from the power of its lines
             z = np.exp(2j * np.pi * frequency[m * k] * watches[0].period)
@@ -190,7 +179,7 @@ def _sums(w: Array, few: int) -> Array:
 
 def _kicks(i, w, watch, f, level) -> Iterator[Structure]:
     """A single push that lasts a moment, at any time."""
-    b, a = response(f, watch.period)
+    b, a = f.response
     for duration in KICKS:
         n = max(1, round(duration / watch.period))
         template = lfilter(b, a, np.concatenate([np.ones(n), np.zeros(round(2.0 / watch.period))]))
