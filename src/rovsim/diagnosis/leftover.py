@@ -12,7 +12,7 @@ from typing import Iterator, Sequence
 import numpy as np
 from numpy import ndarray as Array
 from scipy.signal import lfilter
-from scipy.stats import chi2
+from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
 from rovsim.diagnosis.kalman import AxisFilter
@@ -26,7 +26,7 @@ HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
 SUDDEN = 0.2  # s, about what the readings resolve
-HEAVY, HEAVY_TAIL = 6.0, 1.0  # standard deviations of the kurtosis, and the kurtosis beyond 3
+RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
 
 
 @dataclass(frozen=True)
@@ -164,13 +164,13 @@ def _sudden(i, w, watches, level) -> Iterator[Structure]:
     """Pushes that come at once: innovations with a heavier tail than any Gaussian disturbance."""
     few = max(1, round(SUDDEN / watches[0].period))
     sums = np.concatenate([_sums(x, few) for x in w])
-    n = len(sums)
-    kurtosis = float(np.mean(sums**4) / np.mean(sums**2) ** 2) - 3.0
-    z = kurtosis * np.sqrt(n / 24.0)
-    if z > HEAVY and kurtosis > HEAVY_TAIL:
-        often = n * SUDDEN / max(1, np.sum(np.abs(sums) > 3.0 * np.std(sums)))
-        what = f"sudden pushes, one in about {often:.2g} s"
-        yield Structure(AXES[i], what, level, 1.0, z / HEAVY)
+    # the median is not moved by what is looked for (Gaussian: 0.6745 standard deviations)
+    usual = float(np.median(np.abs(sums))) / 0.6745
+    count = int(np.sum(np.abs(sums) > RARE * usual))
+    limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE))
+    if count > limit:
+        what = f"sudden pushes, one in about {len(sums) * SUDDEN / count:.2g} s"
+        yield Structure(AXES[i], what, level, 1.0, count / limit)
 
 
 def _sums(w: Array, few: int) -> Array:
