@@ -46,7 +46,8 @@ class ThrusterDeadband(Shaping):
     equation = r"F = 0 \text{ for } |c| \le w"
     neglects = "hysteresis between starting and stopping"
     source = "definition"
-    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03),)
+    # two steps of a log in whole microseconds, of 400 us: between them no command changes sides
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, grain=2 / 400),)
     starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
 
     def shaped(self, command: Array) -> Array:
