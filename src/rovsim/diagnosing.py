@@ -19,7 +19,7 @@ def diagnosed(
 ) -> dict[str, Any]:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
-    train, test = (_watches(data, settings, split) for split in ("train", "test"))
+    train, test = (watches(data, settings, split) for split in ("train", "test"))
     found = diagnose(base, train, settings.search, settings.replay.commands, settings.seed, stage)
     stage("scoring")
     motions = [m for m in data.motions.values() if m.run.split == "train"]
@@ -31,7 +31,8 @@ def diagnosed(
     )
 
 
-def _watches(data: Measured, settings: Settings, split: str) -> list[Watch]:
+def watches(data: Measured, settings: Settings, split: str) -> list[Watch]:
+    """The runs of one split as the observer sees them."""
     return [
         watch(data.stages[run], motion, settings.replay.step)
         for run, motion in data.motions.items()

@@ -188,7 +188,7 @@ def _leftover(found: Fit, observatory: Observatory) -> list[Structure]:
     J = observatory.white(found.J, found.noise)
     return leftover(
         np.split(white, counts, axis=-1), np.split(J, counts, axis=-1), observatory.watches,
-        wanted, found.noise,
+        wanted, found.noise, found.hypothesis.model.thrust_path,
     )  # fmt: skip
 
 

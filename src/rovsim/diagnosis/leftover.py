@@ -20,6 +20,7 @@ from rovsim.diagnosis.kalman import AxisFilter
 from rovsim.diagnosis.noise import Noise, Tuning
 from rovsim.diagnosis.shapes import shapes
 from rovsim.diagnosis.watch import Watch
+from rovsim.thrust import ThrustPath
 
 FALSE_ALARM = 0.002  # of all looks together, for each of the three kinds
 MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score
@@ -50,6 +51,7 @@ def leftover(
     watches: Sequence[Watch],
     tunings: Sequence[Tuning],
     noise: Noise,
+    path: ThrustPath,
 ) -> list[Structure]:
     """Structures beyond chance, the most surprising first.
 
@@ -59,11 +61,16 @@ def leftover(
         watches: the runs.
         tunings: the filters that made them white.
         noise: the noise they stand for.
+        path: the model's, from a logged command to its thrust.
     """
     found: list[Structure] = []
+    vague = [watch.vague(path) for watch in watches]
     for i in range(len(AXES)):
         filters = [t.filters[i] for t in tunings]
-        w = [_cleared(x[i], f, on) for x, f, on in zip(white, filters, watches, strict=True)]
+        w = [
+            _cleared(x[i], f, watch, spans)
+            for x, f, watch, spans in zip(white, filters, watches, vague, strict=True)
+        ]
         level = float(noise.level[i])
         used = np.concatenate([one[:, i] for one in J], axis=1)
         found += _shapes(i, w, used, watches, filters, level)
@@ -83,9 +90,9 @@ def seen(push: Array, f: AxisFilter, watch: Watch) -> Array:
     return out[watch.settled]
 
 
-def _cleared(w: Array, f: AxisFilter, watch: Watch) -> Array:
+def _cleared(w: Array, f: AxisFilter, watch: Watch, vague: Array) -> Array:
     """Without what the vehicle did while the log does not say what it was told."""
-    spans = [(watch.time > begin) & (watch.time <= end) for begin, end in watch.vague]
+    spans = [(watch.time > begin) & (watch.time <= end) for begin, end in vague]
     if not spans:
         return w
     columns = np.stack([seen(span.astype(float), f, watch) for span in spans])

@@ -10,6 +10,7 @@ from numpy import ndarray as Array
 from rovsim.replay import clock
 from rovsim.signals.chain import Stage
 from rovsim.signals.motion import Motion, Poses
+from rovsim.thrust import ThrustPath
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
 SETTLING = 1.0  # s
@@ -73,16 +74,19 @@ class Watch:
             kept[first:last] = self.time[first:last] > self.ends[a] * self.h + SETTLING
         return kept
 
-    @cached_property
-    def vague(self) -> Array:
-        """Begins and ends (g, 2) of lost lines of the command log over which commands jumped."""
+    def vague(self, path: ThrustPath) -> Array:
+        """Begins and ends (g, 2) of lost lines of the command log over which commands jumped.
+
+        `path` says when a logged command takes effect.
+        """
         commands = self.motion.commands
         steps = np.diff(commands.time)
         if not len(steps):
             return np.empty((0, 2))
         change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
         lost = (steps > GAP * np.median(steps)) & (change > JUMP * np.quantile(change, USUAL))
-        return np.column_stack([commands.time[:-1][lost], commands.time[1:][lost]])
+        at = self.edges[0] + path.arrival(commands.time - self.edges[0])
+        return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
 def watch(stage: Stage, motion: Motion, step: float) -> Watch:

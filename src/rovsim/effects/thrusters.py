@@ -19,6 +19,8 @@ class InputDelay(Clock):
     neglects = "jitter"
     source = "definition"
     parameters = (Parameter("delay", "s", r"\delta", scale=0.05),)
+    # a step of a command that comes 0.1 s late looks like nothing that a small delay does
+    starts = ({}, {"delay": 0.1}, {"delay": 0.3}, {"delay": -0.1})
 
     def arrival(self, time: Array) -> Array:
         """Every line arrives later by the delay."""
@@ -33,6 +35,8 @@ class ClockDrift(Clock):
     neglects = "a rate that changes with temperature"
     source = "definition"
     parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002),)
+    # 0.2 s and 0.6 s after a minute; see InputDelay
+    starts = ({}, {"rate": 0.003}, {"rate": -0.003}, {"rate": 0.01}, {"rate": -0.01})
 
     def arrival(self, time: Array) -> Array:
         """Instant on the MoCap clock at which the command clock shows `time`."""
