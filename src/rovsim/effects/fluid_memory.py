@@ -18,11 +18,19 @@ class FluidMemory(Coefficients):
 
     id = "fluid_memory"
     equation = (
-        r"\tau = -c\,\operatorname{diag}(1,1,1,\kappa,\kappa,\kappa)(\nu_r - m),"
+        r"\tau = -c\,\mathrm{diag}(1,1,1,\kappa,\kappa,\kappa)(\nu_r - m),"
         r"\quad T \dot m = \nu_r - m"
     )
     neglects = "more than one time constant, and waves"
     source = "Fossen 2021, sec. 6.2 (fluid memory), reduced to one state an axis"
+    cause = (
+        "The wake goes on moving when the vehicle slows down or turns back, most of all in a "
+        "small tank."
+    )
+    revealed_by = (
+        "Hold a steady speed for 5 s, stop within 1 s and then wait 5 s without commands: the "
+        "wake goes on pushing for about its time constant, added mass and a thruster lag do not."
+    )
     parameters = (
         Parameter("coefficient", "N s/m", "c", low=0.0, scale=5.0),
         Parameter("time_constant", "s", "T", low=0.01, default=1.0, scale=0.5),
