@@ -5,7 +5,7 @@ import numpy as np
 from rovsim import AXES
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
-from rovsim.effects.parameters import per_axis
+from rovsim.effects.parameters import Signature, per_axis
 
 PAIRS = [(i, j) for i in range(6) for j in range(i + 1, 6)]
 UNITS = ("kg", "kg m", "kg m2")  # by how many of the two axes are rotations
@@ -27,6 +27,7 @@ class AddedMass(Coefficients):
         "leaves the final speed alone, drag changes the final speed, and a lag no longer shows "
         "once the thrust is steady."
     )
+    signature = Signature({"surge": 8.0}, "surge", "surge thrust")
     parameters = per_axis("kg", "kg m2", "m", scales=(3.0, 0.1))
 
     def enter(self, body: Body) -> None:
@@ -49,6 +50,7 @@ class AddedMassCoupling(Coefficients):
         "Push one axis to and fro every second at low speed: a coupling of masses moves the other "
         "axis in step with the acceleration, coupled damping in step with the speed."
     )
+    signature = Signature({"surge_pitch": 1.0}, "pitch", "change of surge thrust")
     parameters = tuple(
         Parameter(
             f"{AXES[i]}_{AXES[j]}", UNITS[i // 3 + j // 3], f"m_{{{AXES[i]},{AXES[j]}}}",

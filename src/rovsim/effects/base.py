@@ -22,7 +22,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.body import Body
-from rovsim.effects.parameters import Parameter
+from rovsim.effects.parameters import Parameter, Signature
 from rovsim.engine.at import At, Vector6
 from rovsim.errors import BadInput, nearest
 from rovsim.frames import Rigid
@@ -44,6 +44,7 @@ class Effect(ABC):
     starts: ClassVar[tuple[dict[str, float], ...]] = ({},)  # where fits begin; {} = the defaults
     cause: ClassVar[str] = ""  # what in a laboratory makes it happen, one sentence
     revealed_by: ClassVar[str] = ""  # what to record to be sure of it, one sentence
+    signature: ClassVar[Signature | None] = None  # how the catalogue page shows it
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
 

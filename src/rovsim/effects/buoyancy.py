@@ -2,6 +2,7 @@
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
+from rovsim.effects.parameters import Signature
 
 
 class NetBuoyancy(Coefficients):
@@ -17,6 +18,7 @@ class NetBuoyancy(Coefficients):
         "buoyancy always pushes up, a constant wrench leans with the body, and a payload adds "
         "inertia as well."
     )
+    signature = Signature({"force": 4.0}, "heave", "depth below the surface")
     parameters = (Parameter("force", "N", r"\Delta B", scale=2.0),)
 
     def enter(self, body: Body) -> None:
@@ -39,6 +41,7 @@ class BuoyancyCenter(Coefficients):
         "Hold roll and pitch at several angles to both sides, 5 s each: a moved centre makes a "
         "moment that changes with the angle, a constant moment stays the same at all of them."
     )
+    signature = Signature({"z": -0.02}, "roll", "roll angle")
     # centimetres: the vehicle's own righting arm is 10 mm (vehicle file)
     parameters = tuple(Parameter(axis, "m", rf"\Delta {axis}_B", scale=0.005) for axis in "xyz")
 

@@ -3,6 +3,7 @@
 from numpy import ndarray as Array
 
 from rovsim.effects.base import Clock, Parameter
+from rovsim.effects.parameters import Signature
 
 
 class InputDelay(Clock):
@@ -21,6 +22,7 @@ class InputDelay(Clock):
         "Step one axis from rest, several times in a run: a delay shifts the sharp beginning of "
         "the response, a lag rounds it, and with a drifting clock the shift grows during the run."
     )
+    signature = Signature({"delay": 0.2}, "sway", "change of sway thrust")
     parameters = (Parameter("delay", "s", r"\delta", scale=0.05),)
 
     def arrival(self, time: Array) -> Array:
@@ -40,6 +42,7 @@ class ClockDrift(Clock):
         "Make the same sharp step at the beginning, in the middle and at the end of a run of 5 "
         "min: drift shifts the response more and more, a delay always by the same time."
     )
+    signature = Signature({"rate": 0.01}, "surge", "time in the run", size=True)
     parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002),)
 
     def arrival(self, time: Array) -> Array:

@@ -1,7 +1,7 @@
 """A trim that never changes."""
 
 from rovsim.effects.base import Wrench
-from rovsim.effects.parameters import per_axis
+from rovsim.effects.parameters import Signature, per_axis
 
 
 class ConstantWrench(Wrench):
@@ -16,6 +16,7 @@ class ConstantWrench(Wrench):
         "Drift without commands at four headings and leaning to both sides: a constant wrench "
         "turns with the body, net buoyancy, a current and a tether stay with the world."
     )
+    signature = Signature({"surge": 4.0}, "surge", "heading")
     parameters = per_axis("N", "N m", "c", scales=(2.0, 0.2))
 
     @staticmethod

@@ -2,6 +2,7 @@
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
+from rovsim.effects.parameters import Signature
 
 
 class Current(Coefficients):
@@ -17,6 +18,7 @@ class Current(Coefficients):
         "the same side until it moves with the water, a constant wrench turns with the body, a "
         "tether pulls harder with the distance."
     )
+    signature = Signature({"north": 0.12}, "surge", "heading")
     parameters = tuple(
         Parameter(name, "m/s", f"v_{{{name}}}", scale=0.05) for name in ("north", "east", "down")
     )

@@ -2,7 +2,7 @@
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients
-from rovsim.effects.parameters import per_axis
+from rovsim.effects.parameters import Signature, per_axis
 
 
 class LinearDamping(Coefficients):
@@ -21,6 +21,7 @@ class LinearDamping(Coefficients):
         "each: linear drag grows like the speed, quadratic drag like its square, and a thruster "
         "gain does not show while coasting."
     )
+    signature = Signature({"surge": 20.0}, "surge", "surge speed")
     parameters = per_axis("N s/m", "N m s/rad", "d", scales=(10.0, 0.5))
 
     def enter(self, body: Body) -> None:
@@ -44,6 +45,7 @@ class QuadraticDamping(Coefficients):
         "each: doubling the speed takes four times the drag, with linear drag twice, and a weak "
         "thruster does not show while coasting."
     )
+    signature = Signature({"sway": 120.0}, "sway", "sway speed")
     parameters = per_axis("N s2/m2", "N m s2/rad2", "d", scales=(40.0, 0.5))
 
     def enter(self, body: Body) -> None:

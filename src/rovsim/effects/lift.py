@@ -1,6 +1,7 @@
 """Lift of the hull at an angle of attack."""
 
 from rovsim.effects.base import Parameter, Wrench
+from rovsim.effects.parameters import Signature
 
 
 class Lift(Wrench):
@@ -15,6 +16,7 @@ class Lift(Wrench):
         "Drift sideways at the same speed with no, half and full surge speed: lift brakes the "
         "drift only while the vehicle also moves ahead, sway damping always."
     )
+    signature = Signature({"coefficient": 100.0}, "sway", "sway speed")
     parameters = (Parameter("coefficient", "kg/m", "c", scale=30.0),)
 
     @staticmethod

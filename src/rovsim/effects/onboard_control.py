@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.effects.base import Autopilot, Parameter, Wrench
+from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import inlined
 from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Site
@@ -52,6 +53,7 @@ class OnboardControl(Wrench, Autopilot):
         "vehicle by hand: a loop reaches a speed or angle in proportion and resists the hand, "
         "mere damping gives way; best, log the thruster outputs."
     )
+    signature = Signature({"gain_yaw": 1.0, "bandwidth_yaw": 2.0}, "yaw", "yaw thrust")
     parameters = (
         *(
             Parameter(f"gain_{axis}", SPEEDS[i // 3], f"g_{{{axis}}}", scale=(0.3, 0.5)[i // 3])

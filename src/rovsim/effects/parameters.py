@@ -1,6 +1,7 @@
-"""What a number of an effect declares."""
+"""What an effect declares of its numbers."""
 
 from dataclasses import dataclass, field
+from typing import Mapping
 
 import numpy as np
 
@@ -35,3 +36,17 @@ def per_axis(
         )
         for i, axis in enumerate(AXES)
     )
+
+
+@dataclass(frozen=True)
+class Signature:
+    """How the catalogue shows an effect: hidden with these values, in the error of one axis.
+
+    The mean error, or its `size` (RMS), is drawn over a condition; where none is named, axis and
+    condition are those of the strongest finding.
+    """
+
+    values: Mapping[str, float]
+    axis: str = ""
+    condition: str = ""
+    size: bool = field(default=False, kw_only=True)

@@ -3,6 +3,7 @@
 from math import exp
 
 from rovsim.effects.base import Parameter, Wrench
+from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import inlined
 
 
@@ -40,6 +41,7 @@ class WallProximity(Wrench):
         "Drive along two opposite walls at one steady speed, 0.2, 0.5 and 2 m away from them: a "
         "wall brakes on either side alike, a tether more on the side far from its anchor."
     )
+    signature = Signature({"gain": 4.0}, "surge", "distance to the nearest wall", size=True)
     parameters = (Parameter("gain", "1", "g", low=0.0, scale=0.5), _length(0.5))
     starts = ({"gain": 0.3}, {"gain": 1.0})
 
@@ -67,6 +69,7 @@ class SurfaceProximity(Wrench):
         "each: the surface brakes only what moves, buoyancy and a tether push a hovering vehicle "
         "too."
     )
+    signature = Signature({"gain": 4.0}, "heave", "depth below the surface", size=True)
     parameters = (Parameter("gain", "1", "g", low=0.0, scale=0.5), _length(0.4))
     starts = ({"gain": 0.3}, {"gain": 1.0})
 

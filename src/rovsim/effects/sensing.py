@@ -3,6 +3,7 @@
 import numpy as np
 
 from rovsim.effects.base import Parameter, Sensing
+from rovsim.effects.parameters import Signature
 from rovsim.frames import Rigid
 
 
@@ -18,6 +19,7 @@ class MarkerOffset(Sensing):
         "Turn on the spot about each axis at two rates: an offset makes the reported point go "
         "round a circle of the same radius at either rate, a coupling of drag or mass does not."
     )
+    signature = Signature({"x": 0.1}, "surge", "yaw rate")
     parameters = tuple(Parameter(axis, "m", f"r_{axis}", scale=0.05) for axis in "xyz")
 
     def transforms(self) -> tuple[Rigid, Rigid]:
@@ -39,6 +41,7 @@ class MarkerMisalignment(Sensing):
         "with the body and the course is off its nose by a constant angle, with a world tilt the "
         "lean changes with heading."
     )
+    signature = Signature({"yaw": 0.2}, "sway", "surge thrust")
     parameters = tuple(
         Parameter(axis, "rad", rf"\theta_{{{axis}}}", low=-np.pi, high=np.pi, scale=0.03)
         for axis in ("roll", "pitch", "yaw")
@@ -62,6 +65,7 @@ class WorldTilt(Sensing):
         "the heading if the world is tilted, and stays with the body if the markers or the centre "
         "of buoyancy are off."
     )
+    signature = Signature({"roll": 0.05}, "roll", "heading")
     parameters = tuple(
         Parameter(axis, "rad", rf"\theta_{{{axis}}}", low=-np.pi, high=np.pi, scale=0.02)
         for axis in ("roll", "pitch")

@@ -3,6 +3,7 @@
 from math import sqrt
 
 from rovsim.effects.base import Parameter, Wrench
+from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import cross, dot3, inlined, into_body
 from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Site
@@ -39,6 +40,11 @@ class TetherTension(Wrench):
     revealed_by = (
         "Visit all corners of the tank slowly, shallow and deep: tension points to the anchor and "
         "begins beyond the slack length, a current or buoyancy pushes alike everywhere."
+    )
+    signature = Signature(
+        {"stiffness": 4.0, "slack_length": 0.6, "anchor_x": 3.0, "anchor_y": 2.0, "anchor_z": 2.0},
+        "heave",
+        "distance to the nearest wall",
     )
     parameters = (
         Parameter("stiffness", "N/m", "k", low=0.0, scale=2.0),
@@ -91,6 +97,7 @@ class TetherDrag(Wrench):
         "Cross the tank at one steady speed, once close to the anchor and once far from it: the "
         "drag of a tether grows with the distance, that of the hull does not."
     )
+    signature = Signature({"coefficient": 15.0}, "yaw", "sway speed")
     parameters = (
         # 1.2 (cylinder) * 1000 kg/m3 / 2 * 7.5 mm = 4.5 N s2/m3 if all of it moved at full speed
         Parameter("coefficient", "N s2/m3", "c", low=0.0, scale=2.0),

@@ -6,6 +6,7 @@ from scipy.signal import lfilter
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter, Response, Shaping, Strength
+from rovsim.effects.parameters import Signature
 
 THRUSTERS = tuple(f"t{i}" for i in range(1, 9))
 
@@ -22,6 +23,7 @@ class ThrusterDeadband(Shaping):
         "Ramp one axis slowly through zero and back, up to a tenth of full thrust: inside a dead "
         "band nothing happens at all, a low gain answers weakly from the very start."
     )
+    signature = Signature({"width": 0.07}, "surge", "surge thrust")
     parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03),)
     starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
 
@@ -46,6 +48,7 @@ class ThrusterGain(Strength):
         "only under thrust, drag while coasting as well, and added mass only while the speed "
         "changes."
     )
+    signature = Signature({"all": 0.7}, "surge", "surge thrust")
     parameters = tuple(
         Parameter(name, "1", f"g_{{{name}}}", default=1.0, scale=0.1)
         for name in (*THRUSTERS, "all")
@@ -71,6 +74,7 @@ class ThrustAsymmetry(Strength):
         "Hold equal thrust forwards and backwards on each axis until the speed is steady: only an "
         "asymmetry makes the two speeds differ at every heading, a current does so at one."
     )
+    signature = Signature({"ratio": 0.7}, "heave", "heave thrust")
     parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0, scale=0.1),)
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
@@ -92,6 +96,7 @@ class VoltageSag(Strength):
         "time: sag weakens the thrust more and more, a gain is off from the start, and neither "
         "shows while coasting."
     )
+    signature = Signature({"fraction": 0.4}, "sway", "time in the run", size=True)
     parameters = (Parameter("fraction", "1", "s", high=1.0, scale=0.1),)
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
@@ -111,6 +116,7 @@ class ThrusterLag(Response):
         "Step one axis at a time between thrust levels and hold 3 s: a lag delays the whole "
         "response by its time constant at any step size, added mass only slows the rise."
     )
+    signature = Signature({"time_constant": 0.2}, "surge", "change of surge thrust")
     parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1),)
     starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
 
@@ -141,6 +147,7 @@ class AdvanceLoss(Coefficients):
         "At full speed go on thrusting, then coast, then thrust backwards: the loss changes sign "
         "with the thrust and ends with it, drag of the hull does neither."
     )
+    signature = Signature({"coefficient": 0.6}, "heave", "heave speed")
     parameters = (Parameter("coefficient", "s/m", "c", scale=0.2),)
 
     def enter(self, body: Body) -> None:
@@ -163,6 +170,7 @@ class PropellerTorque(Coefficients):
         "Thrust one axis at a time from rest, 1 s at several levels: the torque of propellers is "
         "there at once and grows with the thrust, coupled damping needs speed first."
     )
+    signature = Signature({"ratio": 0.03}, "roll", "yaw thrust")
     parameters = (Parameter("ratio", "m", "q", scale=0.01),)
 
     def enter(self, body: Body) -> None:
