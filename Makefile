@@ -1,16 +1,18 @@
 # Every target sets itself up on a fresh clone: .venv/ from environment.lock, Python 3.11, pip.
 PYTHON ?= python3.11
 CORES ?= 2
+SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study test check bench clean lock
+.PHONY: help setup study test check bench benchmark-hidden clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
 	@echo "make test    every test"
 	@echo "make check   formatting, lint, types, layers"
 	@echo "make bench   replay and inference speed, into results/bench.json"
+	@echo "make benchmark-hidden   known physics hidden in the tank: is it found? SUITE=quick|full"
 	@echo "make setup   the environment alone"
 
 .venv/.complete: environment.lock pyproject.toml
@@ -36,6 +38,9 @@ check: setup
 
 bench: setup
 	$(BIN)/rovsim bench
+
+benchmark-hidden: setup
+	$(BIN)/rovsim hidden hidden.suite=$(SUITE) hidden.cores=$(CORES)
 
 clean:
 	rm -rf results/* .snakemake

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Sequence
 
+from rovsim.diagnosis.content import SCHEMA
 from rovsim.errors import BadInput, nearest
 from rovsim.files import read_json
 from rovsim.model import EffectEntry, Model, load_model, model_of
@@ -17,13 +18,13 @@ def read_diagnosis(path: Path) -> dict[str, Any]:
         BadInput: it is missing, or it is not a diagnosis.
     """
     found = read_json(path)
-    if isinstance(found, dict) and found.get("schema") == "rovsim.diagnosis/1":
-        if all(key in found for key in ("selected", "ranking", "base")):
-            return found
+    parts = ("selected", "ranking", "base")
+    if isinstance(found, dict) and found.get("schema") == SCHEMA and all(k in found for k in parts):
+        return found
     raise BadInput(
         "is not a diagnosis of this program",
         where=path,
-        expected="what `rovsim diagnose` wrote, its schema rovsim.diagnosis/1",
+        expected=f"what `rovsim diagnose` wrote, its schema {SCHEMA}",
         remedy="Run `rovsim diagnose` again.",
     )
 

@@ -31,6 +31,16 @@ class TimingSettings(Section):
     seconds: PositiveFloat = 10.0
 
 
+class HiddenSettings(Section):
+    """The hidden-effect benchmark: which cases, who answers, on how many cores."""
+
+    suite: Literal["quick", "full"] = "quick"
+    seeds: Literal["development", "reporting"] = "reporting"
+    methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis",)
+    cores: PositiveInt = 2
+    page: str = "docs/benchmark_hidden.md"
+
+
 class TrackingSettings(Section):
     """Where MLflow keeps runs (`uri`) and their files (`artifacts`, for a local database)."""
 
@@ -58,6 +68,7 @@ class Settings(Section):
     to: str = "nominal"
     study: StudySettings
     timing: TimingSettings
+    hidden: HiddenSettings
     tracking: TrackingSettings
 
     @property

@@ -46,7 +46,7 @@ def measured(settings: Settings, even_unusable: bool = False) -> Measured:
     """Read, check and clean all usable runs of the campaign.
 
     Raises:
-        BadInput: the campaign cannot be read, or no run of it can be used (unless that is a result).
+        BadInput: the campaign cannot be read, or no run can be used, unless that is a result.
     """
     campaign = given_campaign(settings)
     motions, quality, stages = {}, {}, {}

@@ -94,6 +94,7 @@ class Model:
     entries: tuple[EffectEntry, ...] = ()
     residual: Residual | None = None
     inert: bool = False  # keeps its body velocity whatever pushes: the baseline to beat
+    unlisted: tuple[Effect, ...] = ()  # what only a tank can hide; no model file can name it
 
     def __add__(self, added: Effect) -> "Model":
         entry = EffectEntry(
@@ -108,7 +109,7 @@ class Model:
     @cached_property
     def effects(self) -> list[Effect]:
         """All effects: the nominal ones of the vehicle, then the added ones."""
-        return [*self.vehicle.effects(), *(entry.build() for entry in self.entries)]
+        return [*self.vehicle.effects(), *(e.build() for e in self.entries), *self.unlisted]
 
     @cached_property
     def body(self) -> Body:

@@ -65,7 +65,7 @@ def provenance(settings: Section) -> dict[str, Any]:
     """Settings, code and versions behind a result."""
     packages = {name: version(name) for name in PACKAGES}
     versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
-    chosen = settings.model_dump(mode="json", exclude={"command", "tracking", "timing"})
+    chosen = settings.model_dump(mode="json", exclude={"command", "tracking", "timing", "hidden"})
     code = digest("rovsim", effects=getattr(settings, "effect_files", ()))
     return {"settings": chosen, "code": code, "versions": versions}
 

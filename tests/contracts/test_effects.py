@@ -9,7 +9,7 @@ from rovsim.errors import BadInput
 from rovsim.model import read_model
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings, trajectories
-from worlds import at_rest, model, motion, sticks, tank
+from worlds import at_rest, model, motion, some, sticks, tank
 
 # contract, section 2
 PUBLIC = {
@@ -31,12 +31,6 @@ def driven(world):
     run = motion(value, kind, seconds=1.0, start=start, site=tank())
     path = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     return world.view.states(path)
-
-
-def some(cls):
-    """Values that differ from the defaults, inside every range."""
-    known = [p for p in cls.parameters if np.isfinite(p.default)]
-    return cls(**{p.name: p.default + 0.1 for p in known})
 
 
 @EVERY

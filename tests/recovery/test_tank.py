@@ -65,6 +65,9 @@ NEW = [
     entry("marker_misalignment", roll=0.1, pitch=-0.1, yaw=0.3),
     entry("world_tilt", roll=0.15, pitch=-0.15),
     entry("fluid_memory", coefficient=25.0, time_constant=0.7),
+    entry("clock_drift", rate=0.006),
+    entry("clock_drift", rate=-0.006),
+    entry("input_delay", delay=-0.15),
 ]
 
 

@@ -16,7 +16,11 @@ from rovsim.provenance import provenance
 
 def run(settings: Settings) -> None:
     """Write the new model, and say what is in it."""
-    if settings.diagnosis is None or not isinstance(settings.model, str) or not Path(settings.model).suffix:
+    if (
+        settings.diagnosis is None
+        or not isinstance(settings.model, str)
+        or not Path(settings.model).suffix
+    ):
         raise BadInput(
             "no diagnosis or no model file was named",
             where="command line",

@@ -3,8 +3,8 @@
 rovsim diagnose campaign=DIR out=OUT [model=nominal|FILE] [search.false_alarm=0.01]
 
 Writes OUT/diagnosis.json and OUT/report.html. Only train runs are used to decide; the test runs are
-opened once, for the errors that are reported. `rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`
-writes the model with the effects.
+opened once, for the errors that are reported. The model with the effects is then written by
+`rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 """
 
 from pathlib import Path

@@ -20,7 +20,7 @@ class Candidate:
 
     @property
     def absent(self) -> bool:
-        """Whether the start is the absence of the effect, where its columns can be judged singly."""
+        """Whether the start is the effect's absence: its columns can then be judged singly."""
         return not self.start.given()
 
     def term(self, free: Sequence[str] | None = None) -> Term:

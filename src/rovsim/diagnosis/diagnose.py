@@ -1,11 +1,11 @@
 """Diagnosis: which physical effects a model lacks, how sure that is, and what is left unexplained.
 
-    observe      the base model runs along the train runs, corrected by a filter (observe, noise)
-    library      how each candidate would change what the filter could not foresee
-    search       add, refit, swap, prune; against what chance gives to the best of all candidates
-    held out     an addition must help on blocks it was not fitted to, and matter in 2 s windows
-    leftover     structure that no candidate explains
-    test runs    opened once, for the errors that are reported
+observe      the base model runs along the train runs, corrected by a filter (observe, noise)
+library      how each candidate would change what the filter could not foresee
+search       add, refit, swap, prune; against what chance gives to the best of all candidates
+held out     an addition must help on blocks it was not fitted to, and matter in 2 s windows
+leftover     structure that no candidate explains
+test runs    opened once, for the errors that are reported
 """
 
 from dataclasses import dataclass
@@ -41,14 +41,16 @@ from rovsim.thrust import Between
 Stages = Callable[[str], None]
 
 # Turbulence that moves this vehicle by some mm/s2, and a usual motion capture: only a first guess.
-FIRST_NOISE = Noise(np.array([0.02] * 3 + [0.05] * 3), np.ones(6), np.array([1e-3] * 3 + [3e-3] * 3))
+FIRST_NOISE = Noise(
+    np.array([0.02] * 3 + [0.05] * 3), np.ones(6), np.array([1e-3] * 3 + [3e-3] * 3)
+)
 NOISE_ROUNDS = 3
 SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
 
 
 @dataclass(frozen=True, eq=False)
 class Selected:
-    """A selected effect: its share of the base's error that it removes, and how sure its name is."""
+    """A selected effect, the share of the base's error that it removes, how sure its name is."""
 
     term: Term
     std: dict[str, float]
@@ -218,14 +220,15 @@ def _selected(found: Fit, rivals, watches, between) -> list[Selected]:
 
 
 def _error(models, watches, between) -> Array:
-    return np.array([np.nan if e is None else e for e in window_errors(models, watches, between)[1]])
+    return np.array(
+        [np.nan if e is None else e for e in window_errors(models, watches, between)[1]]
+    )
 
 
 def _std(found: Fit, i: int) -> dict[str, float]:
     term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
     return {
-        p.name: float(found.std[k] * p.scale)
-        for p, k in zip(term.parameters, columns, strict=True)
+        p.name: float(found.std[k] * p.scale) for p, k in zip(term.parameters, columns, strict=True)
     }
 
 

@@ -39,7 +39,7 @@ class Fit:
 
 def fit(start: Hypothesis, observatory: Observatory, noise: Noise) -> Fit:
     """Fit the free parameters under a given noise, then the noise to what is left."""
-    here, e, J, H = _descend(start, observatory, noise)
+    here, e, J = _descend(start, observatory, noise)
     own, likelihood = fit_noise(
         e, observatory.watches, observatory.tunings, observatory.damping, noise
     )
@@ -64,16 +64,16 @@ def _descend(here: Hypothesis, observatory: Observatory, noise: Noise):
         target = observatory.white(e, noise).ravel()
         H, g, cost = inner_products(rows), rows @ target, float(target @ target)
         if not len(rows):
-            return here, e, J, H
+            return here, e, J
         step, better, trust = _step(here, observatory, noise, H, g, cost, trust)
         if better is None:
-            return here, e, J, H
+            return here, e, J
         here = better
         excess = max(0.0, cost - len(target))
         if float(step @ H @ step) < max(CONVERGED**2 * len(step), ROUGH * excess):
             break
     e, J = observatory.linearised(here)
-    return here, e, J, H
+    return here, e, J
 
 
 def _step(here, observatory, noise, H, g, cost, trust):

@@ -82,7 +82,10 @@ def _noisy(watch: Watch, noise: Noise, signals: SignalSettings, random) -> Array
     kicks = noise.reading * random.normal(size=(len(state) + 2 * pad, 6))
     poses = np.hstack([kicks[:, :3], frames.exp(kicks[:, 3:])])  # about a vehicle at rest
     inside = slice(pad, len(poses) - pad)
-    poses, nu = filter_eta(poses, watch.period, signals.filter), velocities(poses, watch.period, signals)[0]
+    poses, nu = (
+        filter_eta(poses, watch.period, signals.filter),
+        velocities(poses, watch.period, signals)[0],
+    )
     state[:, :3] += frames.rotate(state[:, 3:7], poses[inside, :3])
     state[:, 3:7] = frames.multiply(state[:, 3:7], poses[inside, 3:])
     state[:, 7:] += nu[inside]

@@ -106,7 +106,9 @@ class Hypothesis:
         if not same:
             return replace(self, terms=(*self.terms, term))
         both = self.terms[same[0]].merged(term)
-        return replace(self, terms=tuple(both if i == same[0] else t for i, t in enumerate(self.terms)))
+        return replace(
+            self, terms=tuple(both if i == same[0] else t for i, t in enumerate(self.terms))
+        )
 
     def without(self, index: int) -> "Hypothesis":
         """The hypothesis without one of its terms."""

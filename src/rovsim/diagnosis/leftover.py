@@ -120,7 +120,7 @@ def _if_matters(i, what, size, level, statistic, limit) -> Iterator[Structure]:
 
 
 def _lines(i, w, watches, filters, level) -> Iterator[Structure]:
-    """One frequency for all runs, alone or with its overtones; perhaps growing with speed squared."""
+    """One frequency for all runs, with or without overtones; perhaps growing with speed squared."""
     period = watches[0].period
     longest = max(watch.time[-1] for watch in watches)
     count = int(longest / period) + 1
@@ -129,7 +129,8 @@ def _lines(i, w, watches, filters, level) -> Iterator[Structure]:
     for text in ("", ", growing with speed squared"):
         envelopes = [_speed_squared(x) if text else np.ones(x.settled.sum()) for x in watches]
         spectra = [
-            _spectrum(x * e, watch, count) for x, e, watch in zip(w, envelopes, watches, strict=True)
+            _spectrum(x * e, watch, count)
+            for x, e, watch in zip(w, envelopes, watches, strict=True)
         ]
         power = sum(
             2.0 * np.abs(s) ** 2 / np.sum(e**2) for s, e in zip(spectra, envelopes, strict=True)
@@ -151,7 +152,8 @@ def _combs(i, power, frequency, usable, watches, filters, level, text, envelopes
         for m in comb:  # rms of the push, from the power of its lines
             z = np.exp(2j * np.pi * frequency[m * k] * watches[0].period)
             size += power[m * k] / samples / abs(np.polyval(b, z) / np.polyval(a, z)) ** 2
-        what = f"a period of {1.0 / frequency[k]:.3g} s{', with overtones' if len(comb) > 1 else ''}{text}"
+        overtones = ", with overtones" if len(comb) > 1 else ""
+        what = f"a period of {1.0 / frequency[k]:.3g} s{overtones}{text}"
         yield from _if_matters(i, what, np.sqrt(size), level, statistic[best], limit)
 
 

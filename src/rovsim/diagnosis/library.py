@@ -70,14 +70,11 @@ def library(
 def remainder(found: Library, observatory: Observatory, noise: Noise) -> list[Array]:
     """What no candidate explains, all together: innovations (6, n) of each run.
 
-    Their noise is close to the true one whatever is missing, so candidates can be compared under it.
+    Their noise is close to the true one whatever is missing: candidates are compared under it.
     """
     stacked = [np.concatenate([e[None], c]) for e, c in zip(found.base, found.columns, strict=True)]
     white = coarse(observatory.white(stacked, noise))
     M = inner_products(white.reshape(len(white), -1))
     H = M[1:, 1:] + np.diag(SHRINK * np.diag(M)[1:] + 1e-9)
     x = -np.linalg.solve(H, M[1:, 0])
-    return [
-        e + np.tensordot(x, c, axes=1)
-        for e, c in zip(found.base, found.columns, strict=True)
-    ]
+    return [e + np.tensordot(x, c, axes=1) for e, c in zip(found.base, found.columns, strict=True)]

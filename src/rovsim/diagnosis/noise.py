@@ -40,7 +40,7 @@ class Noise:
 
 @dataclass(frozen=True, eq=False)
 class AxisFilter:
-    """Steady-state Kalman filter of one axis: `F` (n, n), `C` and `gain` (n,), innovation variance."""
+    """Steady-state Kalman filter of one axis: `F` (n, n), `C`, `gain` (n,), innovation variance."""
 
     F: Array
     C: Array

@@ -28,8 +28,8 @@ def observe(
     readings, starts, row = _seen(models, watch)
     out = np.empty((len(models) * len(watch.time), 6))
     module.observe(
-        _jobs(models, watch, starts), watch.h, watch.ends, packed([m.body for m in models]), inputs, p,
-        place(watch.motion), readings, row, tuning.gains, tuning.decay(watch.h),
+        _jobs(models, watch, starts), watch.h, watch.ends, packed([m.body for m in models]),
+        inputs, p, place(watch.motion), readings, row, tuning.gains, tuning.decay(watch.h),
         watch.motion.binned, out,
     )  # fmt: skip
     return np.ascontiguousarray(out.reshape(len(models), -1, 6).swapaxes(1, 2))
@@ -100,7 +100,7 @@ def _seen(models: Sequence[Model], watch: Watch) -> tuple[Array, Array, Array]:
 
 
 def remembered(models: Sequence[Model], watch: Watch, steps: Array) -> Array:
-    """What the water remembers (m * s, 6) at some integration steps (s,); empty if it never does."""
+    """What the water remembers (m * s, 6) at integration steps (s,); empty if it never does."""
     if not any(m.body.forgets for m in models):
         return NO_MEMORY
     rows = [measured_memory(m, as_true(m, watch.motion), watch.edges) for m in models]

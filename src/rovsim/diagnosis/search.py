@@ -175,9 +175,7 @@ def worth_trying(desk: Desk, current: Fit, but: Sequence[str] = ()) -> list[Prop
 
 def forward(desk: Desk, current: Fit, threshold: float) -> Fit | None:
     """The best single addition, refitted and pruned; None when none beats chance and matters."""
-    tried = [
-        desk.fit(current.hypothesis.with_term(p.term)) for p in worth_trying(desk, current)
-    ]
+    tried = [desk.fit(current.hypothesis.with_term(p.term)) for p in worth_trying(desk, current)]
     for best in sorted(tried, key=desk.score, reverse=True):
         if desk.score(best) - desk.score(current) < threshold:
             break
@@ -221,7 +219,8 @@ def contested(desk: Desk, current: Fit) -> tuple[Fit, list[Rival]]:
 
 def search(desk: Desk, base: Fit, settings: SearchSettings, seed: int) -> tuple[Fit, list[Rival]]:
     """From the base to the model to which nothing can be added, swapped or taken away."""
-    current, rivals = base, []
+    current: Fit = base
+    rivals: list[Rival] = []
     while len(current.hypothesis.terms) < settings.most_effects:
         by_chance = chance(desk, current, settings.draws, seed)
         threshold = max(0.0, float(np.quantile(by_chance, 1.0 - settings.false_alarm)))

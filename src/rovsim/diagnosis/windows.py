@@ -51,12 +51,16 @@ def differences(
     if starts is None:
         starts = np.tile(watch.motion.state[own], (len(models), 1, 1))
     paths = _paths(models, watch, spans, starts, between, pushes)
-    nu = [[m.view.twists(p[:, 7:]) for p in of_model] for m, of_model in zip(models, paths, strict=True)]
-    return np.array([
-        np.concatenate([_at_readings(watch, span, v) for span, v in zip(spans, of_model, strict=True)]
-                       or [np.empty((0, 6))])
-        for of_model in nu
-    ])  # fmt: skip
+    nu = [
+        [m.view.twists(p[:, 7:]) for p in of_model]
+        for m, of_model in zip(models, paths, strict=True)
+    ]
+    return np.array([_all_readings(watch, spans, of_model) for of_model in nu])
+
+
+def _all_readings(watch: Watch, spans: Sequence[tuple[int, int]], nu: Sequence[Array]) -> Array:
+    parts = [_at_readings(watch, span, v) for span, v in zip(spans, nu, strict=True)]
+    return np.concatenate([np.empty((0, 6)), *parts])
 
 
 def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:

@@ -38,7 +38,6 @@ from rovsim.engine.vectors import (
 )
 
 
-
 @inlined
 def turned(q, v):
     """q followed by a small rotation vector v in body axes; the length is restored later."""

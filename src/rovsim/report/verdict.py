@@ -42,7 +42,8 @@ def _bar(share: float) -> str:
 
 def _effect(one: Mapping[str, Any]) -> list[str]:
     share = one["error_reduction"] or 0.0
-    head = f"  {one['effect']:<22}{_bar(share)} {100 * share:5.1f} % of the error, probability {one['probability']:.3f}"
+    sure = f"of the error, probability {one['probability']:.3f}"
+    head = f"  {one['effect']:<22}{_bar(share)} {100 * share:5.1f} % {sure}"
     rows = [
         f"      {name:<18}{value['value']:>10.4g} ± {1.96 * value['std']:.2g} {value['unit']}"
         if "std" in value

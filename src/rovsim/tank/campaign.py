@@ -4,11 +4,12 @@ import os
 import shutil
 import tempfile
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import numpy as np
 
 from rovsim import AXES
+from rovsim.effects.base import Effect
 from rovsim.errors import BadInput
 from rovsim.files import write_text, write_yaml
 from rovsim.frames import HALF_TURN_X
@@ -39,24 +40,35 @@ def describe(settings: TankSettings) -> dict[str, Any]:
     }
 
 
-def true_model(settings: TankSettings) -> Model:
-    """The vehicle in the tank: nominal physics and the hidden effects."""
-    return Model("truth", load_vehicle(settings.vehicle), settings.effects)
+def true_model(settings: TankSettings, unlisted: Sequence[Effect] = ()) -> Model:
+    """The vehicle in the tank: nominal physics and all that is hidden."""
+    vehicle = load_vehicle(settings.vehicle)
+    return Model("truth", vehicle, settings.effects, unlisted=tuple(unlisted))
 
 
 def make_campaign(
-    settings: TankSettings, out: Path, progress: Callable[[int, int], None] = lambda a, b: None
+    settings: TankSettings,
+    out: Path,
+    progress: Callable[[int, int], None] = lambda a, b: None,
+    unlisted: Sequence[Effect] = (),
 ) -> None:
     """Fly all runs and write the campaign to the folder `out`.
 
+    Args:
+        settings: what it is made of.
+        out: a folder that is new, empty or an earlier tank campaign.
+        progress: told how many runs are done, of how many.
+        unlisted: hidden physics that the catalogue does not know.
+
     Raises:
-        BadInput: `out` holds something that is not a tank campaign, or a run left the tank.
+        BadInput: `out` holds something that is not a tank campaign.
+        LeftTank: the hidden effects are stronger than the pilot.
     """
     _replaceable(out)
     out.parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}-"))
     try:
-        _fill(settings, folder, progress)
+        _fill(settings, unlisted, folder, progress)
         folder.chmod(0o755)
         shutil.rmtree(out, ignore_errors=True)
         os.replace(folder, out)
@@ -74,15 +86,20 @@ def _replaceable(out: Path) -> None:
         )
 
 
-def _fill(settings: TankSettings, folder: Path, progress: Callable[[int, int], None]) -> None:
-    model, runs = true_model(settings), settings.runs
+def _fill(
+    settings: TankSettings,
+    unlisted: Sequence[Effect],
+    folder: Path,
+    progress: Callable[[int, int], None],
+) -> None:
+    model, runs = true_model(settings, unlisted), settings.runs
     seeds = np.random.SeedSequence(settings.seed).spawn(len(runs))
     for k, (run, seed) in enumerate(zip(runs, seeds, strict=True)):
         progress(k, len(runs))
         _record(model, settings, run, folder, np.random.default_rng(seed))
     progress(len(runs), len(runs))
     write_yaml(folder / "campaign.yaml", describe(settings))
-    write_yaml(folder / SEALED, sealed(settings))
+    write_yaml(folder / SEALED, sealed(settings, unlisted))
 
 
 def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, random) -> None:
@@ -93,8 +110,11 @@ def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, ra
     write_text(folder / f"{run.id}_commands.csv", commands_csv(truth, settings.log, random))
 
 
-def sealed(settings: TankSettings) -> dict[str, Any]:
+def sealed(settings: TankSettings, unlisted: Sequence[Effect] = ()) -> dict[str, Any]:
     """The answer, in the terms of the diagnosis, and how to make the campaign again."""
     effects = [{"effect": e.effect, "parameters": e.build().given()} for e in settings.effects]
-    verdict = "missing_effects" if effects else "adequate"
-    return {"verdict": verdict, "effects": effects, "settings": settings.model_dump(mode="json")}
+    verdict = "unexplained" if unlisted else "missing_effects" if effects else "adequate"
+    content: dict[str, Any] = {"verdict": verdict, "effects": effects}
+    if unlisted:
+        content["outside"] = [{"name": e.id, "parameters": e.given()} for e in unlisted]
+    return {**content, "settings": settings.model_dump(mode="json")}

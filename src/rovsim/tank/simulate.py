@@ -17,6 +17,8 @@ from rovsim.recording.recording import CommandKind, Commands, Site
 from rovsim.tank.pilot import Pilot
 from rovsim.tank.settings import TankSettings, Turbulence
 
+FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact to a nanosecond
+
 
 @dataclass(frozen=True, eq=False)
 class Truth:
@@ -38,7 +40,7 @@ def simulate(model: Model, settings: TankSettings, control: str, tank: Array, ra
         random: generator of this run.
 
     Raises:
-        BadInput: the vehicle left the tank: the hidden effects are stronger than the pilot.
+        LeftTank: the hidden effects are stronger than the pilot.
     """
     h, tick = settings.step, 1.0 / settings.log.rate
     ticks, per_tick = round(settings.duration / tick), round(tick / h)
@@ -80,9 +82,19 @@ class _Vehicle:
         command = np.clip(self.model.thrust_path.thrusters.mixing @ demand, -limit, limit)
         return np.round(400.0 * command) / 400.0  # PWM = 1500 us + 400 us c (vehicle file)
 
+    def _stamp(self, t: float) -> float:
+        """Time at which the log puts a command that is given at t.
+
+        No command acts before it is given: where the clocks say so, the log's clock is ahead.
+        """
+        stamp, arrival = t, self.model.thrust_path.arrival
+        for _ in range(FIXED_POINT):
+            stamp += max(0.0, t - float(arrival(np.array([stamp]))[0]))
+        return stamp
+
     def advance(self, k: int, command: Array, state: Array, pushes: Array, out: Array) -> None:
         """Take the command of tick k and move on to the next tick."""
-        self.times = np.append(self.times, k * self.tick)
+        self.times = np.append(self.times, self._stamp(k * self.tick))
         self.commands = np.vstack([self.commands, command])
         path, t = self.model.thrust_path, k * self.tick
         middle = t + self.h * (0.5 + np.arange(len(out)))
@@ -114,10 +126,14 @@ def disturbance(settings: Turbulence, steps: int, h: float, random) -> Array:
     return wrench * level
 
 
+class LeftTank(BadInput):
+    """The vehicle reached a wall, the floor or the surface."""
+
+
 def _stay_inside(state: Array, tank: Array, t: float) -> None:
     if np.all((state[:3] > tank[:, 0]) & (state[:3] < tank[:, 1])):
         return
-    raise BadInput(
+    raise LeftTank(
         f"the vehicle left the tank after {t:.1f} s",
         where="tank",
         expected="a run that stays between walls, floor and surface",

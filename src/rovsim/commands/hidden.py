@@ -1,0 +1,42 @@
+"""Hide known physics in the tank, ask what is missing, and keep the score.
+
+rovsim hidden [hidden.suite=quick|full] [hidden.seeds=reporting|development]
+              [hidden.methods=[diagnosis,stlsq,frols]] [hidden.cores=2] [out=results/hidden]
+
+One JSON per case and method in OUT/SEEDS/METHOD/; what is there and still true is not asked again.
+Writes OUT/summary.json, and of reporting seeds the tables of docs/benchmark_hidden.md.
+"""
+
+from pathlib import Path
+from typing import Any
+
+from rovsim.config import Settings
+from rovsim.files import write_json
+from rovsim.hidden.methods import chosen
+from rovsim.hidden.page import replace_tables, tables
+from rovsim.hidden.run import answers
+from rovsim.hidden.run import run as run_cases
+from rovsim.hidden.suites import suite
+from rovsim.hidden.summary import judged, summary
+from rovsim.progress import reported
+
+SCHEMA = "rovsim.hidden.summary/1"
+
+
+def run(settings: Settings) -> None:
+    """Run what is missing, then score all."""
+    asked = settings.hidden
+    out = Path(settings.out or "results/hidden")
+    cases, methods = suite(asked.suite, asked.seeds), chosen(asked.methods)
+    with reported("hidden cases") as progress:
+        run_cases(cases, methods, out / asked.seeds, asked.cores, progress)
+    results: dict[str, Any] = {"schema": SCHEMA, "suite": asked.suite, "seeds": asked.seeds}
+    results["methods"] = {
+        m.name: summary(judged(answers(cases, m, out / asked.seeds))) for m in methods
+    }
+    write_json(out / "summary.json", results)
+    text = tables(results)
+    if asked.seeds == "reporting":
+        replace_tables(Path(asked.page), text)
+    print(text)
+    print(out / "summary.json")

@@ -1,0 +1,1 @@
+"""Which physical effect is missing: observe, search, check, say (see diagnose.py)."""

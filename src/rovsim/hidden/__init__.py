@@ -1,0 +1,1 @@
+"""The project's own benchmark: hide physics in the tank, ask what is missing, keep the score."""

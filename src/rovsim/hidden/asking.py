@@ -1,0 +1,16 @@
+"""The project's own diagnosis as a method, with the settings a user gets."""
+
+from pathlib import Path
+from typing import Any
+
+from rovsim.config import compose
+from rovsim.diagnosing import diagnosed
+from rovsim.loading import measured
+from rovsim.model import nominal
+
+
+def diagnosis(campaign: Path, out: Path) -> dict[str, Any]:
+    """What `rovsim diagnose` writes, without the report."""
+    settings = compose(["command=diagnose"]).model_copy(update={"campaign": str(campaign)})
+    data = measured(settings, even_unusable=True)
+    return diagnosed(data, nominal(data.vehicle), settings, lambda name: None)

@@ -1,0 +1,121 @@
+"""One case: what is hidden in which tank, and what an answer may say about it."""
+
+import zlib
+from typing import Any, Literal, Mapping
+
+import numpy as np
+from pydantic import Field
+
+from rovsim.effects import effect
+from rovsim.effects.base import Effect
+from rovsim.hidden.outside import OUTSIDE
+from rovsim.hidden.recipes import RECIPES
+from rovsim.model import EffectEntry, Value
+from rovsim.strict import Section
+from rovsim.tank.settings import TankSettings
+
+# First and last seed of each range. Whoever builds or tunes a method looks at development cases
+# alone; a case of the other range is flown to report, never to decide.
+SEEDS = {"development": (1_000_000, 1_999_999), "reporting": (5_000_000, 5_999_999)}
+Range = Literal["development", "reporting"]
+
+WEAKER = 0.8  # of the size, each time the vehicle leaves the tank
+
+
+class Unlisted(Section):
+    """Physics outside the catalogue, by its name in `outside`."""
+
+    name: str
+    parameters: dict[str, float] = Field(default_factory=dict)
+
+    def build(self) -> Effect:
+        """The effect with these values."""
+        return OUTSIDE[self.name](**self.parameters)
+
+
+class Case(Section):
+    """One case.
+
+    `kind` is the row of the table it is counted in; `hidden` the truth in the catalogue's terms;
+    `outside` what no entry describes; `forgiven` effects that may be named or not; `strength` in
+    terms of the recipes; `tank` settings that differ from the default campaign.
+    """
+
+    id: str
+    kind: str
+    seed: int
+    hidden: tuple[EffectEntry, ...] = ()
+    outside: tuple[Unlisted, ...] = ()
+    forgiven: tuple[str, ...] = ()
+    strength: float = 1.0
+    tank: dict[str, Any] = Field(default_factory=dict)
+
+    @property
+    def names(self) -> list[str]:
+        """What an answer has to name."""
+        return [e.effect for e in self.hidden if e.effect not in self.forgiven]
+
+    @property
+    def verdicts(self) -> set[str]:
+        """Verdicts that are right."""
+        if self.outside:
+            return {"unexplained"}
+        return {"missing_effects"} if self.names else {"adequate"} | self._either()
+
+    def _either(self) -> set[str]:
+        return {"missing_effects"} if self.forgiven else set()
+
+    def settings(self) -> TankSettings:
+        """The campaign to fly."""
+        return TankSettings.model_validate(
+            {"name": "hidden", "seed": self.seed, "effects": self.hidden, **self.tank}
+        )
+
+    def weaker(self) -> "Case":
+        """The same case with smaller effects: where the pilot could not hold the vehicle."""
+        outside = tuple(_shrunk_outside(one) for one in self.outside)
+        hidden = tuple(_shrunk(one) for one in self.hidden)
+        strength = self.strength * WEAKER
+        return self.model_copy(update={"hidden": hidden, "outside": outside, "strength": strength})
+
+
+def _shrunk(entry: EffectEntry) -> EffectEntry:
+    """An entry whose first parameters, those a recipe sizes, are closer to their defaults."""
+    defaults = {p.name: p.default for p in effect(entry.effect).parameters}
+    fixed = RECIPES[entry.effect].fixed
+    values = {
+        k: v if k in fixed else Value(value=_closer(v.value, defaults[k]))
+        for k, v in entry.parameters.items()
+    }
+    return EffectEntry(effect=entry.effect, parameters=values)
+
+
+def _shrunk_outside(one: Unlisted) -> Unlisted:
+    first = OUTSIDE[one.name].parameters[0]
+    smaller = {first.name: _closer(one.parameters[first.name], first.default)}
+    return Unlisted(name=one.name, parameters=one.parameters | smaller)
+
+
+def _closer(value: float, default: float) -> float:
+    return float(f"{default + WEAKER * (value - default):.4g}")
+
+
+def seed_of(case_id: str, seeds: Range) -> int:
+    """A case's seed: its own, whatever else the suite holds."""
+    first, last = SEEDS[seeds]
+    return first + zlib.crc32(case_id.encode()) % (last - first + 1)
+
+
+def random_of(case_id: str, seeds: Range) -> np.random.Generator:
+    """What the case's own values are drawn with."""
+    return np.random.default_rng([seed_of(case_id, seeds), 1])
+
+
+def merged(*settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Tank settings together, section by section."""
+    found: dict[str, Any] = {}
+    for one in settings:
+        for key, value in one.items():
+            inner = isinstance(value, Mapping) and isinstance(found.get(key), Mapping)
+            found[key] = {**found[key], **value} if inner else value
+    return found

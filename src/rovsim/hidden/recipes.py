@@ -1,0 +1,122 @@
+"""How strong each effect of the catalogue is when it is hidden, and in which parameters.
+
+Strength 1 is a size that a laboratory would meet and that matters there: in 2 s windows the
+nominal model then errs two to ten times as much as a perfect one (the deadband 1.5, a tilted world
+1.1 times, whose sizes are the largest that anyone would overlook). Mostly that is one to a few of a
+parameter's own `scale`. Weaker strengths multiply `sizes`, never `fixed`.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, Mapping
+
+import numpy as np
+
+from rovsim.effects import effect
+from rovsim.effects.base import Parameter
+from rovsim.model import EffectEntry, Value
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """One effect as it is hidden.
+
+    `choices` groups of parameters, one of which is drawn; `sizes` at strength 1, in scales of each
+    parameter; `sign` of the change: 0 = either; `fixed` values that strength does not change;
+    `tank` settings that the effect needs to show; `weak`: whether less of it is harder to see.
+    """
+
+    choices: tuple[tuple[str, ...], ...]
+    sizes: Range
+    sign: int = 0
+    fixed: Mapping[str, Range] = field(default_factory=dict)
+    tank: Mapping[str, Any] = field(default_factory=dict)
+    weak: bool = True
+
+
+TRANSLATION, LEVEL = ("surge", "sway", "heave"), ("surge", "sway")
+PLACE: Mapping[str, Range] = {"x": (-0.2, 0.2), "y": (-0.2, 0.2), "z": (-0.15, 0.15)}
+NARROW = {"tank": {"x": (0.0, 4.2), "y": (0.0, 3.2), "z": (0.0, 3.0)}}  # a walled test basin
+SHALLOW = {"tank": {"x": (0.0, 10.0), "y": (0.0, 5.0), "z": (0.0, 2.0)}}
+
+
+def _each(*names: str) -> tuple[tuple[str, ...], ...]:
+    return tuple((name,) for name in names)
+
+
+RECIPES: Mapping[str, Recipe] = {
+    "net_buoyancy": Recipe(_each("force"), (0.75, 1.5)),
+    "buoyancy_center": Recipe(_each("x", "y", "z"), (0.6, 1.8)),
+    "payload": Recipe(_each("mass"), (0.6, 1.6), 1, PLACE),
+    "constant_wrench": Recipe((*_each(*TRANSLATION, "pitch", "yaw"), LEVEL), (0.6, 1.5)),
+    "linear_damping": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (0.8, 2.0), 1),
+    "quadratic_damping": Recipe((*_each(*TRANSLATION), LEVEL), (1.5, 3.0), 1),
+    "coupled_damping": Recipe(
+        _each("yaw_from_sway", "pitch_from_surge", "roll_from_sway", "sway_from_yaw_quadratic")
+        + _each("pitch_from_heave", "yaw_from_sway_quadratic", "pitch_from_surge_quadratic"),
+        (2.0, 5.0),
+    ),
+    "added_mass": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (0.8, 2.0), 1),
+    "added_mass_coupling": Recipe(_each("surge_pitch", "sway_roll", "sway_yaw"), (2.0, 4.0)),
+    "lift": Recipe(_each("coefficient"), (1.5, 3.0), 1),
+    "fluid_memory": Recipe(_each("coefficient"), (2.0, 5.0), 1, {"time_constant": (0.3, 1.5)}),
+    "current": Recipe((("north", "east"), *_each("north", "east")), (0.7, 1.5)),
+    "tether_tension": Recipe(
+        _each("stiffness"), (0.8, 1.5), 1,
+        {"slack_length": (0.3, 1.0), "anchor_x": (3, 7), "anchor_y": (1, 4), "anchor_z": (3, 3)},
+    ),
+    "tether_drag": Recipe(_each("coefficient"), (5.0, 10.0), 1),
+    "wall_proximity": Recipe(_each("gain"), (3.0, 6.0), 1, tank=NARROW),
+    "surface_proximity": Recipe(_each("gain"), (3.0, 6.0), 1, tank=SHALLOW),
+    "thruster_lag": Recipe(_each("time_constant"), (1.0, 2.5), 1),
+    "input_delay": Recipe(_each("delay"), (1.5, 4.0), 1),
+    "clock_drift": Recipe(_each("rate"), (1.0, 3.0)),
+    "thruster_deadband": Recipe(_each("width"), (1.5, 3.0), 1),  # ESCs stop at 0.06
+    "thruster_gain": Recipe(_each("all", *(f"t{i}" for i in range(1, 9))), (1.5, 4.0), -1),
+    "thrust_asymmetry": Recipe(_each("ratio"), (1.5, 3.0), -1),  # T200: 4.1 against 5.2 kgf
+    "voltage_sag": Recipe(_each("fraction"), (1.5, 3.0), 1),
+    "advance_loss": Recipe(_each("coefficient"), (1.5, 4.0), 1),
+    "propeller_torque": Recipe(_each("ratio"), (1.0, 3.0)),
+    "onboard_control": Recipe(
+        (("bandwidth_yaw",), ("bandwidth_roll", "bandwidth_pitch", "bandwidth_yaw")), (1.5, 3.0),
+        1, {"gain_yaw": (1.0, 1.8), "gain_roll": (0.5, 0.8), "gain_pitch": (0.5, 0.8)},
+        {"log": {"kind": "demand"}}, weak=False,
+    ),
+    "marker_offset": Recipe(_each("x", "y", "z"), (1.0, 3.0)),
+    "marker_misalignment": Recipe(_each("roll", "pitch", "yaw"), (1.5, 4.0)),
+    "world_tilt": Recipe(_each("roll", "pitch"), (2.0, 4.0)),
+}  # fmt: skip
+
+
+def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntry:
+    """An effect of the catalogue with values drawn by its recipe.
+
+    What is drawn is the same at every strength; only the size of the change differs.
+    """
+    recipe = RECIPES[name]
+    known = {p.name: p for p in effect(name).parameters}
+    chosen = recipe.choices[random.integers(len(recipe.choices))]
+    values = {k: _rounded(random.uniform(*r)) for k, r in recipe.fixed.items()}
+    sign = recipe.sign or random.choice([-1, 1])
+    for k in chosen:
+        size = float(random.uniform(*recipe.sizes)) * (strength if recipe.weak else 1.0)
+        values[k] = _moved(known[k], sign * size)
+    values = {k: v for k, v in values.items() if _used(name, k, chosen)}
+    return EffectEntry(effect=name, parameters={k: Value(value=v) for k, v in values.items()})
+
+
+def _moved(p: Parameter, scales: float) -> float:
+    """The parameter's default moved by some of its scales, inside its range, to four digits."""
+    return _rounded(np.clip(p.default + scales * p.scale, p.low, p.high))
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.4g}")
+
+
+def _used(name: str, parameter: str, chosen: tuple[str, ...]) -> bool:
+    """A loop's gain means nothing on an axis that has no loop."""
+    if name != "onboard_control" or not parameter.startswith("gain_"):
+        return True
+    return parameter.replace("gain_", "bandwidth_") in chosen

@@ -1,0 +1,120 @@
+"""One answer judged against the truth. Pure: a case and a diagnosis in, numbers out.
+
+An answer is `exact` if it names what is hidden and nothing else, and its verdict is right.
+Strictly: the very names. Leniently: up to the groups that the diagnosis itself calls
+indistinguishable, each hidden effect matched by one named effect. How large such groups are is
+counted, so that an answer cannot win by calling everything alike.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any, Mapping, Sequence
+
+from rovsim.effects import effect
+from rovsim.hidden.case import Case
+
+Diagnosis = Mapping[str, Any]
+SURE = 1.96  # standard deviations of a 95 % interval
+
+
+@dataclass(frozen=True)
+class ParameterScore:
+    """One hidden number: relative `error`, and whether its 95 % interval covers it (None: none)."""
+
+    effect: str
+    name: str
+    error: float
+    covered: bool | None
+
+
+@dataclass(frozen=True)
+class Score:
+    """What one answer is worth.
+
+    `first` whether the first name is right (None where nothing is hidden); `false` names that are
+    neither hidden nor forgiven; `alike` size of the largest group that a hidden effect is in.
+    """
+
+    verdict: bool
+    flagged: bool
+    first_strict: bool | None
+    first: bool | None
+    exact_strict: bool
+    exact: bool
+    false_strict: int
+    false: int
+    alike: int
+    parameters: tuple[ParameterScore, ...]
+
+    def plain(self) -> dict[str, Any]:
+        """For JSON."""
+        return asdict(self)
+
+
+def score(case: Case, diagnosis: Diagnosis) -> Score:
+    """Judge a diagnosis of the campaign of a case."""
+    selected = [s["effect"] for s in diagnosis["selected"]]
+    counted = [s for s in selected if s not in case.forgiven]
+    groups = [set(group) for group in diagnosis.get("indistinguishable", [])]
+    right = diagnosis["verdict"] in case.verdicts
+    matched = matching(counted, case.names, groups)
+    strict = set(counted) & set(case.names)
+    complete = len(counted) == len(case.names)
+    return Score(
+        verdict=right,
+        flagged=diagnosis["verdict"] == "unexplained",
+        first_strict=_first(selected, case.names, []),
+        first=_first(selected, case.names, groups),
+        exact_strict=right and complete and set(counted) == set(case.names),
+        exact=right and complete and matched == len(case.names),
+        false_strict=len(counted) - len(strict),
+        false=len(counted) - matched,
+        alike=max((len(g) for g in groups if g & set(case.names)), default=1),
+        parameters=tuple(_parameters(case, diagnosis)),
+    )
+
+
+def _first(selected: Sequence[str], truth: Sequence[str], groups: list[set[str]]) -> bool | None:
+    if not truth:
+        return None
+    return bool(selected) and any(_same(selected[0], one, groups) for one in truth)
+
+
+def _same(a: str, b: str, groups: list[set[str]]) -> bool:
+    return a == b or any({a, b} <= group for group in groups)
+
+
+def matching(named: Sequence[str], truth: Sequence[str], groups: list[set[str]]) -> int:
+    """How many names can be paired with hidden effects, each used once (augmenting paths)."""
+    owner: dict[str, str] = {}
+
+    def place(one: str, seen: set[str]) -> bool:
+        for hidden in truth:
+            if hidden not in seen and _same(one, hidden, groups):
+                seen.add(hidden)
+                if hidden not in owner or place(owner[hidden], seen):
+                    owner[hidden] = one
+                    return True
+        return False
+
+    return sum(place(one, set()) for one in named)
+
+
+def _parameters(case: Case, diagnosis: Diagnosis):
+    """Every number of a hidden effect that was named by its own name."""
+    answers = {s["effect"]: s["parameters"] for s in diagnosis["selected"]}
+    for entry in case.hidden:
+        if entry.effect in case.names and entry.effect in answers:
+            known = {p.name: p for p in effect(entry.effect).parameters}
+            for name, truth in entry.parameters.items():
+                if known[name].fitted:
+                    yield _parameter(entry.effect, known[name], truth.value, answers[entry.effect])
+
+
+def _parameter(effect_id, declared, truth: float, answer: Mapping[str, Any]) -> ParameterScore:
+    """The change from the default is what was hidden; a number left out says: the default."""
+    found = answer.get(declared.name, {"value": declared.default, "std": None})
+    size = max(abs(truth - declared.default), 1e-9)
+    miss = abs(found["value"] - truth)
+    std = found.get("std")
+    covered = None if std is None else miss <= SURE * std
+    return ParameterScore(effect_id, declared.name, miss / size, covered)

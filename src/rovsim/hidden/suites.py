@@ -1,0 +1,166 @@
+"""The suites: which cases there are, as data. No case depends on its neighbours.
+
+single     every effect at its standard strength
+weak       the same at 0.5, 0.25 and 0.1 of it: where does it vanish?
+noisy      camera noise three times as large
+short      runs of 30 and 20 s
+pair, triple   effects of different families, none of which imitates another by construction
+deviation  every coefficient of damping and inertia a few per cent off
+none       nothing hidden
+outside    physics that no entry describes, alone or beside an effect
+"""
+
+from typing import Any, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from rovsim import AXES
+from rovsim.hidden.case import Case, Range, Unlisted, merged, random_of, seed_of
+from rovsim.hidden.outside import OUTSIDE, drawn_outside
+from rovsim.hidden.recipes import RECIPES, drawn
+from rovsim.model import EffectEntry, Value
+from rovsim.tank.settings import Camera
+from rovsim.vehicle import load_vehicle
+
+CALM = Camera()
+NOISY: Mapping[str, Any] = {
+    "camera": {
+        "position_noise": 3 * CALM.position_noise,
+        "attitude_noise": 3 * CALM.attitude_noise,
+    }
+}
+WEAK = (0.5, 0.25, 0.1)
+SHORT = (30.0, 20.0)  # s
+DEVIATION = (0.02, 0.05)  # of each coefficient
+DEVIATING = ("linear_damping", "quadratic_damping", "added_mass")
+
+# Effects of one family push much alike, so that a set with two of them has no single answer.
+FAMILIES: tuple[frozenset[str], ...] = (
+    frozenset({"net_buoyancy", "payload", "constant_wrench", "buoyancy_center", "tether_tension",
+               "world_tilt", "current"}),
+    frozenset({"linear_damping", "quadratic_damping", "lift", "fluid_memory", "tether_drag",
+               "wall_proximity", "surface_proximity"}),
+    frozenset({"coupled_damping"}),
+    frozenset({"added_mass"}),
+    frozenset({"added_mass_coupling", "marker_offset", "marker_misalignment"}),
+    frozenset({"thruster_lag", "input_delay", "clock_drift"}),
+    frozenset({"thruster_deadband", "thruster_gain", "thrust_asymmetry", "voltage_sag",
+               "advance_loss"}),
+    frozenset({"propeller_torque"}),
+    frozenset({"onboard_control"}),
+)  # fmt: skip
+
+
+def suite(name: str, seeds: Range) -> list[Case]:
+    """All cases of a suite."""
+    return list({"quick": quick, "full": full}[name](seeds))
+
+
+def quick(seeds: Range) -> Iterator[Case]:
+    """Some 40 cases: every effect once, and a few of the other kinds."""
+    for name in RECIPES:
+        yield hiding("single", (name,), 0, seeds)
+    yield from (nothing(k, seeds) for k in range(3))
+    yield from (outside(name, 0, seeds) for name in list(OUTSIDE)[::3])
+    yield from (combination(2, k, seeds) for k in range(2))
+    yield combination(3, 0, seeds)
+    yield deviation(0, seeds)
+
+
+def full(seeds: Range) -> Iterator[Case]:
+    """All kinds; the quick suite is a part of it."""
+    for name, recipe in RECIPES.items():
+        yield from (hiding("single", (name,), k, seeds) for k in range(6))
+        if recipe.weak:
+            for strength in WEAK:
+                yield from (hiding("weak", (name,), k, seeds, strength) for k in range(4))
+        yield hiding("noisy", (name,), 0, seeds, tank=NOISY)
+        for seconds in SHORT:
+            yield hiding(f"short {seconds:g} s", (name,), 0, seeds, tank={"duration": seconds})
+    yield from (combination(2, k, seeds) for k in range(40))
+    yield from (combination(3, k, seeds) for k in range(20))
+    yield from (deviation(k, seeds) for k in range(20))
+    yield from (nothing(k, seeds) for k in range(24))
+    yield from (nothing(k, seeds, "none, noisy", NOISY) for k in range(6))
+    for seconds in SHORT:
+        yield from (
+            nothing(k, seeds, f"none, {seconds:g} s", {"duration": seconds}) for k in range(5)
+        )
+    for name in OUTSIDE:
+        yield from (outside(name, k, seeds) for k in range(4))
+        yield outside(name, 0, seeds, beside=True)
+
+
+def hiding(
+    kind: str, names: Sequence[str], k: int, seeds: Range, strength: float = 1.0,
+    tank: Mapping[str, Any] | None = None,
+) -> Case:  # fmt: skip
+    """A case that hides these effects of the catalogue.
+
+    The k-th case of an effect hides the same at every strength, so that only the strength differs.
+    """
+    label = kind if strength == 1.0 else f"{kind} {strength:g}"
+    case_id = f"{label}/{'+'.join(names)}/{k}"
+    random = random_of(f"{'+'.join(names)}/{k}", seeds)
+    hidden = tuple(drawn(name, strength, random) for name in names)
+    needed = [RECIPES[name].tank for name in names]
+    return Case(
+        id=case_id, kind=label, seed=seed_of(case_id, seeds), hidden=hidden, strength=strength,
+        tank=merged(*needed, tank or {}),
+    )  # fmt: skip
+
+
+def combination(count: int, k: int, seeds: Range) -> Case:
+    """Effects of different families, drawn."""
+    random = random_of(f"combination/{count}/{k}", seeds)
+    families = random.choice(len(FAMILIES), size=count, replace=False)
+    names = [str(random.choice(sorted(FAMILIES[i]))) for i in families]
+    return hiding({2: "pair", 3: "triple"}[count], names, k, seeds)
+
+
+def nothing(
+    k: int, seeds: Range, kind: str = "none", tank: Mapping[str, Any] | None = None
+) -> Case:
+    """A tank in which the nominal model is right."""
+    case_id = f"{kind}/{k}"
+    return Case(id=case_id, kind=kind, seed=seed_of(case_id, seeds), tank=dict(tank or {}))
+
+
+def deviation(k: int, seeds: Range) -> Case:
+    """A vehicle whose coefficients are a few per cent off, every one of them.
+
+    Damping and added mass are changes from the nominal, so naming them is right where it can be
+    seen, and `adequate` where it cannot; a mass that is off enters as the same added mass on all
+    three translations. Only another name, or `unexplained`, is wrong.
+    """
+    case_id = f"deviation/{k}"
+    random = random_of(case_id, seeds)
+    share = DEVIATION[k % len(DEVIATION)]
+    water = load_vehicle("bluerov2_heavy").hydrodynamics
+    hidden = [_off(name, getattr(water, name), share, random) for name in DEVIATING]
+    return Case(
+        id=case_id, kind="deviation", seed=seed_of(case_id, seeds), hidden=tuple(hidden),
+        forgiven=DEVIATING, strength=share,
+    )  # fmt: skip
+
+
+def _off(
+    name: str, nominal: Sequence[float], share: float, random: np.random.Generator
+) -> EffectEntry:
+    changes = share * np.array(nominal) * random.choice([-1.0, 1.0], size=len(AXES))
+    values = {a: Value(value=float(f"{c:.4g}")) for a, c in zip(AXES, changes, strict=True) if c}
+    return EffectEntry(effect=name, parameters=values)
+
+
+def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
+    """Physics outside the catalogue, alone or beside an effect drawn from it."""
+    kind = "outside, beside an effect" if beside else "outside"
+    case_id = f"{kind}/{name}/{k}"
+    random = random_of(case_id, seeds)
+    unlisted = drawn_outside(name, 1.0, random)
+    known = str(random.choice(["quadratic_damping", "net_buoyancy", "thruster_lag"]))
+    hidden = (drawn(known, 1.0, random),) if beside else ()
+    return Case(
+        id=case_id, kind=kind, seed=seed_of(case_id, seeds), hidden=hidden,
+        outside=(Unlisted(name=name, parameters=unlisted.given()),),
+    )  # fmt: skip

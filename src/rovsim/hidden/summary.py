@@ -1,0 +1,158 @@
+"""Many scores put together: rates by kind of case, by effect, and detection limits."""
+
+from dataclasses import dataclass
+from typing import Any, Callable, Iterable, Mapping, Sequence
+
+import numpy as np
+
+from rovsim.hidden.case import Case
+from rovsim.hidden.score import ParameterScore, Score, score
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A case as flown, what its answer was worth (None: it crashed), and how long that took.
+
+    `redrawn`: the vehicle left the tank at first, and was flown again with weaker effects.
+    """
+
+    case: Case
+    redrawn: bool
+    seconds: float
+    score: Score | None
+    first: str
+    verdict: str
+    error: str | None = None
+
+
+def judged(answers: Iterable[Mapping[str, Any]]) -> list[Judged]:
+    """Score the kept answers of one method."""
+    return [_judged(a) for a in answers]
+
+
+def _judged(answer: Mapping[str, Any]) -> Judged:
+    case, found = Case.model_validate(answer["case"]), answer.get("diagnosis")
+    known = case, bool(answer["redrawn"]), float(answer["seconds"])
+    if found is None:
+        return Judged(*known, None, "", "error", answer["error"])
+    first = found["selected"][0]["effect"] if found["selected"] else ""
+    return Judged(*known, score(case, found), first, found["verdict"])
+
+
+def summary(found: Sequence[Judged]) -> dict[str, Any]:
+    """`{"kinds": …, "effects": …, "outside": …, "failed": …}` of one method."""
+    return {
+        "cases": len(found),
+        "failed": sorted(j.case.id for j in found if j.score is None),
+        "kinds": {kind: rates(rows) for kind, rows in _grouped(found, lambda j: j.case.kind)},
+        "effects": {name: _of_effect(rows) for name, rows in _by_effect(found)},
+        "outside": {
+            name: rates(rows)
+            for name, rows in _grouped(
+                [j for j in found if j.case.outside], lambda j: j.case.outside[0].name
+            )
+        },
+    }
+
+
+def _grouped(
+    found: Sequence[Judged], key: Callable[[Judged], str]
+) -> Iterable[tuple[str, list[Judged]]]:
+    """Groups in the order of their first member."""
+    groups: dict[str, list[Judged]] = {}
+    for one in found:
+        groups.setdefault(key(one), []).append(one)
+    return groups.items()
+
+
+def _by_effect(found: Sequence[Judged]) -> Iterable[tuple[str, list[Judged]]]:
+    """Cases that hide one effect and nothing else, under usual noise and length, by effect."""
+    alone = [j for j in found if j.case.kind.split()[0] in ("single", "weak")]
+    return _grouped(alone, lambda j: j.case.hidden[0].effect)
+
+
+def rates(found: Sequence[Judged]) -> dict[str, Any]:
+    """Shares of cases. An answer that crashed is wrong in every respect but false names."""
+    scores = [j.score for j in found]
+    naming = [s for j, s in zip(found, scores, strict=True) if j.case.names]
+    parameters = [p for s in scores if s for p in s.parameters]
+    return {
+        "cases": len(found),
+        "verdict": share([bool(s and s.verdict) for s in scores]),
+        "first_strict": share([bool(s and s.first_strict) for s in naming]),
+        "first": share([bool(s and s.first) for s in naming]),
+        "exact_strict": share([bool(s and s.exact_strict) for s in scores]),
+        "exact": share([bool(s and s.exact) for s in scores]),
+        "false_names_strict": share([bool(s and s.false_strict) for s in scores]),
+        "false_names": share([bool(s and s.false) for s in scores]),
+        "unexplained": share([bool(s and s.flagged) for s in scores]),
+        "alike": _mean([s.alike for s in scores if s]),
+        "redrawn": share([j.redrawn for j in found]),
+        "seconds": float(np.median([j.seconds for j in found])) if found else None,
+        **precision(parameters),
+    }
+
+
+def precision(parameters: Sequence[ParameterScore]) -> dict[str, Any]:
+    """Relative errors of hidden numbers that were named, and how often intervals hold them."""
+    errors = [p.error for p in parameters]
+    sure = [p.covered for p in parameters if p.covered is not None]
+    return {
+        "parameters": len(errors),
+        "error_median": float(np.median(errors)) if errors else None,
+        "error_95": float(np.quantile(errors, 0.95)) if errors else None,
+        "coverage": share(sure),
+    }
+
+
+def share(flags: Sequence[bool]) -> float | None:
+    """Share of True; None of nothing."""
+    return float(np.mean(flags)) if len(flags) else None
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return float(np.mean(values)) if values else None
+
+
+def _of_effect(found: Sequence[Judged]) -> dict[str, Any]:
+    full = [j for j in found if j.case.kind == "single"]
+    return {
+        **rates(full),
+        "limit": detection_limit(
+            [(j.case.strength, bool(j.score and j.score.first)) for j in found]
+        ),
+        "instead": sorted({j.first or j.verdict for j in full if not (j.score and j.score.first)}),
+    }
+
+
+def detection_limit(found: Sequence[tuple[float, bool]]) -> float | None:
+    """Strength at which half are named: where a rising fit to the shares passes one half.
+
+    None if not even the strongest half are; the weakest strength tried is the lowest answer.
+    """
+    strengths = np.array(sorted({s for s, _ in found}))
+    if len(strengths) < 2:
+        return None
+    counts = np.array([[sum(s == x for s, _ in found)] for x in strengths], dtype=float).ravel()
+    shares = np.array([np.mean([ok for s, ok in found if s == x]) for x in strengths])
+    rising = _rising(shares, counts)
+    if rising[-1] < 0.5:
+        return None
+    k = int(np.argmax(rising >= 0.5))
+    if k == 0:
+        return float(strengths[0])
+    part = (0.5 - rising[k - 1]) / (rising[k] - rising[k - 1])
+    a, b = np.log(strengths[k - 1]), np.log(strengths[k])
+    return float(np.exp(a + part * (b - a)))
+
+
+def _rising(shares: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Nearest shares that never fall (pool adjacent violators)."""
+    blocks: list[list[float]] = []  # mean, weight, length
+    for mean, weight in zip(shares, counts, strict=True):
+        blocks.append([float(mean), float(weight), 1])
+        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
+            b, a = blocks.pop(), blocks.pop()
+            w = a[1] + b[1]
+            blocks.append([(a[0] * a[1] + b[0] * b[1]) / w, w, a[2] + b[2]])
+    return np.concatenate([np.full(int(n), m) for m, _, n in blocks])

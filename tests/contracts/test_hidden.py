@@ -1,0 +1,269 @@
+"""The hidden-effect benchmark: valid cases, fair rules, and it goes on where it was."""
+
+import numpy as np
+import pytest
+
+from rovsim.effects import catalogue
+from rovsim.errors import BadInput
+from rovsim.files import read_json
+from rovsim.hidden.case import SEEDS, Case, Unlisted, seed_of
+from rovsim.hidden.flight import fly
+from rovsim.hidden.methods import Method
+from rovsim.hidden.outside import OUTSIDE, drawn_outside
+from rovsim.hidden.page import BEGIN, END, replace_tables, tables
+from rovsim.hidden.recipes import RECIPES
+from rovsim.hidden.run import answers, place, run
+from rovsim.hidden.score import matching, score
+from rovsim.hidden.suites import FAMILIES, suite
+from rovsim.hidden.summary import detection_limit, judged, summary
+from rovsim.model import EffectEntry
+
+SHORT = {
+    "duration": 2.0,
+    "runs": [{"id": "a", "control": "6dof", "split": "train"}],
+}
+LAG = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.2})
+DRAG = EffectEntry(effect="quadratic_damping", parameters={"surge": 80.0, "sway": 40.0})
+
+
+def case(*hidden, **fields):
+    return Case(**{"id": "single/x/0", "kind": "single", "seed": 3, "hidden": hidden, **fields})
+
+
+def diagnosis(*named, verdict=None, groups=(), **parameters):
+    """A diagnosis that selects these effects, the parameters given by effect."""
+    selected = [{"effect": n, "parameters": parameters.get(n, {})} for n in named]
+    verdict = verdict or ("missing_effects" if named else "adequate")
+    return {"verdict": verdict, "selected": selected, "indistinguishable": list(groups)}
+
+
+# the suites
+
+
+@pytest.mark.parametrize("name", ["quick", "full"])
+def test_every_effect_of_the_catalogue_is_hidden_once_alone(name):
+    assert set(RECIPES) == set(catalogue()) == frozenset.union(*FAMILIES)
+    alone = [c.hidden[0].effect for c in suite(name, "development") if c.kind == "single"]
+    assert set(alone) == set(catalogue())
+
+
+def test_cases_are_valid_and_their_effects_do_something():
+    cases = suite("full", "development")
+    assert len({c.id for c in cases}) == len(cases)
+    assert {c.id for c in suite("quick", "development")} <= {c.id for c in cases}
+    for one in cases:
+        one.settings()
+        for entry in one.hidden:
+            assert entry.build().given()
+        for unlisted in one.outside:
+            assert unlisted.build().given()
+
+
+def test_seeds_of_the_two_ranges_are_disjoint_and_cases_repeatable():
+    ranges = [set(range(first, last + 1)) for first, last in SEEDS.values()]
+    assert not ranges[0] & ranges[1]
+    for seeds, allowed in zip(SEEDS, ranges, strict=True):
+        cases = suite("full", seeds)
+        assert {c.seed for c in cases} <= allowed
+        assert cases == suite("full", seeds)
+    assert seed_of("single/lift/0", "development") != seed_of("single/lift/1", "development")
+
+
+def test_weaker_cases_hide_the_same_but_less():
+    cases = {c.id: c for c in suite("full", "development")}
+    for name in ("thruster_lag", "quadratic_damping", "thruster_gain", "payload"):
+        full, tenth = cases[f"single/{name}/0"], cases[f"weak 0.1/{name}/0"]
+        strong, weak = full.hidden[0].build(), tenth.hidden[0].build()
+        for p, a, b in zip(strong.parameters, strong.values, weak.values, strict=True):
+            kept = p.name in RECIPES[name].fixed
+            assert b == pytest.approx(a if kept else p.default + 0.1 * (a - p.default), rel=1e-3)
+
+
+def test_sets_hold_effects_of_different_families():
+    for one in suite("full", "reporting"):
+        if one.kind in ("pair", "triple"):
+            names = [e.effect for e in one.hidden]
+            assert len(names) == {"pair": 2, "triple": 3}[one.kind]
+            assert all(len(family & set(names)) <= 1 for family in FAMILIES)
+
+
+@pytest.mark.parametrize("name", OUTSIDE)
+def test_outside_physics_never_enters_the_catalogue(name):
+    found = drawn_outside(name, 1.0, np.random.default_rng(0))
+    assert name not in catalogue()
+    assert all([found.__doc__, found.equation, found.neglects, found.source])
+    with pytest.raises(BadInput, match="unknown effect"):
+        EffectEntry(effect=name).build()
+
+
+# flying
+
+
+def test_the_same_case_gives_the_same_bytes_and_no_truth_beside_them(tmp_path):
+    one = case(LAG, tank=SHORT, outside=[Unlisted(name="backlash", parameters={"width": 2.0})])
+    assert fly(one, tmp_path / "a") == fly(one, tmp_path / "b") == one
+    names = sorted(p.name for p in (tmp_path / "a").iterdir())
+    assert names == ["a_6D.tsv", "a_commands.csv", "campaign.yaml"]
+    for name in names:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+    fly(case(LAG, tank=SHORT), tmp_path / "c")
+    assert (tmp_path / "c/a_6D.tsv").read_bytes() != (tmp_path / "a/a_6D.tsv").read_bytes()
+
+
+def test_what_leaves_the_tank_is_flown_again_weaker(tmp_path):
+    strong = EffectEntry(effect="net_buoyancy", parameters={"force": 300.0})
+    flown = fly(case(strong, tank=SHORT), tmp_path / "c")
+    assert flown.strength < 1.0
+    assert flown.hidden[0].parameters["force"].value == pytest.approx(
+        300.0 * flown.strength, rel=1e-2
+    )
+
+
+# the score
+
+
+def test_the_truth_itself_is_exact():
+    answer = {"time_constant": {"value": 0.21, "std": 0.01}}
+    found = score(case(LAG), diagnosis("thruster_lag", thruster_lag=answer))
+    assert found.verdict
+    assert found.first
+    assert found.exact_strict
+    assert found.false == 0
+    assert found.parameters[0].error == pytest.approx(0.05)
+    assert found.parameters[0].covered
+
+
+def test_an_equivalent_name_is_exact_leniently_alone():
+    alike = ["input_delay", "thruster_lag"]
+    found = score(case(LAG), diagnosis("input_delay", groups=[alike]))
+    assert (found.exact, found.exact_strict, found.alike) == (True, False, 2)
+    assert (found.first, found.first_strict) == (True, False)
+    assert (found.false, found.false_strict) == (0, 1)
+    assert not score(case(LAG), diagnosis("input_delay")).exact
+
+
+def test_one_name_does_not_stand_for_two_effects():
+    group = {"a", "b", "c"}
+    assert matching(["c"], ["a", "b"], [group]) == 1
+    assert matching(["c", "a"], ["a", "b"], [group]) == 2
+    assert matching(["a", "c"], ["a", "b"], [{"b", "c"}]) == 2
+    assert matching(["x"], ["a"], [group]) == 0
+
+
+def test_a_second_name_is_false_and_a_missing_one_is_not_exact():
+    more = score(case(LAG), diagnosis("thruster_lag", "lift"))
+    assert (more.exact, more.first, more.false) == (False, True, 1)
+    fewer = score(case(LAG, DRAG), diagnosis("thruster_lag"))
+    assert (fewer.exact, fewer.first, fewer.false) == (False, True, 0)
+
+
+def test_a_number_left_out_says_the_default():
+    answer = {"surge": {"value": 88.0, "std": 2.0}}
+    found = score(case(DRAG), diagnosis("quadratic_damping", quadratic_damping=answer)).parameters
+    assert [(p.name, round(p.error, 6), p.covered) for p in found] == [
+        ("surge", 0.1, False),
+        ("sway", 1.0, None),
+    ]
+
+
+def test_nothing_hidden_asks_for_nothing():
+    assert score(case(), diagnosis()).exact
+    alarm = score(case(), diagnosis("lift"))
+    assert not alarm.verdict
+    assert alarm.first is None
+    assert alarm.false == 1
+    assert not score(case(), diagnosis(verdict="unexplained")).verdict
+
+
+def test_a_deviation_may_be_named_or_not():
+    off = case(DRAG, forgiven=["quadratic_damping", "linear_damping"])
+    assert score(off, diagnosis()).exact
+    assert score(off, diagnosis("quadratic_damping")).exact
+    assert not score(off, diagnosis("lift")).exact
+    assert not score(off, diagnosis(verdict="unexplained")).verdict
+
+
+def test_outside_physics_has_to_be_flagged():
+    strange = case(outside=[Unlisted(name="tone", parameters={"force": 3.0})])
+    assert score(strange, diagnosis(verdict="unexplained")).exact
+    assert not score(strange, diagnosis()).verdict
+    assert not score(strange, diagnosis("lift")).verdict
+
+
+def test_the_detection_limit_is_where_half_are_named():
+    rows = [(1.0, True)] * 4 + [(0.5, True)] * 4 + [(0.25, False)] * 4
+    assert detection_limit(rows) == pytest.approx(np.sqrt(0.125))
+    assert detection_limit([(1.0, False), (0.5, True), (0.1, False)] * 2) == pytest.approx(0.5)
+    assert detection_limit([(1.0, False), (0.5, False)]) is None
+    assert detection_limit([(1.0, True), (0.5, True)]) == 0.5
+
+
+# running
+
+
+def stub(campaign, out):
+    """Answers by the book, and leaves a trace of having been asked."""
+    trace = STATE["folder"] / "asked"
+    trace.write_text(trace.read_text() + "x" if trace.exists() else "x")
+    if STATE["crash"]:
+        raise ValueError("no idea")
+    assert (campaign / "campaign.yaml").exists()
+    assert not (campaign / "truth.yaml").exists()
+    return diagnosis("thruster_lag")
+
+
+STATE: dict = {}
+
+
+@pytest.fixture
+def asked(tmp_path):
+    STATE.update(folder=tmp_path, crash=False)
+    trace = tmp_path / "asked"
+    return lambda: len(trace.read_text()) if trace.exists() else 0
+
+
+def test_what_was_answered_is_not_asked_again(tmp_path, asked):
+    cases = [case(LAG, tank=SHORT, id=f"single/{k}", seed=k) for k in range(2)]
+    method = Method("stub", stub, ("rovsim.errors",))
+    run(cases[:1], [method], tmp_path / "r", 1)
+    assert asked() == 1
+    run(cases, [method], tmp_path / "r", 1)
+    assert asked() == 2
+    run(cases, [method], tmp_path / "r", 1)
+    assert asked() == 2
+    changed = Method("stub", stub, ("rovsim.errors", "rovsim.latency"))
+    run(cases[:1], [changed], tmp_path / "r", 1)
+    assert asked() == 3
+    found = summary(judged(answers(cases, method, tmp_path / "r")))
+    assert found["kinds"]["single"]["exact"] == 1.0
+
+
+def test_a_crash_is_a_wrong_answer_and_is_told(tmp_path, asked):
+    STATE["crash"] = True
+    one, method = case(LAG, tank=SHORT), Method("stub", stub, ("rovsim.errors",))
+    run([one], [method], tmp_path, 1)
+    assert "no idea" in read_json(place(tmp_path, method, one))["error"]
+    found = summary(judged(answers([one], method, tmp_path)))
+    assert found["failed"] == [one.id]
+    assert found["kinds"]["single"]["exact"] == 0.0
+
+
+def test_the_page_gets_its_tables_between_the_marks(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(f"before\n{BEGIN}\nlast year's\n{END}\nafter\n")
+    answer = {
+        "case": case(LAG).model_dump(mode="json"), "redrawn": False, "seconds": 1.5,
+        "diagnosis": diagnosis("thruster_lag"),
+    }  # fmt: skip
+    results = {"suite": "quick", "seeds": "reporting", "methods": {}}
+    results["methods"] = {"diagnosis": summary(judged([answer]))}
+    for _ in range(2):
+        replace_tables(page, tables(results))
+    text = page.read_text()
+    assert text.startswith("before")
+    assert text.endswith("after\n")
+    assert "last year's" not in text
+    assert "| thruster_lag | 100 % | 100 % |" in text
+    page.write_text("no marks")
+    with pytest.raises(BadInput, match="marks"):
+        replace_tables(page, "")
