@@ -27,7 +27,7 @@ class AddedMass(Coefficients):
         "leaves the final speed alone, drag changes the final speed, and a lag no longer shows "
         "once the thrust is steady."
     )
-    signature = Signature({"surge": 8.0}, "surge", "surge thrust")
+    signature = Signature({"surge": 8.0}, "surge", "surge acceleration")
     parameters = per_axis("kg", "kg m2", "m", scales=(3.0, 0.1))
 
     def enter(self, body: Body) -> None:
@@ -50,7 +50,7 @@ class AddedMassCoupling(Coefficients):
         "Push one axis to and fro every second at low speed: a coupling of masses moves the other "
         "axis in step with the acceleration, coupled damping in step with the speed."
     )
-    signature = Signature({"surge_pitch": 1.0}, "pitch", "change of surge thrust")
+    signature = Signature({"surge_pitch": 1.0}, "pitch", "surge acceleration")
     parameters = tuple(
         Parameter(
             f"{AXES[i]}_{AXES[j]}", UNITS[i // 3 + j // 3], f"m_{{{AXES[i]},{AXES[j]}}}",

@@ -42,7 +42,7 @@ class ClockDrift(Clock):
         "Make the same sharp step at the beginning, in the middle and at the end of a run of 5 "
         "min: drift shifts the response more and more, a delay always by the same time."
     )
-    signature = Signature({"rate": 0.01}, "surge", "time in the run", size=True)
+    signature = Signature({"rate": 0.005}, "surge", "time in the run", size=True)
     parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002),)
 
     def arrival(self, time: Array) -> Array:

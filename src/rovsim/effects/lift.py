@@ -16,7 +16,7 @@ class Lift(Wrench):
         "Drift sideways at the same speed with no, half and full surge speed: lift brakes the "
         "drift only while the vehicle also moves ahead, sway damping always."
     )
-    signature = Signature({"coefficient": 100.0}, "sway", "sway speed")
+    signature = Signature({"coefficient": 100.0}, "sway", "absolute surge speed", size=True)
     parameters = (Parameter("coefficient", "kg/m", "c", scale=30.0),)
 
     @staticmethod

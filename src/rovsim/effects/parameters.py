@@ -40,13 +40,13 @@ def per_axis(
 
 @dataclass(frozen=True)
 class Signature:
-    """How the catalogue shows an effect: hidden with these values, in the error of one axis.
+    """How the catalogue page shows an effect: hidden with these values, in the error of one axis.
 
-    The mean error, or its `size` (RMS), is drawn over a condition; where none is named, axis and
-    condition are those of the strongest finding.
+    The mean error, or its `size` (RMS), is drawn over a condition of `rovsim.where`, or over a
+    measured acceleration ("surge acceleration").
     """
 
     values: Mapping[str, float]
-    axis: str = ""
-    condition: str = ""
+    axis: str
+    condition: str
     size: bool = field(default=False, kw_only=True)

@@ -41,7 +41,9 @@ class WallProximity(Wrench):
         "Drive along two opposite walls at one steady speed, 0.2, 0.5 and 2 m away from them: a "
         "wall brakes on either side alike, a tether more on the side far from its anchor."
     )
-    signature = Signature({"gain": 4.0}, "surge", "distance to the nearest wall", size=True)
+    signature = Signature(
+        {"gain": 8.0, "length_scale": 0.25}, "surge", "distance to the nearest wall", size=True
+    )
     parameters = (Parameter("gain", "1", "g", low=0.0, scale=0.5), _length(0.5))
     starts = ({"gain": 0.3}, {"gain": 1.0})
 

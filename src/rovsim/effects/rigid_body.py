@@ -47,7 +47,7 @@ class Payload(Coefficients):
         "Let it sink without thrust, then step surge and yaw hard from rest: a payload weighs it "
         "down and also slows every start, lost buoyancy only weighs it down."
     )
-    signature = Signature({"mass": 0.5, "x": 0.15}, "pitch", "pitch angle")
+    signature = Signature({"mass": 1.0, "x": 0.1, "z": 0.15}, "pitch", "pitch angle")
     parameters = (Parameter("mass", "kg", "m", low=0.0, scale=0.5), *PLACE)
     # without a mass its place means nothing; so: at CO, and at the ends of a frame 0.4 m long
     starts = (

@@ -42,9 +42,9 @@ class TetherTension(Wrench):
         "begins beyond the slack length, a current or buoyancy pushes alike everywhere."
     )
     signature = Signature(
-        {"stiffness": 4.0, "slack_length": 0.6, "anchor_x": 3.0, "anchor_y": 2.0, "anchor_z": 2.0},
+        {"stiffness": 8.0, "slack_length": 0.8, "anchor_x": 2.0, "anchor_y": 1.1, "anchor_z": 2.0},
         "heave",
-        "distance to the nearest wall",
+        "depth below the surface",
     )
     parameters = (
         Parameter("stiffness", "N/m", "k", low=0.0, scale=2.0),

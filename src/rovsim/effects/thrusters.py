@@ -23,7 +23,7 @@ class ThrusterDeadband(Shaping):
         "Ramp one axis slowly through zero and back, up to a tenth of full thrust: inside a dead "
         "band nothing happens at all, a low gain answers weakly from the very start."
     )
-    signature = Signature({"width": 0.07}, "surge", "surge thrust")
+    signature = Signature({"width": 0.15}, "surge", "surge thrust")
     parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03),)
     starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
 
@@ -147,7 +147,7 @@ class AdvanceLoss(Coefficients):
         "At full speed go on thrusting, then coast, then thrust backwards: the loss changes sign "
         "with the thrust and ends with it, drag of the hull does neither."
     )
-    signature = Signature({"coefficient": 0.6}, "heave", "heave speed")
+    signature = Signature({"coefficient": 0.6}, "surge", "surge speed")
     parameters = (Parameter("coefficient", "s/m", "c", scale=0.2),)
 
     def enter(self, body: Body) -> None:
@@ -163,8 +163,8 @@ class PropellerTorque(Coefficients):
     neglects = "the torque of spinning up"
     source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"
     cause = (
-        "Each propeller turns the vehicle the other way, and a wrong pairing of left- and right- "
-        "handed propellers leaves a rest."
+        "Each propeller turns the vehicle the other way, and a wrong pairing of left- and "
+        "right-handed propellers leaves a rest."
     )
     revealed_by = (
         "Thrust one axis at a time from rest, 1 s at several levels: the torque of propellers is "

@@ -4,7 +4,9 @@ Not a figure of the study, so there is no `draw` here.
 """
 
 import io
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +16,7 @@ from numpy import ndarray as Array
 from PIL import Image
 
 from rovsim import AXES
+from rovsim.effects.parameters import Signature
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.palette import FAMILIES
 from rovsim.figures.style import MM, WIDTH, styled
@@ -26,11 +29,29 @@ COLORS = 64  # in the file: black, orange and greys
 EXCERPT = 20.0  # s
 MISSED, EFFECT = "what the model misses", "what the effect adds to the model"
 BLACK, ORANGE = FAMILIES["measured"].color, FAMILIES["nominal"].color
-LINE = {"color": ORANGE, "linewidth": 1.8}
+LINE: dict[str, Any] = {"color": ORANGE, "linewidth": 1.8}
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What is drawn: an axis' error over a condition and over time, n blocks.
+
+    `missed` is the table of what the nominal model misses, `effect` that of what the true effect
+    adds to the model; `condition` (n,) its values, `error` and `added` (n,) m/s2 or rad/s2 the same
+    two block by block at `time` (n,) s.
+    """
+
+    signature: Signature
+    missed: Table
+    effect: Table
+    condition: Array
+    time: Array
+    error: Array
+    added: Array
 
 
 @styled()
-def signature(seen) -> Figure:
+def signature(seen: Seen) -> Figure:
     """Draw the error over the condition, and beside it over time."""
     figure = Figure(figsize=(WIDTH * MM, HEIGHT * MM), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(0.85, 1.0), sharey=not seen.signature.size)
@@ -56,7 +77,7 @@ def write(figure: Figure, path: Path) -> None:
         small.save(temporary, format="PNG", optimize=True)
 
 
-def _bins(axes: Axes, seen) -> None:
+def _bins(axes: Axes, seen: Seen) -> None:
     """Bin means (or sizes) with what the effect makes of them; dots: single blocks."""
     size, at = seen.signature.size, seen.missed.binning
     turned = np.degrees if at.condition.unit == "rad" else np.asarray
@@ -79,7 +100,7 @@ def _height(table: Table, size: bool) -> Array:
     return table.rms if size else table.mean
 
 
-def _trace(axes: Axes, seen) -> None:
+def _trace(axes: Axes, seen: Seen) -> None:
     """The same block by block: the liveliest stretch, or the whole run where time matters."""
     whole = seen.signature.condition == "time in the run"
     part = slice(None) if whole else liveliest(seen.time, seen.added, EXCERPT)

@@ -6,7 +6,7 @@ from pathlib import Path
 from rovsim.effects import built_in
 from rovsim.figures.signature import signature, write
 from rovsim.files import write_text
-from rovsim.gallery.flight import seen
+from rovsim.gallery.flight import seen, settings
 from rovsim.gallery.page import PAGE, PICTURES, page
 from rovsim.progress import reported
 
@@ -18,7 +18,8 @@ def main(docs: Path, names: list[str]) -> None:
         for k, (name, cls) in enumerate(known.items()):
             progress(k, len(known))
             if cls.signature:
-                write(signature(seen(cls, cls.signature)), docs / PICTURES / f"{name}.png")
+                look = seen(cls.signature, settings(cls, cls.signature))
+                write(signature(look), docs / PICTURES / f"{name}.png")
         progress(len(known), len(known))
     write_text(docs / PAGE, page(built_in()))
 

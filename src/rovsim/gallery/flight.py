@@ -1,16 +1,17 @@
-"""One short run in a small tank with an effect hidden, and what the nominal model misses of it."""
+"""One run in a small tank with an effect hidden, and what the nominal model misses of it."""
 
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.campaign import load_campaign
 from rovsim.effects.base import Autopilot, Effect
 from rovsim.effects.parameters import Signature
+from rovsim.errors import BadInput, nearest
+from rovsim.figures.marks import ACCELERATION_UNITS
+from rovsim.figures.signature import Seen
 from rovsim.model import EffectEntry, nominal
 from rovsim.recording import read_run
 from rovsim.replay import ReplaySettings
@@ -19,27 +20,11 @@ from rovsim.signals.motion import Motion
 from rovsim.tank.campaign import make_campaign, true_model
 from rovsim.tank.settings import Box, Camera, Log, TankRun, TankSettings, Turbulence
 from rovsim.training import samples
-from rovsim.where import Blocks, blocks, explain
-from rovsim.where.bins import Table, binned, stretches, table
+from rovsim.where import Blocks, blocks
+from rovsim.where.bins import binned, stretches, table
+from rovsim.where.conditions import Condition
 
 RUN = TankRun(id="run", control="6dof", split="train")
-
-
-@dataclass(frozen=True, eq=False)
-class Seen:
-    """What is drawn: an axis' error over a condition and over time, n blocks.
-
-    `missed` is the table of what the nominal model misses, `effect` that of what the true effect
-    adds to the model; `error` and `added` (n,) are the same block by block at `time` (n,) s.
-    """
-
-    signature: Signature
-    missed: Table
-    effect: Table
-    condition: Array
-    time: Array
-    error: Array
-    added: Array
 
 
 def settings(cls: type[Effect], signature: Signature) -> TankSettings:
@@ -48,7 +33,8 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
     return TankSettings(
         seed=3,
         runs=(RUN,),
-        tank=Box(x=(0.0, 6.0), y=(0.0, 4.0), z=(0.0, 2.0)),
+        tank=Box(x=(0.0, 4.0), y=(0.0, 2.2), z=(0.0, 2.0)),
+        duration=120.0,
         camera=Camera(
             position_noise=1e-4, attitude_noise=3e-4, bursts_per_minute=0, outliers_per_minute=0
         ),
@@ -66,31 +52,40 @@ def fly(tank: TankSettings) -> Motion:
     return clean(recording, SignalSettings())
 
 
-def seen(cls: type[Effect], signature: Signature) -> Seen:
-    """Hide the effect with the values of its signature, and look where it shows."""
-    tank = settings(cls, signature)
+def seen(signature: Signature, tank: TankSettings) -> Seen:
+    """What the nominal model misses in this tank, and what the hidden effect adds to it."""
     motion, truth = fly(tank), true_model(tank)
     missing, rest = (
         blocks(motion, samples(model, motion, SignalSettings(), ReplaySettings()))
         for model in (nominal(truth.vehicle), truth)
     )
-    axis, name = shown(signature, missing)
-    k = AXES.index(axis)
-    condition, values = next((c, x) for c, x in missing.values.items() if c.name == name)
+    k = AXES.index(signature.axis)
+    condition, values = found(signature.condition, missing)
     error, added = missing.error[:, k], missing.error[:, k] - rest.error[:, k]
     stretch = stretches(missing, error)
     cut = binned(condition, values, stretch)
-    tables = (table(cut, x, stretch) for x in (error, added))
-    chosen = Signature(signature.values, axis, name, size=signature.size)
-    return Seen(chosen, *tables, values, missing.time, error, added)
+    missed, effect = (table(cut, x, stretch) for x in (error, added))
+    return Seen(signature, missed, effect, values, missing.time, error, added)
 
 
-def shown(signature: Signature, missing: Blocks) -> tuple[str, str]:
-    """Axis and condition: those declared, else those of the strongest finding."""
-    if signature.axis and signature.condition:
-        return signature.axis, signature.condition
-    findings = explain(missing).findings
-    if findings:
-        return findings[0].axis, findings[0].condition
-    loudest = np.mean(missing.error**2, axis=0) / np.mean(missing.measured**2, axis=0)
-    return AXES[int(np.argmax(loudest))], "time in the run"
+def found(name: str, missing: Blocks) -> tuple[Condition, Array]:
+    """The condition of this name and its values (n,).
+
+    The measured accelerations are conditions here too: with calm water and good cameras their noise
+    is small. In a real run it is in the error as well, and the two would seem related.
+
+    Raises:
+        BadInput: there is none.
+    """
+    known = {c.name: (c, x) for c, x in missing.values.items()}
+    for axis, unit, measured in zip(AXES, ACCELERATION_UNITS, missing.measured.T, strict=True):
+        title = f"{axis} acceleration"
+        known[title] = Condition(title, unit, "acceleration", axis), measured
+    if name in known:
+        return known[name]
+    raise BadInput(
+        f"unknown condition '{name}'",
+        where="the signature of an effect",
+        expected=f"one of {', '.join(known)}",
+        remedy=nearest(name, known),
+    )

@@ -21,6 +21,7 @@ from rovsim.effects.base import (
 from rovsim.effects.parameters import Signature
 
 PAGE, PICTURES = "catalogue.md", "images/effects"
+LONG = 8  # rows of a table that is folded away
 KINDS = {
     "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wrench),
     "From a logged command to a thruster's force": (Clock, Shaping, Strength, Response),
@@ -29,33 +30,37 @@ KINDS = {
 INTRODUCTION = """\
 # The catalogue of effects
 
-What a simulator of an underwater vehicle may lack, one entry each: what it is, what makes it happen in a
-laboratory, what it looks like, and what to record to be sure of it.
+What a simulator of an underwater vehicle may lack, one entry each: what it is, what makes it happen
+in a laboratory, what it looks like, and what to record to be sure of it.
 
-**How to read a picture.** The effect was hidden in one minute of a synthetic tank, in a calm pool and with
-better cameras than usual, with the values under the picture. Black is what the nominal model then misses: the
-acceleration error at the measured state, measured minus model, in means over half a second (grey dots, and
-black dots for their mean over a bin, with two standard errors). Orange is what the true effect adds to the
-model. Left: over the condition that shows it best. Right: over time.
+**How to read a picture.** The effect was hidden in two minutes of a small synthetic tank, in calm
+water and with better cameras than usual, with the values under the picture: often larger than in a
+laboratory, to be seen. Black is what the nominal model then misses: the acceleration error at the
+measured state, measured minus model, in means over half a second (grey dots; black dots are their
+mean over a bin, with two standard errors, or their root mean square). Orange is what the true
+effect adds to the model. Left: over the condition that shows it best. Right: over time.
+
+Several pictures are alike. One run shows that something is missing; what it is, and not something
+that imitates it, often takes a manoeuvre of its own. Each entry names that one.
 
 This page is written by `make catalogue` from the declarations in `src/rovsim/effects/`: edit those.
 """
 
 
 def page(effects: Mapping[str, type[Effect]]) -> str:
-    """Markdown of all these effects, by where they act."""
+    """Markdown of all these effects, by where they act; as a set, whatever their order."""
     chapters = chaptered(effects)
     parts = [INTRODUCTION, *(_contents(title, found) for title, found in chapters.items())]
     for title, found in chapters.items():
         parts += [f"## {title}\n", *(entry(cls) for cls in found)]
-    return "\n".join(parts)
+    return "\n".join(parts).rstrip() + "\n"
 
 
 def chaptered(effects: Mapping[str, type[Effect]]) -> dict[str, list[type[Effect]]]:
     """The effects by chapter; what sits in an autopilot is on the way of a command."""
     command = list(KINDS)[1]
     chapters: dict[str, list[type[Effect]]] = {title: [] for title in KINDS}
-    for cls in effects.values():
+    for _, cls in sorted(effects.items()):
         title = next(t for t, kinds in KINDS.items() if issubclass(cls, kinds))
         on_the_way = issubclass(cls, Autopilot) or cls.__module__.endswith(".thrusters")
         chapters[command if on_the_way else title].append(cls)
@@ -95,7 +100,7 @@ def _picture(name: str, signature: Signature | None, units: Mapping[str, str]) -
     if signature is None:
         return ""
     what = "size of the" if signature.size else "mean"
-    over = f"{what} {signature.axis} error over {signature.condition}" if signature.axis else ""
+    over = f"{what} {signature.axis} error over {signature.condition}"
     values = ", ".join(f"{k} = {v:g} {unit(units[k])}".strip() for k, v in signature.values.items())
     return (
         f"![{name}: {over}]({PICTURES}/{name}.png)\n\n<sub>Hidden: {values}. Left: {over}.</sub>\n"
@@ -111,7 +116,10 @@ def _table(parameters: Iterable[Parameter]) -> str:
         names = ", ".join(f"`{p.name}`" for p in same)
         columns = [names, _symbols(same), unit(si) or "–", _range(low, high), default, f"{scale:g}"]
         rows.append(f"| {' | '.join(columns)} |")
-    return "\n".join(rows)
+    text = "\n".join(rows)
+    if len(rows) <= LONG:
+        return text
+    return f"<details><summary>Parameters</summary>\n\n{text}\n\n</details>"
 
 
 def _symbols(same: list[Parameter]) -> str:
