@@ -30,6 +30,11 @@ def model(*effects: Effect) -> Model:
     return found
 
 
+def some(cls: type[Effect]) -> Effect:
+    """An effect whose values differ from the defaults, inside every range."""
+    return cls(**{p.name: p.default + 0.1 for p in cls.parameters if np.isfinite(p.default)})
+
+
 def motion(
     value: np.ndarray, kind: str = "thruster", seconds: float = 2.0,
     start: np.ndarray | None = None, site: Site | None = None,

@@ -9,7 +9,7 @@ from rovsim.errors import BadInput
 from rovsim.model import read_model
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings, trajectories
-from worlds import at_rest, model, motion, sticks, tank
+from worlds import at_rest, model, motion, some, sticks, tank
 
 # contract, section 2
 PUBLIC = {
@@ -33,12 +33,6 @@ def driven(world):
     return world.view.states(path)
 
 
-def some(cls):
-    """Values that differ from the defaults, inside every range."""
-    known = [p for p in cls.parameters if np.isfinite(p.default)]
-    return cls(**{p.name: p.default + 0.1 for p in known})
-
-
 @EVERY
 def test_it_says_what_it_is(cls):
     assert cls.id in PUBLIC
@@ -46,6 +40,14 @@ def test_it_says_what_it_is(cls):
     assert all(p.unit and p.symbol for p in cls.parameters)
     assert all(p.low <= p.default <= p.high or np.isnan(p.default) for p in cls.parameters)
     assert all(0 < p.scale <= p.high - p.low for p in cls.parameters)
+
+
+@EVERY
+def test_it_says_what_causes_it_and_what_reveals_it(cls):
+    for sentence in (cls.cause, cls.revealed_by):
+        assert sentence[0].isupper()
+        assert sentence.endswith(".")
+        assert 30 < len(sentence) < 260
 
 
 @EVERY

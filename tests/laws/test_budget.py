@@ -5,18 +5,20 @@ import pytest
 
 from rovsim.budget import RESTORING, Budget, budget
 from rovsim.effects import catalogue
+from rovsim.effects.base import Autopilot
 from rovsim.frames import exp
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
 from rovsim.training import accelerations, at_samples, samples
-from worlds import at_rest, model, motion, sticks
+from worlds import at_rest, model, motion, some, sticks, tank
 
 
-def run():
+def run(kind="thruster"):
     start = at_rest()
     start[3:7] = exp(np.array([0.2, -0.1, 0.7]))
     start[7:] = [0.4, -0.2, 0.1, 0.3, -0.2, 0.5]
-    return motion(sticks(), start=start)
+    value = sticks() if kind == "thruster" else sticks()[:, :6]
+    return motion(value, kind, start=start, site=tank())
 
 
 def made(world, found=None):
@@ -26,13 +28,9 @@ def made(world, found=None):
     )
 
 
-def some(cls):
-    return cls(**{p.name: min(p.high, max(p.low, p.default + 0.3)) for p in cls.parameters})
-
-
 @pytest.mark.parametrize("cls", catalogue().values(), ids=lambda cls: cls.id)
 def test_the_parts_add_up_to_the_models_inertia_force(cls):
-    world, measured = model(some(cls)), run()
+    world, measured = model(some(cls)), run("demand" if issubclass(cls, Autopilot) else "thruster")
     at = at_samples(world, measured, ReplaySettings())
     expected = accelerations(world, measured, at) @ world.body.M.T
     parts = made(world, measured).parts

@@ -16,6 +16,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.diagnosis.candidates import candidates
+from rovsim.diagnosis.desk import Desk, Proposal, proposals
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import Fit
 from rovsim.diagnosis.heldout import held_out_gain
@@ -23,15 +24,8 @@ from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.leftover import Structure, leftover
 from rovsim.diagnosis.library import Library, library, remainder
 from rovsim.diagnosis.noise import Noise, fit_noise, tuning
-from rovsim.diagnosis.search import (
-    Desk,
-    Proposal,
-    Rival,
-    SearchSettings,
-    matters,
-    proposals,
-    search,
-)
+from rovsim.diagnosis.search import Rival, matters, search
+from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import window_errors
 from rovsim.model import Model
@@ -123,12 +117,11 @@ def diagnose(
         return Diagnosis(base, None, [], [], [], [], still, seconds)
     stage("observing")
     observatory, known, noise = _observed(base, watches, between)
-    price = 2.0 * float(np.log(known.count))
-    desk = Desk(observatory, known, noise, price, settings.trials, settings.relevant)
+    desk = Desk(observatory, known, noise, settings)
     nothing = desk.fit(Hypothesis(base))
     alone = proposals(desk, nothing)
     stage("searching")
-    found, rivals = search(desk, nothing, settings, seed)
+    found, rivals = search(desk, nothing, seed)
     stage("checking")
     found = _checked(desk, found)
     rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]

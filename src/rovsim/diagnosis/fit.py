@@ -38,13 +38,24 @@ class Fit:
 
 
 def fit(start: Hypothesis, observatory: Observatory, noise: Noise) -> Fit:
-    """Fit the free parameters under a given noise, then the noise to what is left."""
+    """Fit the free parameters under a given noise, then the noise to what is left.
+
+    A model that diverges in spite of the observer's corrections is infinitely unlikely.
+    """
     here, e, J = _descend(start, observatory, noise)
+    if not _finite(e, J):
+        unsure = np.full((len(here.x), len(here.x)), np.inf)
+        return Fit(here, e, J, noise, -np.inf, unsure)
     own, likelihood = fit_noise(
         e, observatory.watches, observatory.tunings, observatory.damping, noise
     )
     rows = _rows(observatory.white(J, own))
     return Fit(here, e, J, own, likelihood, solved(inner_products(rows), np.eye(len(rows))))
+
+
+def _finite(e: list[Array], J: list[Array]) -> bool:
+    """Whether the observer could hold the model on all runs, there and a step beside."""
+    return all(np.isfinite(one).all() for one in (*e, *J))
 
 
 def _rows(white: Array) -> Array:
@@ -60,11 +71,11 @@ def _descend(here: Hypothesis, observatory: Observatory, noise: Noise):
     trust = FIRST_TRUST
     for _ in range(MOST_ITERATIONS):
         e, J = observatory.linearised(here)
+        if not len(here.x) or not _finite(e, J):
+            return here, e, J
         rows = _rows(observatory.white(J, noise))
         target = observatory.white(e, noise).ravel()
         H, g, cost = inner_products(rows), rows @ target, float(target @ target)
-        if not len(rows):
-            return here, e, J
         step, better, trust = _step(here, observatory, noise, H, g, cost, trust)
         if better is None:
             return here, e, J
@@ -83,7 +94,7 @@ def _step(here, observatory, noise, H, g, cost, trust):
         wanted = here.at(x - solved(H + trust * np.diag(np.diag(H)), g))
         step = wanted.x - x
         e = [one[0] for one in observatory.innovations([wanted.model])]
-        if np.isfinite(e[0]).all() and _cost(observatory, e, noise) < cost:
+        if _finite(e, []) and _cost(observatory, e, noise) < cost:
             return step, wanted, max(trust / 10.0, 1e-8)
         if float(step @ H @ step) < CONVERGED**2:
             return step, None, trust

@@ -73,6 +73,11 @@ class Hypothesis:
         return model
 
     @property
+    def key(self) -> tuple:
+        """The same for the same terms, in the same order, at the same values."""
+        return tuple((t.id, t.free, t.effect.values.tobytes()) for t in self.terms)
+
+    @property
     def x(self) -> Array:
         """All free parameters, scaled."""
         return np.concatenate([np.empty(0), *(term.x for term in self.terms)])

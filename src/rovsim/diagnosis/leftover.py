@@ -12,10 +12,11 @@ from typing import Iterator, Sequence
 import numpy as np
 from numpy import ndarray as Array
 from scipy.signal import lfilter
-from scipy.stats import chi2
+from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
-from rovsim.diagnosis.noise import AxisFilter, Noise, Tuning, characteristic
+from rovsim.diagnosis.kalman import AxisFilter
+from rovsim.diagnosis.noise import Noise, Tuning
 from rovsim.diagnosis.shapes import shapes
 from rovsim.diagnosis.watch import Watch
 
@@ -25,7 +26,7 @@ HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
 SUDDEN = 0.2  # s, about what the readings resolve
-HEAVY, HEAVY_TAIL = 6.0, 1.0  # standard deviations of the kurtosis, and the kurtosis beyond 3
+RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
 
 
 @dataclass(frozen=True)
@@ -72,21 +73,9 @@ def leftover(
     return sorted(found, key=lambda s: -s.surprise)
 
 
-def response(f: AxisFilter, period: float) -> tuple[Array, Array]:
-    """Filter (b, a) from a push on the axis (m/s2, rad/s2) to its innovations of unit variance.
-
-    C (z I - A)^-1 B = det(z I - A + B C) / det(z I - A) - 1 with A = F (I - K C).
-    """
-    n = len(f.C)
-    A = f.F @ (np.eye(n) - np.outer(f.gain, f.C))
-    B = np.array([0.5 * period**2, period, 0.0][-n:])
-    a = characteristic(A)
-    return (characteristic(A - np.outer(B, f.C)) - a) / np.sqrt(f.variance), a
-
-
 def seen(push: Array, f: AxisFilter, watch: Watch) -> Array:
     """How a push (n,) on one axis shows in the settled innovations."""
-    b, a = response(f, watch.period)
+    b, a = f.response
     out = np.empty(len(watch.time))
     for first, last in watch.rows:
         out[first:last] = lfilter(b, a, push[first:last])
@@ -147,7 +136,7 @@ def _combs(i, power, frequency, usable, watches, filters, level, text, envelopes
         best = int(np.argmax(statistic))
         k = within[best]
         limit = chi2.isf(FALSE_ALARM / looks, 2 * len(comb) * len(watches))
-        b, a = response(filters[0], watches[0].period)
+        b, a = filters[0].response
         size = 0.0
         for m in comb:  # rms of the push, from the power of its lines
             z = np.exp(2j * np.pi * frequency[m * k] * watches[0].period)
@@ -175,13 +164,13 @@ def _sudden(i, w, watches, level) -> Iterator[Structure]:
     """Pushes that come at once: innovations with a heavier tail than any Gaussian disturbance."""
     few = max(1, round(SUDDEN / watches[0].period))
     sums = np.concatenate([_sums(x, few) for x in w])
-    n = len(sums)
-    kurtosis = float(np.mean(sums**4) / np.mean(sums**2) ** 2) - 3.0
-    z = kurtosis * np.sqrt(n / 24.0)
-    if z > HEAVY and kurtosis > HEAVY_TAIL:
-        often = n * SUDDEN / max(1, np.sum(np.abs(sums) > 3.0 * np.std(sums)))
-        what = f"sudden pushes, one in about {often:.2g} s"
-        yield Structure(AXES[i], what, level, 1.0, z / HEAVY)
+    # the median is not moved by what is looked for (Gaussian: 0.6745 standard deviations)
+    usual = float(np.median(np.abs(sums))) / 0.6745
+    count = int(np.sum(np.abs(sums) > RARE * usual))
+    limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE))
+    if count > limit:
+        what = f"sudden pushes, one in about {len(sums) * SUDDEN / count:.2g} s"
+        yield Structure(AXES[i], what, level, 1.0, count / limit)
 
 
 def _sums(w: Array, few: int) -> Array:
@@ -190,7 +179,7 @@ def _sums(w: Array, few: int) -> Array:
 
 def _kicks(i, w, watch, f, level) -> Iterator[Structure]:
     """A single push that lasts a moment, at any time."""
-    b, a = response(f, watch.period)
+    b, a = f.response
     for duration in KICKS:
         n = max(1, round(duration / watch.period))
         template = lfilter(b, a, np.concatenate([np.ones(n), np.zeros(round(2.0 / watch.period))]))

@@ -50,21 +50,37 @@ def library(
     """Columns of all candidates around a hypothesis."""
     e0 = [e[0] for e in observatory.innovations([base.model])]
     parts: list[list[Array]] = [[] for _ in e0]
+    kept: list[Candidate] = []
     secant: list[int | None] = []
     derivatives: list[tuple[int, ...]] = []
     count = 0
     for done, candidate in enumerate(candidates):
-        e, J = observatory.linearised(Hypothesis(base.model, (candidate.term(),)))
+        columns = _columns(observatory, base, candidate, e0)
+        progress(done + 1, len(candidates))
+        if not all(np.isfinite(one).all() for one in columns):
+            continue  # the observer cannot hold the model there
+        kept.append(candidate)
         secant.append(None if candidate.absent else count)
         count += not candidate.absent
         derivatives.append(tuple(range(count, count + len(candidate.free))))
         count += len(candidate.free)
-        for part, start, first, own in zip(parts, e0, e, J, strict=True):
-            rows = own if candidate.absent else np.concatenate([(first - start)[None], own])
-            part.append(rows.astype(np.float32))  # six digits are enough for columns
-        progress(done + 1, len(candidates))
-    columns = [np.concatenate(part) for part in parts]
-    return Library(tuple(candidates), e0, columns, tuple(secant), tuple(derivatives))
+        for part, own in zip(parts, columns, strict=True):
+            part.append(own)
+    stacked = [np.concatenate(part) for part in parts]
+    return Library(tuple(kept), e0, stacked, tuple(secant), tuple(derivatives))
+
+
+def _columns(
+    observatory: Observatory, base: Hypothesis, candidate: Candidate, e0: Sequence[Array]
+) -> list[Array]:
+    """The secant, if the start is not the effect's absence, and the derivatives (c, 6, n)."""
+    e, J = observatory.linearised(Hypothesis(base.model, (candidate.term(),)))
+    if not candidate.absent:
+        J = [
+            np.concatenate([(there - without)[None], own])
+            for there, without, own in zip(e, e0, J, strict=True)
+        ]
+    return [own.astype(np.float32) for own in J]  # six digits are enough for columns
 
 
 def remainder(found: Library, observatory: Observatory, noise: Noise) -> list[Array]:

@@ -39,16 +39,17 @@ class Watch:
         """Integration step, s."""
         return float(self.edges[1] - self.edges[0])
 
-    @property
+    @cached_property
     def period(self) -> float:
         """Mean time between two readings, s."""
         return float((self.ends[-1] - self.ends[0]) * self.h / (len(self.ends) - 1))
 
     @cached_property
-    def rows(self) -> list[tuple[int, int]]:
-        """Rows [first, last) of the innovations that belong to each span."""
-        stops = np.cumsum([b - a for a, b in self.spans])
-        return [(int(s - (b - a)), int(s)) for s, (a, b) in zip(stops, self.spans, strict=True)]
+    def rows(self) -> Array:
+        """First row and last + 1 (s, 2) of the innovations that belong to each span."""
+        length = np.array([b - a for a, b in self.spans], np.int64)
+        stops = np.cumsum(length)
+        return np.column_stack([stops - length, stops])
 
     @cached_property
     def time(self) -> Array:
