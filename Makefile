@@ -49,6 +49,6 @@ catalogue: setup
 clean:
 	rm -rf results/* .snakemake
 
-# After a change of pyproject.toml: exact pins of what is installed now.
+# After a change of pyproject.toml: exact pins of what is installed now, setuptools (--all) included.
 lock:
-	$(BIN)/python -m pip freeze --exclude-editable --exclude rovsim > environment.lock
+	$(BIN)/python -m pip freeze --all --exclude-editable --exclude rovsim --exclude pip > environment.lock
