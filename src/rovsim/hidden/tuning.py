@@ -1,7 +1,8 @@
-"""Choose the thresholds of the sparse regressions on development seeds: `python -m rovsim.hidden.tuning`.
+"""Choose the thresholds of the sparse regressions: python -m rovsim.hidden.tuning.
 
-Each case of the quick suite that hides something of the catalogue, or nothing. The best setting names
-exactly what is hidden most often; among equals, has the right first name most often.
+On development seeds: each case of the quick suite that hides something of the catalogue, or
+nothing. The best setting names exactly what is hidden most often, and among equals has the right
+first name most often.
 """
 
 import tempfile
@@ -16,7 +17,8 @@ from rovsim.hidden.sparse import Regression, answered, forward, of_campaign, thr
 from rovsim.hidden.suites import suite
 from rovsim.progress import counted
 
-THRESHOLDS, RIDGES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4), (1e-3, 1e-1)
+THRESHOLDS = (0.05, 0.07, 0.1, 0.13, 0.15, 0.17, 0.2, 0.3, 0.4)
+RIDGES = (1e-3, 0.01, 0.02, 0.03, 0.1, 0.3)
 GAINS, LENGTHS = (0.4, 0.3, 0.2, 0.1, 0.05, 0.02), (2, 8)
 
 
