@@ -15,6 +15,7 @@ from scipy.signal import lfilter
 from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
+from rovsim.diagnosis.gram import solved
 from rovsim.diagnosis.kalman import AxisFilter
 from rovsim.diagnosis.noise import Noise, Tuning
 from rovsim.diagnosis.shapes import shapes
@@ -61,8 +62,8 @@ def leftover(
     """
     found: list[Structure] = []
     for i in range(len(AXES)):
-        w = [one[i] for one in white]
         filters = [t.filters[i] for t in tunings]
+        w = [_cleared(x[i], f, on) for x, f, on in zip(white, filters, watches, strict=True)]
         level = float(noise.level[i])
         used = np.concatenate([one[:, i] for one in J], axis=1)
         found += _shapes(i, w, used, watches, filters, level)
@@ -82,6 +83,15 @@ def seen(push: Array, f: AxisFilter, watch: Watch) -> Array:
     return out[watch.settled]
 
 
+def _cleared(w: Array, f: AxisFilter, watch: Watch) -> Array:
+    """Without what the vehicle did while the log does not say what it was told."""
+    spans = [(watch.time > begin) & (watch.time <= end) for begin, end in watch.vague]
+    if not spans:
+        return w
+    columns = np.stack([seen(span.astype(float), f, watch) for span in spans])
+    return w - solved(columns @ columns.T, columns @ w) @ columns
+
+
 def _shapes(i, w, used, watches, filters, level) -> Iterator[Structure]:
     """Functions of state, command, place and time, with one factor for all runs."""
     target = np.concatenate(w)
@@ -95,11 +105,13 @@ def _shapes(i, w, used, watches, filters, level) -> Iterator[Structure]:
             [seen(p, f, watch) for p, f, watch in zip(pushes, filters, watches, strict=True)]
         )
         own = column - basis @ (basis.T @ column)
-        power = float(own @ own)
-        if power < 1e-6 * float(column @ column) or size == 0.0:
+        power, whole = float(own @ own), float(column @ column)
+        if power < 1e-6 * whole or size == 0.0:
             continue
         factor = float(own @ target) / power
-        yield from _if_matters(i, name, abs(factor) * size, level, factor**2 * power, limit)
+        # only the part counts that no fitted parameter could have taken
+        part = abs(factor) * size * np.sqrt(power / whole)
+        yield from _if_matters(i, name, part, level, factor**2 * power, limit)
 
 
 def _if_matters(i, what, size, level, statistic, limit) -> Iterator[Structure]:

@@ -14,6 +14,8 @@ from rovsim.signals.motion import Motion, Poses
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
 SETTLING = 1.0  # s
 SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
+GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
+USUAL, JUMP = 0.95, 2.0  # quantile of the changes from line to line; two of them are a jump
 BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are independent
 
 
@@ -70,6 +72,17 @@ class Watch:
         for (first, last), (a, _) in zip(self.rows, self.spans, strict=True):
             kept[first:last] = self.time[first:last] > self.ends[a] * self.h + SETTLING
         return kept
+
+    @cached_property
+    def vague(self) -> Array:
+        """Begins and ends (g, 2) of lost lines of the command log over which commands jumped."""
+        commands = self.motion.commands
+        steps = np.diff(commands.time)
+        if not len(steps):
+            return np.empty((0, 2))
+        change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
+        lost = (steps > GAP * np.median(steps)) & (change > JUMP * np.quantile(change, USUAL))
+        return np.column_stack([commands.time[:-1][lost], commands.time[1:][lost]])
 
 
 def watch(stage: Stage, motion: Motion, step: float) -> Watch:

@@ -13,7 +13,8 @@ class Parameter:
     """One number of an effect: its name, SI unit, symbol, allowed range and value when absent.
 
     A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
-    change worth looking for: a fit works in multiples of it. Not `fitted`: only when asked for.
+    change worth looking for: a fit works in multiples of it. `grain`: changes much smaller than
+    this do nothing, or all at once. Not `fitted`: only when asked for.
     """
 
     name: str
@@ -23,6 +24,7 @@ class Parameter:
     high: float = np.inf
     default: float = 0.0
     scale: float = field(kw_only=True)
+    grain: float = field(default=0.0, kw_only=True)
     fitted: bool = field(default=True, kw_only=True)
 
 

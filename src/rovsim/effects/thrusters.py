@@ -24,7 +24,8 @@ class ThrusterDeadband(Shaping):
         "band nothing happens at all, a low gain answers weakly from the very start."
     )
     signature = Signature({"width": 0.15}, "surge", "surge thrust")
-    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03),)
+    # two steps of a log in whole microseconds, of 400 us: between them no command changes sides
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, grain=2 / 400),)
     starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
 
     def shaped(self, command: Array) -> Array:
