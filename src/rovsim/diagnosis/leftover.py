@@ -27,6 +27,7 @@ MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in
 HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
+SPIN = 0.3  # s within which propellers and motors follow a command
 SUDDEN = 0.2  # s, about what the readings resolve
 RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
 
@@ -92,9 +93,10 @@ def seen(push: Array, f: AxisFilter, watch: Watch) -> Array:
 
 def _cleared(w: Array, f: AxisFilter, watch: Watch, vague: Array) -> Array:
     """Without what the vehicle did while the log does not say what it was told."""
-    spans = [(watch.time > begin) & (watch.time <= end) for begin, end in vague]
-    if not spans:
+    if not len(vague):
         return w
+    later = np.column_stack([vague[:, 1], vague[:, 1] + SPIN])
+    spans = [(watch.time > begin) & (watch.time <= end) for begin, end in (*vague, *later)]
     columns = np.stack([seen(span.astype(float), f, watch) for span in spans])
     return w - solved(columns @ columns.T, columns @ w) @ columns
 
