@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study test check bench benchmark-hidden clean lock
+.PHONY: help setup study test check bench benchmark-hidden catalogue clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -13,6 +13,7 @@ help:
 	@echo "make check   formatting, lint, types, layers"
 	@echo "make bench   replay and inference speed, into results/bench.json"
 	@echo "make benchmark-hidden   known physics hidden in the tank: is it found? SUITE=quick|full"
+	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
 	@echo "make setup   the environment alone"
 
 .venv/.complete: environment.lock pyproject.toml
@@ -42,9 +43,12 @@ bench: setup
 benchmark-hidden: setup
 	$(BIN)/rovsim hidden hidden.suite=$(SUITE) hidden.cores=$(CORES)
 
+catalogue: setup
+	$(BIN)/python -m rovsim.gallery
+
 clean:
 	rm -rf results/* .snakemake
 
-# After a change of pyproject.toml: exact pins of what is installed now.
+# After a change of pyproject.toml: exact pins of what is installed now, setuptools (--all) included.
 lock:
-	$(BIN)/python -m pip freeze --exclude-editable --exclude rovsim > environment.lock
+	$(BIN)/python -m pip freeze --all --exclude-editable --exclude rovsim --exclude pip > environment.lock

@@ -38,7 +38,7 @@ class HiddenSettings(Section):
 
     suite: Literal["quick", "full"] = "quick"
     seeds: Literal["development", "reporting"] = "reporting"
-    methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis",)
+    methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")
     cores: PositiveInt = 2
     page: str = "docs/benchmark_hidden.md"
 

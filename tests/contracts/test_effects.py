@@ -43,6 +43,14 @@ def test_it_says_what_it_is(cls):
 
 
 @EVERY
+def test_it_says_what_causes_it_and_what_reveals_it(cls):
+    for sentence in (cls.cause, cls.revealed_by):
+        assert sentence[0].isupper()
+        assert sentence.endswith(".")
+        assert 30 < len(sentence) < 260
+
+
+@EVERY
 def test_a_fit_can_begin(cls):
     """Every start is valid, and some parameter is fitted without being asked for."""
     assert any(p.fitted for p in cls.parameters)

@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rovsim.effects.clocks import ClockDrift, InputDelay
 from rovsim.effects.thrusters import (
     AdvanceLoss,
-    ClockDrift,
-    InputDelay,
     PropellerTorque,
     ThrustAsymmetry,
     ThrusterDeadband,

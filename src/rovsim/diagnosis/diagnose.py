@@ -18,12 +18,12 @@ from rovsim import AXES
 from rovsim.diagnosis.candidates import candidates
 from rovsim.diagnosis.desk import Desk, Proposal, proposals
 from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.fit import Fit, fit
 from rovsim.diagnosis.heldout import held_out_gain
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.leftover import Structure, leftover
 from rovsim.diagnosis.library import Library, library, remainder
-from rovsim.diagnosis.noise import Noise, fit_noise, tuning
+from rovsim.diagnosis.noise import Noise, tuning
 from rovsim.diagnosis.search import Rival, matters, search
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.watch import Watch
@@ -125,6 +125,7 @@ def diagnose(
     stage("checking")
     found = _checked(desk, found)
     rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
+    found, observatory = _polished(found, observatory)
     structures = _leftover(found, observatory)
     return Diagnosis(
         base, found, _selected(found, rivals, watches, between),
@@ -141,42 +142,42 @@ def not_excited(watches: Sequence[Watch]) -> list[str]:
 
 
 def _observed(base: Model, watches, between) -> tuple[Observatory, Library, Noise]:
-    """Filters, columns and noise that suit these runs, found in turns."""
-    noise, start = FIRST_NOISE, Hypothesis(base)
-    found = Observatory.built(watches, base, noise, between)
-    possible = candidates(watches)
-    for _ in range(2):
-        known = library(found, start, possible)
-        for _ in range(NOISE_ROUNDS):
-            left = remainder(known, found, noise)
-            noise, _ = fit_noise(left, watches, found.tunings, found.damping, noise)
-        tuned = Observatory.built(watches, base, noise, between)
-        if _alike(found, tuned):
-            break
-        found = tuned
-    return found, known, noise
+    """Columns of the candidates, and the noise that is left when all of them may act at once.
 
-
-def _alike(a: Observatory, b: Observatory) -> bool:
-    """Whether the gains of two observatories agree within a third: whitening does the rest."""
-    pairs = zip(a.tunings, b.tunings, strict=True)
-    return all(np.allclose(one.gains, other.gains, rtol=0.33) for one, other in pairs)
+    The columns are made with filters that take all the base misses for noise: these hold it close
+    to the measurement. The filters of the search then suit the noise that was found.
+    """
+    first = Observatory.built(watches, base, FIRST_NOISE, between)
+    noise, _ = first.noise([e[0] for e in first.innovations([base])], FIRST_NOISE)
+    close = Observatory.built(watches, base, noise, between)
+    known = library(close, Hypothesis(base), candidates(watches))
+    for _ in range(NOISE_ROUNDS):
+        noise, _ = close.noise(remainder(known, noise), noise)
+    return Observatory.built(watches, base, noise, between), known, noise
 
 
 def _checked(desk: Desk, found: Fit) -> Fit:
     """Without effects that do not help on held-out blocks, or that no user would see."""
     while found.hypothesis.terms:
         h = found.hypothesis
+        smaller = [desk.fit(h.without(i)) for i in range(len(h.terms))]
         idle = [
             i
-            for i, columns in enumerate(h.columns)
-            if held_out_gain(found, desk.observatory, columns) <= 0.0
+            for i, one in enumerate(smaller)
+            if held_out_gain(found, one, desk.observatory) <= 0.0
             or not matters(desk, found, h.without(i).model)
         ]
         if not idle:
             break
         found = desk.fit(h.without(idle[-1]))  # the one that came last
     return found
+
+
+def _polished(found: Fit, observatory: Observatory) -> tuple[Fit, Observatory]:
+    """Fitted once more, with filters that suit the final model's own damping."""
+    watches, between = observatory.watches, observatory.between
+    fresh = Observatory.built(watches, found.hypothesis.model, found.noise, between)
+    return fit(found.hypothesis, fresh, found.noise), fresh
 
 
 def _leftover(found: Fit, observatory: Observatory) -> list[Structure]:
@@ -187,7 +188,7 @@ def _leftover(found: Fit, observatory: Observatory) -> list[Structure]:
     J = observatory.white(found.J, found.noise)
     return leftover(
         np.split(white, counts, axis=-1), np.split(J, counts, axis=-1), observatory.watches,
-        wanted, found.noise,
+        wanted, found.noise, found.hypothesis.model.thrust_path,
     )  # fmt: skip
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.noise import Noise, Tuning, damping_rates, tuning, whitened
-from rovsim.diagnosis.observe import observe
+from rovsim.diagnosis.noise import Noise, Tuning, fit_noise, tuning, whitened
+from rovsim.diagnosis.observe import damping_rates, observe
 from rovsim.diagnosis.watch import Watch
 from rovsim.model import Model
 from rovsim.thrust import Between
@@ -30,7 +30,7 @@ class Observatory:
         watches: Sequence[Watch], base: Model, noise: Noise, between: Between
     ) -> "Observatory":
         """An observatory whose filters suit this noise."""
-        damping = damping_rates(base, watches)
+        damping = damping_rates(base, watches, between)
         found = tuple(tuning(noise, damping, w) for w in watches)
         return Observatory(tuple(watches), damping, found, between)
 
@@ -46,6 +46,10 @@ class Observatory:
         wanted = [tuning(noise, self.damping, w) for w in self.watches]
         return whitened(e, self.watches, self.tunings, wanted)
 
+    def noise(self, e: Sequence[Array], start: Noise) -> tuple[Noise, float]:
+        """The most likely noise of innovations (6, n) of each run; twice its log likelihood."""
+        return fit_noise(e, self.watches, self.tunings, self.damping, start)
+
     def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
         x = at.x
@@ -59,6 +63,6 @@ class Observatory:
 def _inward(at: Hypothesis, x: Array, i: int) -> Array:
     """A step of one parameter that stays inside its range."""
     step = np.zeros(len(x))
-    step[i] = STEP
     parameter = [p for term in at.terms for p in term.parameters][i]
-    return -step if (x[i] + STEP) * parameter.scale > parameter.high else step
+    step[i] = max(STEP, parameter.grain / parameter.scale)
+    return -step if (x[i] + step[i]) * parameter.scale > parameter.high else step

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.gram import inner_products, solved
 from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.noise import Noise, fit_noise
+from rovsim.diagnosis.noise import Noise
 
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
@@ -46,9 +46,7 @@ def fit(start: Hypothesis, observatory: Observatory, noise: Noise) -> Fit:
     if not _finite(e, J):
         unsure = np.full((len(here.x), len(here.x)), np.inf)
         return Fit(here, e, J, noise, -np.inf, unsure)
-    own, likelihood = fit_noise(
-        e, observatory.watches, observatory.tunings, observatory.damping, noise
-    )
+    own, likelihood = observatory.noise(e, noise)
     rows = _rows(observatory.white(J, own))
     return Fit(here, e, J, own, likelihood, solved(inner_products(rows), np.eye(len(rows))))
 
@@ -76,7 +74,7 @@ def _descend(here: Hypothesis, observatory: Observatory, noise: Noise):
         rows = _rows(observatory.white(J, noise))
         target = observatory.white(e, noise).ravel()
         H, g, cost = inner_products(rows), rows @ target, float(target @ target)
-        step, better, trust = _step(here, observatory, noise, H, g, cost, trust)
+        step, better, cost, trust = _step(here, observatory, noise, H, g, cost, trust)
         if better is None:
             return here, e, J
         here = better
@@ -88,15 +86,16 @@ def _descend(here: Hypothesis, observatory: Observatory, noise: Noise):
 
 
 def _step(here, observatory, noise, H, g, cost, trust):
-    """A step that lowers the cost, or None when none does."""
+    """A step that lowers the cost, where it leads and what is left; None when none does."""
     x = here.x
     while trust < LARGEST_TRUST:
         wanted = here.at(x - solved(H + trust * np.diag(np.diag(H)), g))
         step = wanted.x - x
         e = [one[0] for one in observatory.innovations([wanted.model])]
-        if _finite(e, []) and _cost(observatory, e, noise) < cost:
-            return step, wanted, max(trust / 10.0, 1e-8)
+        left = _cost(observatory, e, noise) if _finite(e, []) else np.inf
+        if left < cost:
+            return step, wanted, left, max(trust / 10.0, 1e-8)
         if float(step @ H @ step) < CONVERGED**2:
-            return step, None, trust
+            return step, None, cost, trust
         trust *= 10.0
-    return np.zeros_like(x), None, trust
+    return np.zeros_like(x), None, cost, trust

@@ -15,16 +15,19 @@ from scipy.signal import lfilter
 from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
+from rovsim.diagnosis.gram import solved
 from rovsim.diagnosis.kalman import AxisFilter
 from rovsim.diagnosis.noise import Noise, Tuning
 from rovsim.diagnosis.shapes import shapes
 from rovsim.diagnosis.watch import Watch
+from rovsim.thrust import ThrustPath
 
 FALSE_ALARM = 0.002  # of all looks together, for each of the three kinds
 MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score
 HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
+SPIN = 0.3  # s within which propellers and motors follow a command
 SUDDEN = 0.2  # s, about what the readings resolve
 RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
 
@@ -49,6 +52,7 @@ def leftover(
     watches: Sequence[Watch],
     tunings: Sequence[Tuning],
     noise: Noise,
+    path: ThrustPath,
 ) -> list[Structure]:
     """Structures beyond chance, the most surprising first.
 
@@ -58,11 +62,16 @@ def leftover(
         watches: the runs.
         tunings: the filters that made them white.
         noise: the noise they stand for.
+        path: the model's, from a logged command to its thrust.
     """
     found: list[Structure] = []
+    vague = [watch.vague(path) for watch in watches]
     for i in range(len(AXES)):
-        w = [one[i] for one in white]
         filters = [t.filters[i] for t in tunings]
+        w = [
+            _cleared(x[i], f, watch, spans)
+            for x, f, watch, spans in zip(white, filters, watches, vague, strict=True)
+        ]
         level = float(noise.level[i])
         used = np.concatenate([one[:, i] for one in J], axis=1)
         found += _shapes(i, w, used, watches, filters, level)
@@ -82,6 +91,16 @@ def seen(push: Array, f: AxisFilter, watch: Watch) -> Array:
     return out[watch.settled]
 
 
+def _cleared(w: Array, f: AxisFilter, watch: Watch, vague: Array) -> Array:
+    """Without what the vehicle did while the log does not say what it was told."""
+    if not len(vague):
+        return w
+    later = np.column_stack([vague[:, 1], vague[:, 1] + SPIN])
+    spans = [(watch.time > begin) & (watch.time <= end) for begin, end in (*vague, *later)]
+    columns = np.stack([seen(span.astype(float), f, watch) for span in spans])
+    return w - solved(columns @ columns.T, columns @ w) @ columns
+
+
 def _shapes(i, w, used, watches, filters, level) -> Iterator[Structure]:
     """Functions of state, command, place and time, with one factor for all runs."""
     target = np.concatenate(w)
@@ -95,11 +114,13 @@ def _shapes(i, w, used, watches, filters, level) -> Iterator[Structure]:
             [seen(p, f, watch) for p, f, watch in zip(pushes, filters, watches, strict=True)]
         )
         own = column - basis @ (basis.T @ column)
-        power = float(own @ own)
-        if power < 1e-6 * float(column @ column) or size == 0.0:
+        power, whole = float(own @ own), float(column @ column)
+        if power < 1e-6 * whole or size == 0.0:
             continue
         factor = float(own @ target) / power
-        yield from _if_matters(i, name, abs(factor) * size, level, factor**2 * power, limit)
+        # only the part counts that no fitted parameter could have taken
+        part = abs(factor) * size * np.sqrt(power / whole)
+        yield from _if_matters(i, name, part, level, factor**2 * power, limit)
 
 
 def _if_matters(i, what, size, level, statistic, limit) -> Iterator[Structure]:

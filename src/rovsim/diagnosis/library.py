@@ -23,12 +23,13 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """`base` innovations (6, n) of each run, and `columns` (c, 6, n) of each run.
+    """`base` innovations (6, n) of each run, and `columns` (c, 6, n), as that observatory saw them.
 
     Candidate i has the columns `secant[i]` (None where it starts from its absence), the change from
     absence to its start, and `derivatives[i]`, one for each of its free parameters.
     """
 
+    observatory: Observatory
     candidates: tuple[Candidate, ...]
     base: list[Array]
     columns: list[Array]
@@ -67,7 +68,7 @@ def library(
         for part, own in zip(parts, columns, strict=True):
             part.append(own)
     stacked = [np.concatenate(part) for part in parts]
-    return Library(tuple(kept), e0, stacked, tuple(secant), tuple(derivatives))
+    return Library(observatory, tuple(kept), e0, stacked, tuple(secant), tuple(derivatives))
 
 
 def _columns(
@@ -83,13 +84,13 @@ def _columns(
     return [own.astype(np.float32) for own in J]  # six digits are enough for columns
 
 
-def remainder(found: Library, observatory: Observatory, noise: Noise) -> list[Array]:
+def remainder(found: Library, noise: Noise) -> list[Array]:
     """What no candidate explains, all together: innovations (6, n) of each run.
 
     Their noise is close to the true one whatever is missing: candidates are compared under it.
     """
     stacked = [np.concatenate([e[None], c]) for e, c in zip(found.base, found.columns, strict=True)]
-    white = coarse(observatory.white(stacked, noise))
+    white = coarse(found.observatory.white(stacked, noise))
     M = inner_products(white.reshape(len(white), -1))
     H = M[1:, 1:] + np.diag(SHRINK * np.diag(M)[1:] + 1e-9)
     x = -np.linalg.solve(H, M[1:, 0])

@@ -19,7 +19,6 @@ from scipy.optimize import minimize
 from rovsim import AXES
 from rovsim.diagnosis.kalman import AxisFilter, axis_filter, filter_kept, sum_of_squares
 from rovsim.diagnosis.watch import Watch
-from rovsim.model import Model
 
 # Eddies as large as the vehicle (0.2 to 0.5 m) pass it within 0.3 to 3 s at 0.15 to 0.7 m/s.
 # Longer memory would let the disturbance swallow a steady force, which is a missing effect.
@@ -57,13 +56,6 @@ class Tuning:
     def variance(self) -> Array:
         """Variance (6,) of the innovations."""
         return np.array([f.variance for f in self.filters])
-
-
-def damping_rates(model: Model, watches: Sequence[Watch]) -> Array:
-    """How fast each velocity decays (6,) 1/s at the speeds of the runs."""
-    nu = np.concatenate([w.motion.nu[w.motion.usable] for w in watches])
-    body = model.body
-    return (body.linear + 2.0 * body.quadratic * np.mean(np.abs(nu), axis=0)) / np.diag(body.M)
 
 
 def tuning(noise: Noise, damping: Array, watch: Watch) -> Tuning:

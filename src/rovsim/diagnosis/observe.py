@@ -19,11 +19,17 @@ from rovsim.model import Model
 from rovsim.replay import as_true, place
 from rovsim.thrust import Between
 
+NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
+
 
 def observe(
     models: Sequence[Model], watch: Watch, tuning: Tuning, between: Between = "held"
 ) -> Array:
-    """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle."""
+    """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle.
+
+    Each in the axes and at the point that the motion capture reports: there its noise does not
+    depend on where a model believes the markers to be, so no such belief is favoured by its noise.
+    """
     module, inputs, p = batch(models, watch, between)
     readings, starts, row = _seen(models, watch)
     out = np.empty((len(models) * len(watch.time), 6))
@@ -32,7 +38,40 @@ def observe(
         inputs, p, place(watch.motion), readings, row, tuning.gains, tuning.decay(watch.h),
         watch.motion.binned, out,
     )  # fmt: skip
-    return np.ascontiguousarray(out.reshape(len(models), -1, 6).swapaxes(1, 2))
+    e = out.reshape(len(models), -1, 6)
+    reported = np.stack([m.view.twists(own) for m, own in zip(models, e, strict=True)])
+    return np.ascontiguousarray(reported.swapaxes(1, 2))
+
+
+def damping_rates(model: Model, watches: Sequence[Watch], between: Between) -> Array:
+    """How fast each velocity decays (6,) 1/s: -d nu_dot / d nu, mean over the measured states."""
+    slopes = []
+    for watch in watches:
+        states = as_true(model, watch.motion).state
+        index = np.flatnonzero(np.isfinite(states).all(axis=1) & watch.motion.usable)
+        states = np.tile(states[index], (7, 1, 1))
+        for i in range(6):
+            states[i + 1, :, 7 + i] += NUDGE
+        found = _accelerations(model, watch, between, index, states)
+        slopes.append([(found[0, :, i] - found[i + 1, :, i]) / NUDGE for i in range(6)])
+    return np.array([float(np.mean(np.concatenate(own))) for own in zip(*slopes, strict=True)])
+
+
+def _accelerations(model, watch, between, index, states) -> Array:
+    """Accelerations (s, k, 6) at states (s, k, 13) of some readings (k,)."""
+    module, inputs, p = batch([model], watch, between)
+    steps = np.minimum(watch.ends[index], inputs.wrench.shape[1] - 1)
+    demand = inputs.demand[steps] if len(inputs.demand) else inputs.demand
+    at = Inputs(
+        inputs.wrench[:, steps], inputs.force[:, steps], demand, inputs.row, inputs.duration[steps]
+    )
+    memory, out = remembered([model], watch, watch.ends[index]), np.empty_like(states[..., 7:])
+    for state, own in zip(states, out, strict=True):
+        module.accelerations(
+            watch.ends[index] * watch.h, np.ascontiguousarray(state), memory, packed([model.body]),
+            at, p, np.empty(0), place(watch.motion), own,
+        )  # fmt: skip
+    return out
 
 
 def batch(

@@ -11,6 +11,7 @@ from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.windows import window_errors
 from rovsim.model import Model
 
+ROUNDS = 3  # of trials, when none of the first matters
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 
 
@@ -50,21 +51,28 @@ def _without_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
     return Hypothesis(h.base, (*h.terms[:i], smaller, *h.terms[i + 1 :]))
 
 
-def worth_trying(desk: Desk, current: Fit, but: Sequence[str] = ()) -> list[Proposal]:
-    """The proposals that could turn out best once refitted."""
-    ranked = [p for p in proposals(desk, current) if p.term.id not in but and p.gain > 0.0]
+def promising(desk: Desk, current: Fit, but: Sequence[str] = ()) -> list[Proposal]:
+    """The proposals that should gain something."""
+    return [p for p in proposals(desk, current) if p.term.id not in but and p.gain > 0.0]
+
+
+def close(desk: Desk, ranked: Sequence[Proposal]) -> list[Proposal]:
+    """The first proposals, as far as they could turn out best once refitted."""
     return [p for p in ranked[: desk.settings.trials] if p.gain > CLOSE * ranked[0].gain]
 
 
 def forward(desk: Desk, current: Fit, threshold: float) -> Fit | None:
     """The best single addition, refitted and pruned; None when none beats chance and matters."""
-    trying = worth_trying(desk, current)
-    tried = [desk.fit(current.hypothesis.with_term(p.term)) for p in trying]
-    for best in sorted(tried, key=desk.score, reverse=True):
-        if desk.score(best) - desk.score(current) < threshold:
-            break
-        if matters(desk, best, current.hypothesis.model):
-            return pruned(desk, best)
+    left = promising(desk, current)
+    for _ in range(ROUNDS):
+        trying = close(desk, left)
+        left = [p for p in left if p not in trying]
+        tried = [desk.fit(current.hypothesis.with_term(p.term)) for p in trying]
+        for best in sorted(tried, key=desk.score, reverse=True):
+            if desk.score(best) - desk.score(current) < threshold:
+                break
+            if matters(desk, best, current.hypothesis.model):
+                return pruned(desk, best)
     return None
 
 
@@ -92,7 +100,7 @@ def contested(desk: Desk, current: Fit) -> tuple[Fit, list[Rival]]:
     rivals = []
     for i, term in enumerate(current.hypothesis.terms):
         rest = desk.fit(current.hypothesis.without(i))
-        for p in worth_trying(desk, rest, but=[term.id]):
+        for p in close(desk, promising(desk, rest, but=[term.id])):
             trial = desk.fit(rest.hypothesis.with_term(p.term))
             deficit = desk.score(current) - desk.score(trial)
             if deficit < 0.0:

@@ -11,12 +11,16 @@ from rovsim.diagnosis.watch import Watch
 from rovsim.frames import matrix
 
 SMOOTH = 0.02  # m/s or rad/s: a sign that turns over within the noise of the velocity
+# The measured velocity at an instant holds some noise of the readings around it, and so would agree
+# with the innovation there; a little earlier it does not, and a vehicle changes little meanwhile.
+EARLIER = 0.2  # s
 MEMORIES = (0.5, 2.0)  # s
 
 
 def shapes(watch: Watch) -> dict[str, Array]:
     """Functions (n,) of state, place and time at the readings of one run, by their names."""
-    at = np.clip(watch.index, 0, len(watch.motion.time) - 1)
+    past = max(1, round(EARLIER / watch.period))
+    at = np.clip(watch.index - past, 0, len(watch.motion.time) - 1)
     state = np.nan_to_num(watch.motion.state[at])
     nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
     t = 2.0 * watch.time / max(watch.time[-1], 1e-9) - 1.0 if len(watch.time) else watch.time

@@ -10,10 +10,13 @@ from numpy import ndarray as Array
 from rovsim.replay import clock
 from rovsim.signals.chain import Stage
 from rovsim.signals.motion import Motion, Poses
+from rovsim.thrust import ThrustPath
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
 SETTLING = 1.0  # s
 SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
+GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
+USUAL, JUMP = 0.95, 2.0  # quantile of the changes from line to line; two of them are a jump
 BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are independent
 
 
@@ -70,6 +73,20 @@ class Watch:
         for (first, last), (a, _) in zip(self.rows, self.spans, strict=True):
             kept[first:last] = self.time[first:last] > self.ends[a] * self.h + SETTLING
         return kept
+
+    def vague(self, path: ThrustPath) -> Array:
+        """Begins and ends (g, 2) of lost lines of the command log over which commands jumped.
+
+        `path` says when a logged command takes effect.
+        """
+        commands = self.motion.commands
+        steps = np.diff(commands.time)
+        if not len(steps):
+            return np.empty((0, 2))
+        change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
+        lost = (steps > GAP * np.median(steps)) & (change > JUMP * np.quantile(change, USUAL))
+        at = self.edges[0] + path.arrival(commands.time - self.edges[0])
+        return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
 def watch(stage: Stage, motion: Motion, step: float) -> Watch:

@@ -16,46 +16,17 @@ method. Effects are immutable and add: a model is a list of them.
 
 from abc import ABC, abstractmethod
 from collections import namedtuple
-from dataclasses import dataclass, field
 from typing import Any, ClassVar, Mapping
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.body import Body
+from rovsim.effects.parameters import Parameter, Signature
 from rovsim.engine.at import At, Vector6
 from rovsim.errors import BadInput, nearest
 from rovsim.frames import Rigid
 from rovsim.recording.recording import CommandKind, Site
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One number of an effect: its name, SI unit, symbol, allowed range and value when absent.
-
-    A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
-    change worth looking for: a fit works in multiples of it. Not `fitted`: only when asked for.
-    """
-
-    name: str
-    unit: str
-    symbol: str
-    low: float = -np.inf
-    high: float = np.inf
-    default: float = 0.0
-    scale: float = field(kw_only=True)
-    fitted: bool = field(default=True, kw_only=True)
-
-
-def per_axis(
-    translation: str, rotation: str, symbol: str, *, scales: tuple[float, float]
-) -> tuple[Parameter, ...]:
-    """Six parameters named surge ... yaw; units and scales of the two kinds of axes."""
-    return tuple(
-        Parameter(axis, (translation, rotation)[i // 3], f"{symbol}_{axis}", scale=scales[i // 3])
-        for i, axis in enumerate(AXES)
-    )
 
 
 class Effect(ABC):
@@ -71,7 +42,9 @@ class Effect(ABC):
     source: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
     starts: ClassVar[tuple[dict[str, float], ...]] = ({},)  # where fits begin; {} = the defaults
+    cause: ClassVar[str] = ""  # what in a laboratory makes it happen, one sentence
     revealed_by: ClassVar[str] = ""  # what to record to be sure of it, one sentence
+    signature: ClassVar[Signature | None] = None  # how the catalogue page shows it
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
 

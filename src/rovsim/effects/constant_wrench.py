@@ -1,6 +1,7 @@
 """A trim that never changes."""
 
-from rovsim.effects.base import Wrench, per_axis
+from rovsim.effects.base import Wrench
+from rovsim.effects.parameters import Signature, per_axis
 
 
 class ConstantWrench(Wrench):
@@ -10,6 +11,12 @@ class ConstantWrench(Wrench):
     equation = r"\tau_i = c_i"
     neglects = "everything it might depend on"
     source = "definition"
+    cause = "A thruster idles, the sticks are off their centre, or a trim was set by hand."
+    revealed_by = (
+        "Drift without commands at four headings and leaning to both sides: a constant wrench "
+        "turns with the body, net buoyancy, a current and a tether stay with the world."
+    )
+    signature = Signature({"surge": 4.0}, "surge", "heading")
     parameters = per_axis("N", "N m", "c", scales=(2.0, 0.2))
 
     @staticmethod

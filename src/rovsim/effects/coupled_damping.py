@@ -3,6 +3,7 @@
 from rovsim import AXES
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
+from rovsim.effects.parameters import Signature
 
 PAIRS = [(i, j) for i in range(6) for j in range(6) if i != j]
 POWERS = (("", "d"), ("_quadratic", "d^q"))  # the rows of Body.coupling
@@ -28,6 +29,14 @@ class CoupledDamping(Coefficients):
     equation = r"\tau_i = -d_{ij}\,\nu_{r,j} - d^q_{ij}\,|\nu_{r,j}|\,\nu_{r,j}"
     neglects = "products of velocities of different axes"
     source = "Fossen 2021, sec. 6.4 (off-diagonal terms of D)"
+    cause = (
+        "The hull is not symmetric: a lamp, a gripper or a bracket on one side, or drag above CO."
+    )
+    revealed_by = (
+        "Drive one axis alone to a steady speed and coast: a coupling of the drag goes on turning "
+        "or pushing the vehicle while it coasts, an unequal pair of thrusters stops doing so."
+    )
+    signature = Signature({"yaw_from_sway": 8.0}, "yaw", "sway speed")
     parameters = tuple(_pair(i, j, *power) for power in POWERS for i, j in PAIRS)
 
     def enter(self, body: Body) -> None:

@@ -2,6 +2,7 @@
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
+from rovsim.effects.parameters import Signature
 
 
 class Current(Coefficients):
@@ -11,8 +12,15 @@ class Current(Coefficients):
     equation = r"\nu_r = \nu - R^\top v_c"
     neglects = "shear, turbulence and anything unsteady"
     source = "Fossen 2021, sec. 10.3"
+    cause = "A pump, an outlet, or the circulation that the vehicle itself has stirred up."
+    revealed_by = (
+        "Drift without commands at four headings for 20 s each: a current carries the vehicle to "
+        "the same side until it moves with the water, a constant wrench turns with the body, a "
+        "tether pulls harder with the distance."
+    )
+    signature = Signature({"north": 0.12}, "surge", "heading")
     parameters = tuple(
-        Parameter(name, "m/s", f"v_{name[0]}", scale=0.05) for name in ("north", "east", "down")
+        Parameter(name, "m/s", f"v_{{{name}}}", scale=0.05) for name in ("north", "east", "down")
     )
 
     def enter(self, body: Body) -> None:

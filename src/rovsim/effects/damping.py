@@ -1,7 +1,8 @@
 """Water resistance, axis by axis."""
 
 from rovsim.body import Body
-from rovsim.effects.base import Coefficients, per_axis
+from rovsim.effects.base import Coefficients
+from rovsim.effects.parameters import Signature, per_axis
 
 
 class LinearDamping(Coefficients):
@@ -11,6 +12,16 @@ class LinearDamping(Coefficients):
     equation = r"\tau_i = -d_i\,\nu_{r,i}"
     neglects = "coupling between axes"
     source = "Fossen 2021, sec. 6.4"
+    cause = (
+        "The hull drags more or less than the vehicle file says, mostly at low speed: rough foam, "
+        "growth, mesh."
+    )
+    revealed_by = (
+        "Hold five steady speeds on one axis from 0.05 m/s upwards, 5 s each, and coast from "
+        "each: linear drag grows like the speed, quadratic drag like its square, and a thruster "
+        "gain does not show while coasting."
+    )
+    signature = Signature({"surge": 20.0}, "surge", "surge speed")
     parameters = per_axis("N s/m", "N m s/rad", "d", scales=(10.0, 0.5))
 
     def enter(self, body: Body) -> None:
@@ -25,6 +36,16 @@ class QuadraticDamping(Coefficients):
     equation = r"\tau_i = -d_i\,|\nu_{r,i}|\,\nu_{r,i}"
     neglects = "coupling between axes; valid above about 0.1 m/s"
     source = "Fossen 2021, sec. 6.4"
+    cause = (
+        "The hull drags more or less than the vehicle file says, mostly at high speed: a skirt, "
+        "lamps, a gripper, an open frame."
+    )
+    revealed_by = (
+        "Hold a quarter, half and all of the highest speed on one axis, 5 s each, and coast from "
+        "each: doubling the speed takes four times the drag, with linear drag twice, and a weak "
+        "thruster does not show while coasting."
+    )
+    signature = Signature({"sway": 120.0}, "sway", "sway speed")
     parameters = per_axis("N s2/m2", "N m s2/rad2", "d", scales=(40.0, 0.5))
 
     def enter(self, body: Body) -> None:

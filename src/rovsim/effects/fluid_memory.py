@@ -4,6 +4,7 @@ import numpy as np
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
+from rovsim.effects.parameters import Signature
 from rovsim.errors import BadInput
 
 ARM = 0.02  # kappa, m2: square of the arm at which rotation meets the water (contract, section 2)
@@ -18,11 +19,20 @@ class FluidMemory(Coefficients):
 
     id = "fluid_memory"
     equation = (
-        r"\tau = -c\,\operatorname{diag}(1,1,1,\kappa,\kappa,\kappa)(\nu_r - m),"
+        r"\tau = -c\,\mathrm{diag}(1,1,1,\kappa,\kappa,\kappa)(\nu_r - m),"
         r"\quad T \dot m = \nu_r - m"
     )
     neglects = "more than one time constant, and waves"
     source = "Fossen 2021, sec. 6.2 (fluid memory), reduced to one state an axis"
+    cause = (
+        "The wake goes on moving when the vehicle slows down or turns back, most of all in a "
+        "small tank."
+    )
+    revealed_by = (
+        "Hold a steady speed for 5 s, stop within 1 s and then wait 5 s without commands: the "
+        "wake goes on pushing for about its time constant, added mass and a thruster lag do not."
+    )
+    signature = Signature({"coefficient": 30.0, "time_constant": 1.0}, "surge", "surge thrust")
     parameters = (
         Parameter("coefficient", "N s/m", "c", low=0.0, scale=5.0),
         Parameter("time_constant", "s", "T", low=0.01, default=1.0, scale=0.5),

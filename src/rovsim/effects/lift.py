@@ -1,6 +1,7 @@
 """Lift of the hull at an angle of attack."""
 
 from rovsim.effects.base import Parameter, Wrench
+from rovsim.effects.parameters import Signature
 
 
 class Lift(Wrench):
@@ -10,6 +11,12 @@ class Lift(Wrench):
     equation = r"Y = -c\,|u_r|\,v_r,\quad Z = -c\,|u_r|\,w_r"
     neglects = "stall, and the moment of the lift"
     source = "Fossen 2021, sec. 6.4 (lift), small angles"
+    cause = "The hull meets the water at an angle, like a wing: side panels, floats, fairings."
+    revealed_by = (
+        "Drift sideways at the same speed with no, half and full surge speed: lift brakes the "
+        "drift only while the vehicle also moves ahead, sway damping always."
+    )
+    signature = Signature({"coefficient": 100.0}, "sway", "absolute surge speed", size=True)
     parameters = (Parameter("coefficient", "kg/m", "c", scale=30.0),)
 
     @staticmethod

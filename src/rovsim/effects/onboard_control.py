@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.effects.base import Autopilot, Parameter, Wrench
+from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import inlined
 from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Site
@@ -43,12 +44,25 @@ class OnboardControl(Wrench, Autopilot):
     )
     neglects = "saturation and lag of the thrusters that do it, and the loop's integral term"
     source = "a first-order loop, as in cascaded autopilots (Fossen 2021, ch. 15)"
+    cause = (
+        "The autopilot was in a stabilised mode: the log holds set-points, not demands on the "
+        "thrusters."
+    )
+    revealed_by = (
+        "Hold one stick still at three positions for 5 s each, then release it and push the "
+        "vehicle by hand: a loop reaches a speed or angle in proportion and resists the hand, "
+        "mere damping gives way; best, log the thruster outputs."
+    )
+    signature = Signature({"gain_yaw": 1.0, "bandwidth_yaw": 2.0}, "yaw", "yaw thrust")
     parameters = (
         *(
-            Parameter(f"gain_{axis}", SPEEDS[i // 3], f"g_{axis}", scale=(0.3, 0.5)[i // 3])
+            Parameter(f"gain_{axis}", SPEEDS[i // 3], f"g_{{{axis}}}", scale=(0.3, 0.5)[i // 3])
             for i, axis in enumerate(AXES)
         ),
-        *(Parameter(f"bandwidth_{axis}", "1/s", f"b_{axis}", low=0.0, scale=1.0) for axis in AXES),
+        *(
+            Parameter(f"bandwidth_{axis}", "1/s", f"b_{{{axis}}}", low=0.0, scale=1.0)
+            for axis in AXES
+        ),
         Parameter("attitude", "1", "a", low=0.0, high=1.0, scale=1.0, fitted=False),
     )
     starts = (

@@ -3,6 +3,7 @@
 from math import exp
 
 from rovsim.effects.base import Parameter, Wrench
+from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import inlined
 
 
@@ -35,6 +36,14 @@ class WallProximity(Wrench):
     equation = r"d_i \to d_i\,(1 + g\,(e^{-d_x/l} + e^{-d_y/l}))"
     neglects = "the floor, and forces towards or along the wall"
     source = "empirical: fades exponentially with the distance"
+    cause = "The vehicle worked close to a wall, where the water it displaces has little room."
+    revealed_by = (
+        "Drive along two opposite walls at one steady speed, 0.2, 0.5 and 2 m away from them: a "
+        "wall brakes on either side alike, a tether more on the side far from its anchor."
+    )
+    signature = Signature(
+        {"gain": 8.0, "length_scale": 0.25}, "surge", "distance to the nearest wall", size=True
+    )
     parameters = (Parameter("gain", "1", "g", low=0.0, scale=0.5), _length(0.5))
     starts = ({"gain": 0.3}, {"gain": 1.0})
 
@@ -56,6 +65,13 @@ class SurfaceProximity(Wrench):
     equation = r"d_i \to d_i\,(1 + g\,e^{-d_z/l})"
     neglects = "suction, and waves that come back"
     source = "empirical: fades exponentially with the depth"
+    cause = "The vehicle ran shallow and spent power on waves."
+    revealed_by = (
+        "Drive one course at one steady speed at depths of 0.2, 0.5 and 1.5 m, then hover at "
+        "each: the surface brakes only what moves, buoyancy and a tether push a hovering vehicle "
+        "too."
+    )
+    signature = Signature({"gain": 4.0}, "heave", "depth below the surface", size=True)
     parameters = (Parameter("gain", "1", "g", low=0.0, scale=0.5), _length(0.4))
     starts = ({"gain": 0.3}, {"gain": 1.0})
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter
+from rovsim.effects.parameters import Signature
 
 PLACE = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
 
@@ -38,6 +39,15 @@ class Payload(Coefficients):
     equation = r"M_{RB} \mathrel{+}= m H^\top(r) H(r),\quad \text{weight } m g \text{ at } r"
     neglects = "its displaced water and its drag"
     source = "Fossen 2021, sec. 3.3 (parallel-axis theorem)"
+    cause = (
+        "Something is carried that the vehicle file does not know: a gripper, a camera, a lead "
+        "weight."
+    )
+    revealed_by = (
+        "Let it sink without thrust, then step surge and yaw hard from rest: a payload weighs it "
+        "down and also slows every start, lost buoyancy only weighs it down."
+    )
+    signature = Signature({"mass": 1.0, "x": 0.1, "z": 0.15}, "pitch", "pitch angle")
     parameters = (Parameter("mass", "kg", "m", low=0.0, scale=0.5), *PLACE)
     # without a mass its place means nothing; so: at CO, and at the ends of a frame 0.4 m long
     starts = (

@@ -3,6 +3,7 @@
 from math import sqrt
 
 from rovsim.effects.base import Parameter, Wrench
+from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import cross, dot3, inlined, into_body
 from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Site
@@ -35,6 +36,16 @@ class TetherTension(Wrench):
     equation = r"F = k \max(0, L - L_0) \text{ towards the anchor}"
     neglects = "weight, drag and dynamics of the tether"
     source = "Hooke's law"
+    cause = "The tether came taut, or its floats pull."
+    revealed_by = (
+        "Visit all corners of the tank slowly, shallow and deep: tension points to the anchor and "
+        "begins beyond the slack length, a current or buoyancy pushes alike everywhere."
+    )
+    signature = Signature(
+        {"stiffness": 8.0, "slack_length": 0.8, "anchor_x": 2.0, "anchor_y": 1.1, "anchor_z": 2.0},
+        "heave",
+        "depth below the surface",
+    )
     parameters = (
         Parameter("stiffness", "N/m", "k", low=0.0, scale=2.0),
         Parameter("slack_length", "m", "L_0", low=0.0, scale=0.5),
@@ -78,6 +89,15 @@ class TetherDrag(Wrench):
     equation = r"F = -c\,r\,|v_r|\,v_r \text{ at the attachment}"
     neglects = "the tether's shape, and that its far end moves slower"
     source = "quadratic drag of a wetted length that grows with the distance from the anchor"
+    cause = (
+        "The wetted tether is towed along, and there is more of it the farther the vehicle is "
+        "from its anchor."
+    )
+    revealed_by = (
+        "Cross the tank at one steady speed, once close to the anchor and once far from it: the "
+        "drag of a tether grows with the distance, that of the hull does not."
+    )
+    signature = Signature({"coefficient": 15.0}, "yaw", "sway speed")
     parameters = (
         # 1.2 (cylinder) * 1000 kg/m3 / 2 * 7.5 mm = 4.5 N s2/m3 if all of it moved at full speed
         Parameter("coefficient", "N s2/m3", "c", low=0.0, scale=2.0),

@@ -1,42 +1,14 @@
-"""What happens between a logged command and a thruster's force."""
+"""What happens between a command that has arrived and a thruster's force."""
 
 import numpy as np
 from numpy import ndarray as Array
 from scipy.signal import lfilter
 
 from rovsim.body import Body
-from rovsim.effects.base import Clock, Coefficients, Parameter, Response, Shaping, Strength
+from rovsim.effects.base import Coefficients, Parameter, Response, Shaping, Strength
+from rovsim.effects.parameters import Signature
 
 THRUSTERS = tuple(f"t{i}" for i in range(1, 9))
-
-
-class InputDelay(Clock):
-    """Commands take effect late: transport delay, or a constant offset between two clocks."""
-
-    id = "input_delay"
-    rank = 1
-    equation = r"u(t - \delta)"
-    neglects = "jitter"
-    source = "definition"
-    parameters = (Parameter("delay", "s", r"\delta", scale=0.05),)
-
-    def arrival(self, time: Array) -> Array:
-        """Every line arrives later by the delay."""
-        return time + self["delay"]
-
-
-class ClockDrift(Clock):
-    """The computer that logged the commands has a clock that runs fast."""
-
-    id = "clock_drift"
-    equation = r"t_\text{command} = (1 + r)\,t"
-    neglects = "a rate that changes with temperature"
-    source = "definition"
-    parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002),)
-
-    def arrival(self, time: Array) -> Array:
-        """Instant on the MoCap clock at which the command clock shows `time`."""
-        return time / (1.0 + self["rate"])
 
 
 class ThrusterDeadband(Shaping):
@@ -46,7 +18,14 @@ class ThrusterDeadband(Shaping):
     equation = r"F = 0 \text{ for } |c| \le w"
     neglects = "hysteresis between starting and stopping"
     source = "definition"
-    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03),)
+    cause = "The speed controllers do not turn the propellers at small commands."
+    revealed_by = (
+        "Ramp one axis slowly through zero and back, up to a tenth of full thrust: inside a dead "
+        "band nothing happens at all, a low gain answers weakly from the very start."
+    )
+    signature = Signature({"width": 0.15}, "surge", "surge thrust")
+    # two steps of a log in whole microseconds, of 400 us: between them no command changes sides
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, grain=2 / 400),)
     starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
 
     def shaped(self, command: Array) -> Array:
@@ -61,8 +40,19 @@ class ThrusterGain(Strength):
     equation = r"F_i \to g\,g_i\,F_i"
     neglects = "a change of the curve's shape"
     source = "definition"
+    cause = (
+        "A propeller is fouled, damaged or of another kind, the battery has another voltage, or a "
+        "thruster is wired the wrong way round."
+    )
+    revealed_by = (
+        "Push with one axis, better one thruster, at a time for 3 s and then coast: a gain shows "
+        "only under thrust, drag while coasting as well, and added mass only while the speed "
+        "changes."
+    )
+    signature = Signature({"all": 0.7}, "surge", "surge thrust")
     parameters = tuple(
-        Parameter(name, "1", f"g_{name}", default=1.0, scale=0.1) for name in (*THRUSTERS, "all")
+        Parameter(name, "1", f"g_{{{name}}}", default=1.0, scale=0.1)
+        for name in (*THRUSTERS, "all")
     )
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
@@ -80,6 +70,12 @@ class ThrustAsymmetry(Strength):
     equation = r"F \to a F \text{ where } F < 0"
     neglects = "a ratio that depends on speed"
     source = "definition"
+    cause = "The blades are shaped for one direction, or the frame stands in the backward jet."
+    revealed_by = (
+        "Hold equal thrust forwards and backwards on each axis until the speed is steady: only an "
+        "asymmetry makes the two speeds differ at every heading, a current does so at one."
+    )
+    signature = Signature({"ratio": 0.7}, "heave", "heave thrust")
     parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0, scale=0.1),)
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
@@ -95,6 +91,13 @@ class VoltageSag(Strength):
     equation = r"F \to F\,(1 - s\,t/T_\text{run})"
     neglects = "recovery at rest and sag under load"
     source = "definition"
+    cause = "The battery empties during the run, and nothing corrects the commands for it."
+    revealed_by = (
+        "Repeat one manoeuvre at the start, in the middle and at the end of a run, and coast each "
+        "time: sag weakens the thrust more and more, a gain is off from the start, and neither "
+        "shows while coasting."
+    )
+    signature = Signature({"fraction": 0.4}, "sway", "time in the run", size=True)
     parameters = (Parameter("fraction", "1", "s", high=1.0, scale=0.1),)
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
@@ -109,6 +112,12 @@ class ThrusterLag(Response):
     equation = r"T \dot F + F = F_\text{static}"
     neglects = "that spinning up and down differ"
     source = "Fossen 2021, sec. 9.4 (first-order actuator)"
+    cause = "The propellers take time to spin up, or their controllers smooth the command."
+    revealed_by = (
+        "Step one axis at a time between thrust levels and hold 3 s: a lag delays the whole "
+        "response by its time constant at any step size, added mass only slows the rise."
+    )
+    signature = Signature({"time_constant": 0.2}, "surge", "change of surge thrust")
     parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1),)
     starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
 
@@ -128,9 +137,18 @@ class AdvanceLoss(Coefficients):
     """A propeller that advances through the water pushes less; opposing inflow raises thrust."""
 
     id = "advance_loss"
-    equation = r"F \to F\,(1 - c\,\operatorname{sign}(F)\,d_i \cdot v_r)"
+    equation = r"F \to F\,(1 - c\,\mathrm{sign}(F)\,d_i \cdot v_r)"
     neglects = "the velocity of the thruster relative to CO"
     source = "Fossen 2021, sec. 9.4 (linear in the advance speed)"
+    cause = (
+        "A propeller that moves along its own jet finds the water moving already; the published "
+        "curve was measured at rest."
+    )
+    revealed_by = (
+        "At full speed go on thrusting, then coast, then thrust backwards: the loss changes sign "
+        "with the thrust and ends with it, drag of the hull does neither."
+    )
+    signature = Signature({"coefficient": 0.6}, "surge", "surge speed")
     parameters = (Parameter("coefficient", "s/m", "c", scale=0.2),)
 
     def enter(self, body: Body) -> None:
@@ -145,6 +163,15 @@ class PropellerTorque(Coefficients):
     equation = r"\tau_\text{rotation} \mathrel{+}= q\,s_i F_i d_i"
     neglects = "the torque of spinning up"
     source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"
+    cause = (
+        "Each propeller turns the vehicle the other way, and a wrong pairing of left- and "
+        "right-handed propellers leaves a rest."
+    )
+    revealed_by = (
+        "Thrust one axis at a time from rest, 1 s at several levels: the torque of propellers is "
+        "there at once and grows with the thrust, coupled damping needs speed first."
+    )
+    signature = Signature({"ratio": 0.03}, "roll", "yaw thrust")
     parameters = (Parameter("ratio", "m", "q", scale=0.01),)
 
     def enter(self, body: Body) -> None:

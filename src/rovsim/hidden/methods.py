@@ -1,8 +1,11 @@
 """Who is asked: a method reads a campaign folder and answers in the form of diagnosis.json."""
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Callable, Sequence
+
+from rovsim.errors import BadInput
 
 Answer = Callable[[Path, Path], dict[str, Any]]
 
@@ -21,7 +24,11 @@ class Method:
 
 
 def chosen(names: Sequence[str]) -> list[Method]:
-    """Methods by name; each is imported only when asked for."""
+    """Methods by name; each is imported only when asked for.
+
+    Raises:
+        BadInput: one of them needs a package that is not installed.
+    """
     return [_METHODS[name]() for name in names]
 
 
@@ -34,13 +41,24 @@ def _diagnosis() -> Method:
 def _stlsq() -> Method:
     from rovsim.hidden.sparse import stlsq
 
-    return Method("stlsq", stlsq, ("rovsim.hidden.sparse",))
+    return _regression("stlsq", stlsq)
 
 
 def _frols() -> Method:
     from rovsim.hidden.sparse import frols
 
-    return Method("frols", frols, ("rovsim.hidden.sparse",))
+    return _regression("frols", frols)
+
+
+def _regression(name: str, answer: Answer) -> Method:
+    if find_spec("pysindy") is None:
+        raise BadInput(
+            "PySINDy is not installed",
+            where=f"hidden.methods, {name}",
+            expected="the packages of environment.lock",
+            remedy="Run `make setup`, or ask for hidden.methods=[diagnosis] alone.",
+        )
+    return Method(name, answer, ("rovsim.hidden.sparse",))
 
 
 _METHODS = {"diagnosis": _diagnosis, "stlsq": _stlsq, "frols": _frols}

@@ -1,0 +1,134 @@
+"""The desk of a search: the evidence, what it has fitted, and what looks worth trying next.
+
+The price of a parameter is 2 log P for P columns to choose from (risk inflation criterion, Foster
+& George 1994): chance alone rarely pays it, so a family of many members is not favoured over a
+single number.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.evidence import Observatory
+from rovsim.diagnosis.fit import Fit, fit
+from rovsim.diagnosis.gram import Gain, coarse, greedy, inner_products, joint, without
+from rovsim.diagnosis.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.library import Library
+from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.settings import SearchSettings
+
+TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """A term worth trying: what it should gain, its price paid, and where to start."""
+
+    term: Term
+    gain: float
+
+
+@dataclass(frozen=True, eq=False)
+class Desk:
+    """Everything a search looks at: the runs, the candidates' columns, and one noise for all."""
+
+    observatory: Observatory
+    library: Library
+    noise: Noise
+    settings: SearchSettings
+    _fitted: dict[tuple, Fit] = field(default_factory=dict)
+
+    @cached_property
+    def price(self) -> float:
+        """What a free parameter costs, in twice the log likelihood."""
+        return 2.0 * float(np.log(self.library.count))
+
+    def fit(self, start: Hypothesis) -> Fit:
+        """Fit under the common noise; the same start is fitted once."""
+        if start.key not in self._fitted:
+            self._fitted[start.key] = fit(start, self.observatory, self.noise)
+        return self._fitted[start.key]
+
+    def score(self, found: Fit) -> float:
+        """Twice the log likelihood, the price of the free parameters paid."""
+        return found.likelihood - self.price * len(found.hypothesis.x)
+
+    @cached_property
+    def columns(self) -> Array:
+        """The candidates' columns (c, m), white."""
+        return _flat(self.library.observatory, self.library.columns, self.noise)
+
+    @cached_property
+    def gram(self) -> Array:
+        """Inner products (c, c) of the candidates' columns."""
+        return inner_products(self.columns).astype(float)
+
+    def products(self, current: Fit) -> Array:
+        """Inner products (1 + c, 1 + c) of the innovations and the candidates' columns.
+
+        What the free parameters of the current fit can explain is projected out of both.
+        """
+        pairs = zip(current.e, current.J, strict=True)
+        stacked = [np.concatenate([e[None], J]) for e, J in pairs]
+        own = _flat(self.observatory, stacked, self.noise)
+        across = own @ self.columns.T
+        M = np.block([[inner_products(own), across], [across.T, self.gram]])
+        kept = [0, *range(len(own), len(M))]
+        return without(M, range(1, len(own)))[np.ix_(kept, kept)]
+
+
+def _flat(observatory: Observatory, rows: Sequence[Array], noise: Noise) -> Array:
+    """Rows (q, 6, n_run) of each run, whitened and coarse: (q, m)."""
+    found = coarse(observatory.white(rows, noise))
+    return found.reshape(len(found), -1)
+
+
+def proposals(desk: Desk, current: Fit) -> list[Proposal]:
+    """All candidates, best first, judged to first order on top of what is there."""
+    M = desk.products(current)
+    best: dict[str, Proposal] = {}
+    for candidate, secant, columns in zip(
+        desk.library.candidates, desk.library.secant, desk.library.derivatives, strict=True
+    ):
+        gain = _gain(M, secant, columns, desk.price, candidate.term())
+        term = candidate.term([candidate.free[j] for j in gain.chosen])
+        worth = gain.decrease - desk.price * len(gain.chosen)
+        proposal = Proposal(term.at(term.x + gain.x), worth)
+        known = best.get(term.id)
+        if known is None or worth > known.gain:
+            best[term.id] = proposal
+    return sorted(best.values(), key=lambda p: -p.gain)
+
+
+def _gain(M: Array, secant: int | None, columns: Sequence[int], price: float, term: Term) -> Gain:
+    own = [1 + j for j in columns]
+    H, b = M[np.ix_(own, own)], M[own, 0]
+    if secant is None:
+        return greedy(H, b, price)
+    s = 1 + secant
+    low, high = term.reach(TRUSTED)
+    return joint(H, b + M[own, s], 2.0 * M[0, s] + M[s, s], low, high)
+
+
+def chance(desk: Desk, current: Fit, draws: int, seed: int) -> Array:
+    """The best gain (draws,), price paid, that noise alone would give to any of the candidates."""
+    M = desk.products(current)[1:, 1:]
+    scale = np.sqrt(np.maximum(np.diag(M), 1e-300))
+    values, vectors = np.linalg.eigh(M / np.outer(scale, scale))
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    z = np.random.default_rng(seed).normal(size=(draws, len(M))) @ root.T * scale
+    best = np.full(draws, -np.inf)
+    for secant, columns in zip(desk.library.secant, desk.library.derivatives, strict=True):
+        own = list(columns)
+        if secant is None:
+            gains = np.max(z[:, own] ** 2 / np.diag(M)[own], axis=1) - desk.price
+        else:
+            b = z[:, own] + M[own, secant]
+            x = np.linalg.lstsq(M[np.ix_(own, own)], b.T, rcond=1e-9)[0]
+            gains = np.einsum("dk,kd->d", b, x) - 2.0 * z[:, secant] - M[secant, secant]
+            gains = gains - desk.price * len(own)
+        best = np.maximum(best, gains)
+    return best

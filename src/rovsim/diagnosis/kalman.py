@@ -1,0 +1,161 @@
+"""Steady-state Kalman filters of one axis, and what turns the innovations of one into another's.
+
+Compiled: a fit of the noise makes thousands of them.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numba import njit, prange
+from numpy import ndarray as Array
+
+MOST_DOUBLINGS = 60
+CONVERGED = 1e-13
+# A little noise everywhere keeps the Riccati equation solvable; it is far below the readings'.
+SOLVABLE, LEAST_DRIVING = 1e-6, 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class AxisFilter:
+    """Filter of one axis: `F` (n, n), `C` and `gain` (n,), variance of its innovations.
+
+    `poles` (n + 1,): its characteristic polynomial, highest power first.
+    """
+
+    F: Array
+    C: Array
+    gain: Array
+    variance: float
+    poles: Array
+
+    @property
+    def decay(self) -> float:
+        """What remains of the disturbance after one period."""
+        return float(self.F[-1, -1])
+
+    def whitening(self, old: "AxisFilter") -> tuple[Array, Array]:
+        """Rational filter (b, a) that turns innovations of the filter `old` into this one's."""
+        b = np.convolve([1.0, -self.decay], old.poles)
+        return b, np.convolve([1.0, -old.decay], self.poles)
+
+    @cached_property
+    def response(self) -> tuple[Array, Array]:
+        """Filter (b, a) from a push on the axis (m/s2, rad/s2) to innovations of unit variance.
+
+        C (z I - A)^-1 B = det(z I - A + B C) / det(z I - A) - 1 with A = F (I - K C).
+        """
+        n, h = len(self.C), float(self.F[-2, -1])
+        A = self.F @ (np.eye(n) - np.outer(self.gain, self.C))
+        B = np.array([0.5 * h * h, h, 0.0][-n:])
+        return (characteristic(A - np.outer(B, self.C)) - self.poles) / np.sqrt(
+            self.variance
+        ), self.poles
+
+
+def axis_filter(
+    binned: bool, h: float, damping: float, level: float, memory: float, reading: float
+) -> AxisFilter:
+    """The filter of one axis for one noise (noise.py), readings every h s."""
+    return AxisFilter(*steady(binned, h, damping, level, memory, reading))
+
+
+@njit(cache=True)
+def steady(binned, h, d, level, memory, reading):
+    """F, C, gain, variance of the innovations and poles of the filter of one axis."""
+    phi = np.exp(-h / memory)
+    if binned:
+        F = np.array([[np.exp(-d * h), h], [0.0, phi]])
+        C = np.array([1.0, -0.5 * h])  # the mean over a bin is the velocity at its middle
+    else:
+        F = np.array([[1.0, h, 0.5 * h * h], [0.0, 1.0 - d * h, h], [0.0, 0.0, phi]])
+        C = np.array([1.0, 0.0, 0.0])
+    n, r = len(C), reading**2
+    Q = SOLVABLE * r * np.eye(n)
+    Q[-1, -1] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
+    P = riccati(F, C, Q, r)
+    variance = np.dot(C, np.dot(P, C)) + r
+    gain = np.dot(P, C) / variance
+    poles = characteristic(np.dot(F, np.eye(n) - np.outer(gain, C)))
+    return F, C, gain, variance, poles
+
+
+@njit(cache=True)
+def riccati(F, C, Q, r):
+    """Steady covariance (n, n) of x' = F x + w, y = C x + v, predicted; w has Q, v has variance r.
+
+    By structure-preserving doubling (Chu, Fan, Lin & Wang 2004): much faster on matrices this small
+    than the general solver, with which a test compares it.
+    """
+    A, G, H, unit = np.ascontiguousarray(F.T), np.outer(C, C) / r, Q.copy(), np.eye(len(C))
+    for _ in range(MOST_DOUBLINGS):
+        W = np.linalg.inv(unit + np.dot(G, H))
+        across = np.ascontiguousarray(A.T)
+        more = np.dot(np.dot(across, H), np.dot(W, A))
+        G = G + np.dot(np.dot(A, W), np.dot(G, across))
+        A = np.dot(np.dot(A, W), A)
+        H = H + more
+        if np.max(np.abs(more)) <= CONVERGED * np.max(np.abs(H)):
+            break
+    return H
+
+
+@njit(cache=True)
+def characteristic(A):
+    """Coefficients of det(z I - A), highest power first (Faddeev-LeVerrier)."""
+    n = len(A)
+    found, M = np.ones(n + 1), np.zeros((n, n))
+    for k in range(1, n + 1):
+        M = np.dot(A, M) + found[k - 1] * np.eye(n)
+        found[k] = -np.trace(np.dot(A, M)) / k
+    return found
+
+
+@njit(cache=True, inline="always")
+def _filtered(b, a, value, state):
+    """Next output of a filter, a[0] = 1; `state` changes (direct form II, transposed)."""
+    order = len(state)
+    out = b[0] * value + state[0]
+    for j in range(order - 1):
+        state[j] = b[j + 1] * value - a[j + 1] * out + state[j + 1]
+    state[order - 1] = b[order] * value - a[order] * out
+    return out
+
+
+@njit(cache=True, parallel=True)
+def filter_kept(b, a, e, spans, kept, scale, out):
+    """Filter each span of e (k, 6, n) by itself, axis by axis; the kept ones (k, 6, m) into out.
+
+    Args:
+        b: numerators (6, order + 1).
+        a: denominators (6, order + 1), a[:, 0] = 1.
+        e: what is filtered.
+        spans: first and last + 1 (s, 2) of each.
+        kept: which of the n are written (n,).
+        scale: factors (6,) of what is written.
+        out: what is written.
+    """
+    for job in prange(e.shape[0] * 6):
+        k, i = job // 6, job % 6
+        m = 0
+        for s in range(len(spans)):
+            state = np.zeros(b.shape[1] - 1)
+            for t in range(spans[s, 0], spans[s, 1]):
+                value = _filtered(b[i], a[i], e[k, i, t], state)
+                if kept[t]:
+                    out[k, i, m] = value * scale[i]
+                    m += 1
+
+
+@njit(cache=True)
+def sum_of_squares(b, a, e, spans, kept):
+    """Sum of squares of the kept filtered values of e (n,), and their count."""
+    total, count = 0.0, 0
+    for s in range(len(spans)):
+        state = np.zeros(len(b) - 1)
+        for t in range(spans[s, 0], spans[s, 1]):
+            value = _filtered(b, a, e[t], state)
+            if kept[t]:
+                total += value * value
+                count += 1
+    return total, count

@@ -1,0 +1,22 @@
+"""How a diagnosis decides."""
+
+from typing import Annotated
+
+from pydantic import Field, PositiveInt
+
+from rovsim.strict import Section
+
+
+class SearchSettings(Section):
+    """How effects are chosen.
+
+    `false_alarm` is the chance of naming an effect where none is missing, per addition. `relevant`:
+    an effect without which no axis' error in 2 s windows is larger by this share is left out,
+    however sure it is: at that size the laboratory's clocks and roundings look like effects.
+    """
+
+    false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.01
+    draws: PositiveInt = 1000  # of noise alone, for the best gain by chance
+    trials: PositiveInt = 3
+    most_effects: PositiveInt = 6
+    relevant: Annotated[float, Field(ge=0)] = 0.02

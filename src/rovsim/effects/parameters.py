@@ -1,0 +1,54 @@
+"""What an effect declares of its numbers."""
+
+from dataclasses import dataclass, field
+from typing import Mapping
+
+import numpy as np
+
+from rovsim import AXES
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of an effect: its name, SI unit, symbol, allowed range and value when absent.
+
+    A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
+    change worth looking for: a fit works in multiples of it. `grain`: changes much smaller than
+    this do nothing, or all at once. Not `fitted`: only when asked for.
+    """
+
+    name: str
+    unit: str
+    symbol: str
+    low: float = -np.inf
+    high: float = np.inf
+    default: float = 0.0
+    scale: float = field(kw_only=True)
+    grain: float = field(default=0.0, kw_only=True)
+    fitted: bool = field(default=True, kw_only=True)
+
+
+def per_axis(
+    translation: str, rotation: str, symbol: str, *, scales: tuple[float, float]
+) -> tuple[Parameter, ...]:
+    """Six parameters named surge ... yaw; units and scales of the two kinds of axes."""
+    return tuple(
+        Parameter(
+            axis, (translation, rotation)[i // 3], rf"{symbol}_{{{axis}}}", scale=scales[i // 3]
+        )
+        for i, axis in enumerate(AXES)
+    )
+
+
+@dataclass(frozen=True)
+class Signature:
+    """How the catalogue page shows an effect: hidden with these values, in the error of one axis.
+
+    The mean error, or its `size` (RMS), is drawn over a condition of `rovsim.where`, or over a
+    measured acceleration ("surge acceleration").
+    """
+
+    values: Mapping[str, float]
+    axis: str
+    condition: str
+    size: bool = field(default=False, kw_only=True)

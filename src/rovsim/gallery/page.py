@@ -1,0 +1,149 @@
+"""The text of the page, from nothing but the declarations of the effects."""
+
+import inspect
+from itertools import groupby
+from typing import Iterable, Mapping
+
+import numpy as np
+
+from rovsim.effects.base import (
+    Autopilot,
+    Clock,
+    Coefficients,
+    Effect,
+    Parameter,
+    Response,
+    Sensing,
+    Shaping,
+    Strength,
+    Wrench,
+)
+from rovsim.effects.parameters import Signature
+
+PAGE, PICTURES = "catalogue.md", "images/effects"
+LONG = 8  # rows of a table that is folded away
+KINDS = {
+    "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wrench),
+    "From a logged command to a thruster's force": (Clock, Shaping, Strength, Response),
+    "What the motion capture reports": (Sensing,),
+}
+INTRODUCTION = """\
+# The catalogue of effects
+
+What a simulator of an underwater vehicle may lack, one entry each: what it is, what makes it happen
+in a laboratory, what it looks like, and what to record to be sure of it.
+
+**How to read a picture.** The effect was hidden in two minutes of a small synthetic tank, in calm
+water and with better cameras than usual, with the values under the picture: often larger than in a
+laboratory, to be seen. Black is what the nominal model then misses: the acceleration error at the
+measured state, measured minus model, in means over half a second (grey dots; black dots are their
+mean over a bin, with two standard errors, or their root mean square). Orange is what the true
+effect adds to the model. Left: over the condition that shows it best. Right: over time.
+
+Several pictures are alike. One run shows that something is missing; what it is, and not something
+that imitates it, often takes a manoeuvre of its own. Each entry names that one.
+
+This page is written by `make catalogue` from the declarations in `src/rovsim/effects/`: edit those.
+"""
+
+
+def page(effects: Mapping[str, type[Effect]]) -> str:
+    """Markdown of all these effects, by where they act; as a set, whatever their order."""
+    chapters = chaptered(effects)
+    parts = [INTRODUCTION, *(_contents(title, found) for title, found in chapters.items())]
+    for title, found in chapters.items():
+        parts += [f"## {title}\n", *(entry(cls) for cls in found)]
+    return "\n".join(parts).rstrip() + "\n"
+
+
+def chaptered(effects: Mapping[str, type[Effect]]) -> dict[str, list[type[Effect]]]:
+    """The effects by chapter; what sits in an autopilot is on the way of a command."""
+    command = list(KINDS)[1]
+    chapters: dict[str, list[type[Effect]]] = {title: [] for title in KINDS}
+    for _, cls in sorted(effects.items()):
+        title = next(t for t, kinds in KINDS.items() if issubclass(cls, kinds))
+        on_the_way = issubclass(cls, Autopilot) or cls.__module__.endswith(".thrusters")
+        chapters[command if on_the_way else title].append(cls)
+    return chapters
+
+
+def _contents(title: str, found: Iterable[type[Effect]]) -> str:
+    links = " · ".join(f"[{cls.id}](#{cls.id})" for cls in found)
+    return f"**{title}:** {links}\n"
+
+
+def entry(cls: type[Effect]) -> str:
+    """One effect: sentence, equation, picture, cause, what settles it, parameters."""
+    first, _, rest = (inspect.getdoc(cls) or "").partition("\n\n")
+    more = f"\n{_flat(rest)}\n" if rest else ""
+    return f"""\
+### {cls.id}
+
+{_flat(first)}
+{more}
+```math
+{cls.equation}
+```
+
+{_picture(cls.id, cls.signature, {p.name: p.unit for p in cls.parameters})}
+**Cause.** {cls.cause}
+
+**What settles it.** {cls.revealed_by}
+
+**Neglects** {cls.neglects}. **Source:** {cls.source}.
+
+{_table(cls.parameters)}
+"""
+
+
+def _picture(name: str, signature: Signature | None, units: Mapping[str, str]) -> str:
+    if signature is None:
+        return ""
+    what = "size of the" if signature.size else "mean"
+    over = f"{what} {signature.axis} error over {signature.condition}"
+    values = ", ".join(f"{k} = {v:g} {unit(units[k])}".strip() for k, v in signature.values.items())
+    return (
+        f"![{name}: {over}]({PICTURES}/{name}.png)\n\n<sub>Hidden: {values}. Left: {over}.</sub>\n"
+    )
+
+
+def _table(parameters: Iterable[Parameter]) -> str:
+    """Parameters that differ only in name share a row."""
+    rows = ["| parameter | symbol | unit | range | default | scale |", "|---|---|---|---|---|---|"]
+    alike = groupby(parameters, key=lambda p: (p.unit, p.low, p.high, _default(p), p.scale))
+    for (si, low, high, default, scale), group in alike:
+        same = list(group)
+        names = ", ".join(f"`{p.name}`" for p in same)
+        columns = [names, _symbols(same), unit(si) or "–", _range(low, high), default, f"{scale:g}"]
+        rows.append(f"| {' | '.join(columns)} |")
+    text = "\n".join(rows)
+    if len(rows) <= LONG:
+        return text
+    return f"<details><summary>Parameters</summary>\n\n{text}\n\n</details>"
+
+
+def _symbols(same: list[Parameter]) -> str:
+    """Symbols of a row: all of up to three, else the first and the last."""
+    shown = [f"$`{p.symbol}`$" for p in same]
+    return ", ".join(shown) if len(shown) <= 3 else f"{shown[0]} … {shown[-1]}"
+
+
+def _default(p: Parameter) -> str:
+    return "the site's" if np.isnan(p.default) else f"{p.default:g}"
+
+
+def _range(low: float, high: float) -> str:
+    if np.isinf(low) and np.isinf(high):
+        return "any"
+    if np.isinf(high):
+        return f"≥ {low:g}"
+    return f"≤ {high:g}" if np.isinf(low) else f"{low:.3g} … {high:.3g}"
+
+
+def unit(si: str) -> str:
+    """A unit with its powers raised; 1 is no unit."""
+    return "" if si == "1" else si.replace("2", "²").replace("3", "³")
+
+
+def _flat(text: str) -> str:
+    return " ".join(text.split())

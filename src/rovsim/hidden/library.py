@@ -1,0 +1,76 @@
+"""The library of the sparse regressions: what one step of each effect would change.
+
+The target is the acceleration residual a_res = a_real - a_sim of the nominal model at the measured
+states. A column is the change of a_sim, computed by the engine itself, when one parameter of the
+catalogue moves by its scale from its default; where zero is a flat place (a lag, a deadband, a
+slack tether), when the effect stands at one of its starts. So every effect is in the library,
+under its own name, through the filter of the measurement.
+"""
+
+from dataclasses import dataclass
+from typing import Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.effects.base import Effect
+from rovsim.errors import BadInput
+from rovsim.model import Model
+from rovsim.recording.recording import Site
+from rovsim.replay import ReplaySettings
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.training import samples
+
+EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: an effect, and what a coefficient of 1 adds to its parameters."""
+
+    effect: str
+    step: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """`target` (n, 6) and `matrix` (n, 6, c), both divided by the RMS acceleration of each axis."""
+
+    columns: tuple[Column, ...]
+    target: Array
+    matrix: Array
+
+
+def problem(
+    model: Model, motions: Sequence[Motion], effects: Mapping[str, type[Effect]]
+) -> Problem:
+    """Target and library of some runs; what the log or the tank cannot feed has no column."""
+    plain = np.concatenate([_residual(model, m) for m in motions])
+    usual = np.concatenate([m.nu_dot[m.usable] for m in motions])
+    size = np.sqrt(np.nanmean(np.square(usual), axis=0))
+    columns, changes = [], []
+    for column, effect in steps(motions[0].site, effects):
+        try:
+            moved = np.concatenate([_residual(model + effect, m) for m in motions])
+        except BadInput:
+            continue
+        columns.append(column)
+        changes.append((plain - moved) / size)
+    return Problem(tuple(columns), plain / size, np.stack(changes, axis=-1))
+
+
+def _residual(model: Model, motion: Motion) -> Array:
+    return samples(model, motion, SignalSettings(), ReplaySettings()).a_res[::EVERY]
+
+
+def steps(site: Site, effects: Mapping[str, type[Effect]]) -> Iterator[tuple[Column, Effect]]:
+    """Every column with the effect that makes it."""
+    for name, cls in effects.items():
+        for start in cls.starts_at(site):
+            if start:
+                yield Column(name, start), cls(**start)
+                continue
+            for p in cls.parameters:
+                if p.fitted:
+                    yield Column(name, {p.name: p.scale}), cls(**{p.name: p.default + p.scale})

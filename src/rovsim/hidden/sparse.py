@@ -1,0 +1,146 @@
+"""The baseline: sparse regression of the acceleration residual, with the optimizers of PySINDy.
+
+STLSQ: sequentially thresholded least squares (Brunton, Proctor & Kutz 2016). FROLS: forward
+regression, orthogonal least squares (Billings 2013). Each axis is one regression; an effect is
+named if a column of it is active on any axis. Neither can say that something is left unexplained.
+"""
+
+import warnings
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Callable, Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.linalg import LinAlgWarning
+from sklearn.exceptions import ConvergenceWarning
+
+from rovsim.campaign import load_campaign
+from rovsim.effects import catalogue, effect
+from rovsim.hidden.library import Problem, problem
+from rovsim.model import nominal
+from rovsim.recording import read_run
+from rovsim.signals.chain import SignalSettings, clean
+from rovsim.vehicle import campaign_vehicle
+
+Regression = Callable[[Array, Array], Array]
+
+# The best of `rovsim.hidden.tuning`, on development seeds (docs/benchmark_hidden.md).
+THRESHOLD, RIDGE = 0.17, 0.02
+LEAST_GAIN, MOST_TERMS = 0.05, 8
+
+
+def stlsq(campaign: Path, out: Path) -> dict[str, Any]:
+    """What sequentially thresholded least squares selects."""
+    return answered(of_campaign(campaign), thresholded(THRESHOLD, RIDGE))
+
+
+def frols(campaign: Path, out: Path) -> dict[str, Any]:
+    """What forward regression selects."""
+    return answered(of_campaign(campaign), forward(LEAST_GAIN, MOST_TERMS))
+
+
+def thresholded(threshold: float, ridge: float) -> Regression:
+    """STLSQ: a term stays if it makes `threshold` of the usual acceleration."""
+
+    def coefficients(X: Array, y: Array) -> Array:
+        from pysindy import STLSQ
+
+        with _quietly():
+            return STLSQ(threshold=threshold, alpha=ridge, max_iter=30).fit(X, y[:, None]).coef_[0]
+
+    return coefficients
+
+
+def forward(least_gain: float, most: int) -> Regression:
+    """FROLS: terms are added while the next one removes `least_gain` of the variance.
+
+    That is Billings' rule, applied to the optimizer's path. PySINDy's own choice of the length
+    (kappa) multiplies by the library's condition number, which is infinite for equivalent terms.
+    """
+
+    def coefficients(X: Array, y: Array) -> Array:
+        from pysindy import FROLS
+
+        most_here = min(most, X.shape[1] - 1)
+        if not y.any():  # PySINDy would divide by its variance
+            return np.zeros(X.shape[1])
+        with _quietly():
+            found = FROLS(max_iter=most_here, alpha=1e-9, unbias=False).fit(X, y[:, None])
+        length = int(np.argmax(np.append(found.ERR_global[:most_here, 0] < least_gain, True)))
+        return found.history_[length][0]
+
+    return coefficients
+
+
+@contextmanager
+def _quietly() -> Iterator[None]:
+    """Without PySINDy's warnings that nothing is left, or that columns resemble one another."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Sparsity parameter is too big")
+        warnings.filterwarnings("ignore", category=ConvergenceWarning)
+        warnings.filterwarnings("ignore", category=LinAlgWarning)
+        yield
+
+
+def of_campaign(campaign: Path) -> Problem:
+    """Target and library of the train runs."""
+    found = load_campaign(campaign)
+    runs = [run for run in found.runs if run.split == "train"]
+    motions = [clean(read_run(found, run.id)[0], SignalSettings()) for run in runs]
+    return problem(nominal(campaign_vehicle(found)), motions, catalogue())
+
+
+def answered(given: Problem, regression: Regression) -> dict[str, Any]:
+    """Active columns as a diagnosis: effects in the order of the error they remove."""
+    coefficients = by_axis(given, regression)
+    gains: dict[str, float] = {}
+    for k, column in enumerate(given.columns):
+        part = given.matrix[:, :, k] * coefficients[:, k]
+        left = given.target - np.einsum("nac,ac->na", given.matrix, coefficients)
+        if coefficients[:, k].any():
+            gain = float(np.mean((left + part) ** 2) - np.mean(left**2))
+            gains[column.effect] = gains.get(column.effect, 0.0) + gain
+    order = sorted(gains, key=lambda name: -gains[name])
+    selected = [{"effect": n, "parameters": _parameters(given, coefficients, n)} for n in order]
+    verdict = "missing_effects" if selected else "adequate"
+    return {"verdict": verdict, "selected": selected, "ranking": [], "indistinguishable": []}
+
+
+def by_axis(given: Problem, regression: Regression) -> Array:
+    """Coefficients (6, c), zero where a column does nothing on an axis."""
+    found = np.zeros(given.matrix.shape[1:])
+    n = np.sqrt(len(given.target))
+    for axis in range(6):
+        X, y = given.matrix[:, axis] / n, given.target[:, axis] / n
+        size = np.linalg.norm(X, axis=0)
+        kept = distinct(X, size)
+        if len(kept):
+            found[axis, kept] = regression(X[:, kept] / size[kept], y) / size[kept]
+    return found
+
+
+def distinct(X: Array, size: Array) -> Array:
+    """Columns of X (n, c), of these lengths (c,), that act and are no multiple of an earlier one.
+
+    PySINDy stops at dependent columns; on one axis two starts of an effect may do the same.
+    """
+    acting = np.flatnonzero(size > 1e-6 * max(size.max(), 1e-12))
+    unit = X[:, acting] / size[acting]
+    alike = np.triu(np.abs(unit.T @ unit), k=1)
+    return acting[alike.max(axis=0, initial=0.0) < 1.0 - 1e-9]
+
+
+def _parameters(given: Problem, coefficients: Array, name: str) -> dict[str, Any]:
+    """Each parameter's value, linear from its default: of the axis where its column acts most."""
+    declared = {p.name: p for p in effect(name).parameters}
+    values: dict[str, Any] = {}
+    for k, column in enumerate(given.columns):
+        own = coefficients[:, k]
+        if column.effect == name and own.any():
+            best = own[np.argmax(np.abs(own) * np.linalg.norm(given.matrix[:, :, k], axis=0))]
+            for parameter, step in column.step.items():
+                default = np.nan_to_num(declared[parameter].default)
+                value = values.get(parameter, {"value": default})["value"] + best * step
+                values[parameter] = {"value": float(value), "unit": declared[parameter].unit}
+    return values

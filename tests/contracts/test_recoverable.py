@@ -1,0 +1,38 @@
+"""Every effect of the catalogue is found again, with its values, in a tank that hides it."""
+
+import numpy as np
+import pytest
+
+from rovsim.config import compose
+from rovsim.diagnosis.candidates import candidates
+from rovsim.diagnosis.diagnose import FIRST_NOISE
+from rovsim.diagnosis.evidence import Observatory
+from rovsim.diagnosis.fit import fit
+from rovsim.diagnosis.hypothesis import Hypothesis
+from rovsim.effects import built_in
+from rovsim.hidden.flight import fly
+from rovsim.hidden.suites import hiding
+from rovsim.loading import measured
+from rovsim.model import nominal
+
+MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
+
+
+@pytest.mark.parametrize("name", built_in())
+def test_a_tank_that_hides_it_gives_it_back(name, tmp_path):
+    flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
+    settings = compose([f"campaign='{tmp_path / 'raw'}'"])
+    data = measured(settings)
+    base, runs = nominal(data.vehicle), data.runs.watches("train", settings.replay.step)
+    observatory = Observatory.built(runs, base, FIRST_NOISE, "held")
+    noise, _ = observatory.noise([e[0] for e in observatory.innovations([base])], FIRST_NOISE)
+    starts = [c.term() for c in candidates(runs) if c.effect.id == name]
+    fits = [fit(Hypothesis(base, (term,)), observatory, noise) for term in starts]
+    best = max(fits, key=lambda one: one.likelihood)
+    (term,) = best.hypothesis.terms
+    sure = dict(zip(term.free, best.std * [p.scale for p in term.parameters], strict=True))
+    for parameter, value in flown.hidden[0].build().given().items():
+        default = next(p.default for p in term.effect.parameters if p.name == parameter)
+        change = value - (default if np.isfinite(default) else 0.0)
+        assert abs(term.effect[parameter] - value) < max(0.1 * abs(change), 4.0 * sure[parameter])
+        assert sure[parameter] < 0.5 * abs(change)

@@ -1,0 +1,63 @@
+"""The baseline of the hidden-effect benchmark finds a linear effect in data without noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rovsim.effects import catalogue, effect
+from rovsim.errors import BadInput
+from rovsim.hidden import methods
+from rovsim.hidden.library import problem, steps
+from rovsim.hidden.sparse import answered, forward, thresholded
+from rovsim.replay import ReplaySettings
+from rovsim.signals.chain import SignalSettings
+from rovsim.training import accelerations, at_samples
+from worlds import model, motion, sticks, tank
+
+# enough to choose from, and nothing to compile
+OFFERED = {n: effect(n) for n in ("added_mass", "linear_damping", "net_buoyancy", "thruster_gain")}
+BOTH = pytest.mark.parametrize(
+    "regression", [thresholded(0.1, 1e-3), forward(0.05, 8)], ids=["stlsq", "frols"]
+)
+DRAG = {"surge": 20.0}
+
+
+def exact(world):
+    """A motion of a vehicle of this world, measured without noise: smooth at random, not flown."""
+    still = motion(sticks(2, rows=40), seconds=8.0)
+    phase, k = np.random.default_rng(3).uniform(0, 6, (6, 4)), np.arange(1, 5)
+    nu = 0.1 * np.sin(still.time[:, None, None] * k + phase).sum(axis=-1)
+    moving = replace(still, nu=nu, state_nu=nu)
+    true = accelerations(world, moving, at_samples(world, moving, ReplaySettings()))
+    return replace(moving, nu_dot=SignalSettings().filter.smoothed(true, 0.01))
+
+
+@BOTH
+def test_a_linear_effect_is_found_with_its_value(regression):
+    run = exact(model(effect("linear_damping")(**DRAG)))
+    answer = answered(problem(model(), [run], OFFERED), regression)
+    assert answer["verdict"] == "missing_effects"
+    assert [s["effect"] for s in answer["selected"]] == ["linear_damping"]
+    assert answer["selected"][0]["parameters"]["surge"]["value"] == pytest.approx(20.0, rel=0.02)
+
+
+@BOTH
+def test_nothing_is_found_where_nothing_is_hidden(regression):
+    answer = answered(problem(model(), [exact(model())], OFFERED), regression)
+    assert (answer["verdict"], answer["selected"]) == ("adequate", [])
+
+
+def test_every_effect_has_its_columns():
+    known = catalogue()
+    found = [(column, made) for column, made in steps(tank(), known)]
+    assert {column.effect for column, _ in found} == set(known)
+    for column, made in found:
+        assert type(made) is known[column.effect]
+        assert made.given() or column.step
+
+
+def test_without_the_package_the_message_says_what_to_do(monkeypatch):
+    monkeypatch.setattr(methods, "find_spec", lambda name: None)
+    with pytest.raises(BadInput, match="make setup"):
+        methods.chosen(["frols"])
