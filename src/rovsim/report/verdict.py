@@ -12,7 +12,7 @@ VERDICTS = {
     "missing_effects": "The model lacks physics that the catalogue knows.",
     "adequate": "Nothing is missing: what is left is noise.",
     "unexplained": "Something is missing that the catalogue does not know.",
-    "insufficient_data": "The recording does not say: not enough was moved.",
+    "insufficient_data": "The recording does not say: too little was recorded, or moved.",
 }
 INTERVAL = 1.96  # standard deviations to either side hold 95 %
 MANY = 1e6  # odds that need no number
@@ -45,7 +45,7 @@ def verdict(found: Mapping[str, Any]) -> Verdict:
         *apart_sentences(found),
         *unexplained_sentences(found),
         *still_sentences(found.get("not_excited", [])),
-        f"Record next: {found['next_experiment']}" if found["next_experiment"] else "",
+        f"Next: {found['next_experiment']}" if found["next_experiment"] else "",
     ]
     return Verdict(
         found["verdict"], VERDICTS[found["verdict"]], tuple(map(_missing, found["selected"])),
