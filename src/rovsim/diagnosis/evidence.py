@@ -34,6 +34,10 @@ class Observatory:
         found = tuple(tuning(noise, damping, w) for w in watches)
         return Observatory(tuple(watches), damping, found, between)
 
+    def suiting(self, model: Model, noise: Noise) -> "Observatory":
+        """The same runs, with filters that suit another model and noise."""
+        return Observatory.built(self.watches, model, noise, self.between)
+
     def innovations(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
         able = [m.possible for m in models]

@@ -110,8 +110,11 @@ def contested(desk: Desk, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
     return current, rivals
 
 
-def search(desk: Desk, base: Fit, seed: int) -> tuple[Fit, list[Rival]]:
-    """From the base to the model to which nothing can be added, swapped or taken away."""
+def search(desk: Desk, base: Fit, seed: int) -> tuple[Desk, Fit, list[Rival]]:
+    """From the base to the model to which nothing can be added, swapped or taken away.
+
+    Also the desk as it is then: its noise and filters follow what is found.
+    """
     current, settings = base, desk.settings
     while len(current.hypothesis.terms) < settings.most_effects:
         by_chance = chance(desk, current, settings.draws, seed)
@@ -119,5 +122,6 @@ def search(desk: Desk, base: Fit, seed: int) -> tuple[Fit, list[Rival]]:
         found = forward(desk, current, threshold)
         if found is None:
             break
-        current, _ = contested(desk, found, 1)  # the likeliest other name each
-    return contested(desk, current, settings.trials)
+        desk = desk.renewed(found)
+        current, _ = contested(desk, desk.fit(found.hypothesis), 1)  # the likeliest other name
+    return desk, *contested(desk, current, settings.trials)
