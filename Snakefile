@@ -8,7 +8,7 @@ from rovsim.study import Study
 study = Study(config)
 try:
     config["effects_file"] = study.effect_files
-    study.trained
+    study.on_effects
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)
@@ -19,6 +19,7 @@ R = study.folder
 wildcard_constraints:
     run="[^/]+",
     model="[^/]+",
+    base="(effects\\+)?",
 
 
 localrules:
@@ -29,6 +30,7 @@ rule all:
     default_target: True
     input:
         f"{R}/report.html",
+        f"{R}/diagnosis.json",
         f"{R}/comparison.json",
         f"{R}/ladder.json",
         f"{R}/tables/ladder.tex",
@@ -37,6 +39,7 @@ rule all:
 
 include: "workflow/rules/recordings.smk"
 include: "workflow/rules/signals.smk"
+include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/replay.smk"
 include: "workflow/rules/residuals.smk"
 include: "workflow/rules/results.smk"

@@ -35,6 +35,7 @@ def study(
         "growth": _growth(models, rng),
         "timing": _timing(models, rng),
         "ladder": ladder,
+        "diagnosis": diagnosis(ladder),
         "quality": {run: _quality(run, split, rng) for run, split in runs.items()},
         "where": where(models, duration, seed),
         **_forces(motion, rng),
@@ -183,6 +184,40 @@ def _ladder(models: tuple[str, ...], rng: Any) -> dict[str, Any]:
         level = 0.1 if name == "noise_floor" else _level(name)
         steps.append({**step, "velocity_mae": m["velocity_mae"], "windows_2s": 0.31 * level})
     return {"schema": "rovsim.ladder/1", "steps": steps}
+
+
+def diagnosis(ladder: dict[str, Any]) -> dict[str, Any]:
+    """`diagnosis.json` that selects two effects, one of which shows only beside the other."""
+    drag = {"surge": {"value": 79.4909, "std": 0.755757, "unit": "N s2/m2"}}
+    lag = {"time_constant": {"value": 0.15, "std": 0.004, "unit": "s"}}
+    alone = {"quadratic_damping": 0.38, "linear_damping": 0.36, "lift": 0.18, "clock_drift": 0.0}
+    return {
+        "schema": "rovsim.diagnosis/1",
+        "verdict": "unexplained",
+        "selected": [
+            {"effect": "thruster_lag", "parameters": lag, "error_reduction": 0.42,
+             "probability": 0.97},
+            {"effect": "quadratic_damping", "parameters": drag, "error_reduction": 0.36,
+             "probability": 1.0},
+        ],
+        "ranking": [
+            {"effect": name, "error_reduction": share, "probability": 0.1, "parameters": {}}
+            for name, share in alone.items()
+        ],
+        "indistinguishable": [["input_delay", "thruster_lag"]],
+        "where": [{"axis": "surge", "condition": "surge speed", "share_of_error": 0.9}],
+        "unexplained": {"fraction": 0.2, "significant": True, "hint": "Sway: a push at 24 s."},
+        "next_experiment": "Drive steps.",
+        "error": {"nominal": 0.19, "with_effects": 0.044, "noise_floor": 0.0435},
+        "not_excited": ["roll", "pitch"],
+        "rivals": [
+            {"effect": "input_delay", "instead_of": "thruster_lag", "deficit": 2.0},
+            {"effect": "linear_damping", "instead_of": "quadratic_damping", "deficit": 9.0},
+        ],
+        "noise": {},
+        "base": {"schema": "rovsim.model/1", "vehicle": "bluerov2_heavy", "effects": []},
+        "ladder": ladder,
+    }  # fmt: skip
 
 
 def _quality(run: str, split: str, rng: Any) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from typing import Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt
 
+from rovsim.diagnosing import DiagnosisSettings
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.errors import BadInput, nearest
 from rovsim.replay import ReplaySettings
@@ -17,10 +18,11 @@ CONF = Path(__file__).parents[2] / "conf"
 
 
 class StudySettings(Section):
-    """Which residuals the workflow trains, on which runs."""
+    """Which residuals the workflow trains, on which runs; which also on top of the effects."""
 
     residuals: tuple[str, ...] = ("knn", "gp", "svgp")
     controls: tuple[Literal["3dof", "6dof"], ...] = ("3dof", "6dof")
+    on_effects: tuple[str, ...] = ("knn_6dof", "gp_6dof")
 
 
 class TimingSettings(Section):
@@ -81,6 +83,13 @@ class Settings(Section):
     def learner(self) -> LearnerSettings:
         """The chosen residual's own settings."""
         return learner_settings(self.residual, "conf/residual")
+
+    @property
+    def diagnosing(self) -> DiagnosisSettings:
+        """What a diagnosis depends on."""
+        return DiagnosisSettings(
+            search=self.search, signals=self.signals, replay=self.replay, seed=self.seed
+        )
 
 
 def compose(overrides: Sequence[str]) -> Settings:

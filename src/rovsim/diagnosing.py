@@ -1,65 +1,106 @@
-"""A campaign and a model in, the content of `diagnosis.json` out."""
+"""A model and a campaign's runs in, everything that `rovsim diagnose` reports out."""
 
-from typing import Any, Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable, Mapping, Sequence
 
-from rovsim.config import Settings
+from pydantic import Field
+
 from rovsim.diagnosis.content import content
 from rovsim.diagnosis.diagnose import Diagnosis, diagnose
 from rovsim.diagnosis.floor import noise_floor
+from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.watch import Watch, watch
-from rovsim.loading import Measured
+from rovsim.ladder import floor_step, ladder, step
 from rovsim.model import Model
-from rovsim.replay import replay
-from rovsim.scores import step
+from rovsim.replay import ReplaySettings, replay
+from rovsim.signals.chain import SignalSettings, Stage, read_stage
+from rovsim.signals.motion import Motion
+from rovsim.strict import Section
+from rovsim.where import content as where_content
 from rovsim.where import judged
 
 
+class DiagnosisSettings(Section):
+    """All that a diagnosis depends on but the runs and the model."""
+
+    search: SearchSettings = SearchSettings()
+    signals: SignalSettings = SignalSettings()
+    replay: ReplaySettings = ReplaySettings()
+    seed: int = Field(0, ge=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Usable runs by id: as motions, and their poses before the filter."""
+
+    motions: Mapping[str, Motion]
+    stages: Mapping[str, Stage]
+
+    @staticmethod
+    def read(motions: Sequence[Path], stages: Sequence[Path]) -> "Runs":
+        """Runs from what the signal chain wrote, in the same order; unusable ones are left out."""
+        pairs = zip(map(Motion.read, motions), map(read_stage, stages), strict=True)
+        usable = [(motion, stage) for motion, stage in pairs if motion.usable.any()]
+        return Runs(
+            {motion.run.id: motion for motion, _ in usable},
+            {motion.run.id: stage for motion, stage in usable},
+        )
+
+    def watches(self, split: str, step: float) -> list[Watch]:
+        """The runs of one split as the observer sees them."""
+        chosen = {run: m for run, m in self.motions.items() if m.run.split == split}
+        return [watch(self.stages[run], motion, step) for run, motion in chosen.items()]
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosed:
+    """`diagnosis.json`, and `where.json` of the model that was diagnosed."""
+
+    content: dict[str, Any]
+    where: dict[str, Any]
+
+
 def diagnosed(
-    data: Measured, base: Model, settings: Settings, stage: Callable[[str], None]
-) -> dict[str, Any]:
+    runs: Runs, base: Model, settings: DiagnosisSettings, stage: Callable[[str], None]
+) -> Diagnosed:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
-    train, test = (watches(data, settings, split) for split in ("train", "test"))
-    found = diagnose(base, train, settings.search, settings.replay.commands, settings.seed, stage)
+    train, test = (runs.watches(split, settings.replay.step) for split in ("train", "test"))
+    between, seed = settings.replay.commands, settings.seed
+    found = diagnose(base, train, settings.search, between, seed, stage)
     stage("scoring")
-    motions = [m for m in data.motions.values() if m.run.split == "train"]
-    where = (
-        judged(base, motions, settings.signals, settings.replay).where.findings if motions else []
-    )
-    return content(
-        found, [one.entry() for one in where], _errors(found, base, test, settings), base.content()
-    )
+    motions = [w.motion for w in train]
+    fails = [judged(base, motions, settings.signals, settings.replay)] if motions else []
+    entries = [finding.entry() for one in fails for finding in one.where.findings]
+    steps = _steps(found, test, settings)
+    said = content(found, entries, _errors(steps), base.content())
+    return Diagnosed(said | {"ladder": ladder(steps)}, where_content(fails))
 
 
-def watches(data: Measured, settings: Settings, split: str) -> list[Watch]:
-    """The runs of one split as the observer sees them."""
-    return [
-        watch(data.stages[run], motion, settings.replay.step)
-        for run, motion in data.motions.items()
-        if motion.run.split == split
-    ]
-
-
-def _errors(
-    found: Diagnosis, base: Model, test: list[Watch], settings: Settings
-) -> dict[str, float | None]:
-    """Errors of contract section 3 on the test runs; None where there is nothing to score."""
-    model = found.models()[-1]
+def _steps(
+    found: Diagnosis, test: list[Watch], settings: DiagnosisSettings
+) -> list[dict[str, Any]]:
+    """The base, the effects one after the other, and the noise floor, on the test runs."""
     motions = [w.motion for w in test]
     horizons = settings.replay.model_copy(update={"horizons": (2.0,)})
+    steps = [
+        step(one.name, motions, [replay(one, m, settings.signals, horizons) for m in motions])
+        for one in found.models()
+    ]
+    return [*steps, floor_step(_floor(found, test, settings))]
 
-    def error(one: Model) -> float | None:
-        replays = [replay(one, m, settings.signals, horizons) for m in motions]
-        return step(one.name, motions, replays)["windows_2s"] if motions else None
 
-    floor = None
-    if found.fit is not None and motions:
-        floor = noise_floor(
-            model, test, found.fit.noise, settings.signals, settings.replay.commands, settings.seed
-        )
-    nominal = error(base)
-    return {
-        "nominal": nominal,
-        "with_effects": error(model) if found.selected else nominal,
-        "noise_floor": floor,
-    }
+def _floor(found: Diagnosis, test: list[Watch], settings: DiagnosisSettings) -> float | None:
+    if found.fit is None or not test:
+        return None
+    return noise_floor(
+        found.models()[-1], test, found.fit.noise, settings.signals, settings.replay.commands,
+        settings.seed,
+    )  # fmt: skip
+
+
+def _errors(steps: list[dict[str, Any]]) -> dict[str, float | None]:
+    """Errors of contract section 3; None where there is nothing to score."""
+    *models, floor = (one["windows_2s"] for one in steps)
+    return {"nominal": models[0], "with_effects": models[-1], "noise_floor": floor}

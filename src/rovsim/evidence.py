@@ -27,6 +27,7 @@ class Evidence:
     timing: Mapping[str, Any] = field(default_factory=dict)
     quality: Mapping[str, Any] = field(default_factory=dict)
     where: Mapping[str, Any] = field(default_factory=dict)
+    diagnosis: Mapping[str, Any] = field(default_factory=dict)
     budgets: Mapping[str, Budget] = field(default_factory=dict)
 
     def predicted(self, run: str, horizon: str, name: str, models: Sequence[str]) -> dict:
@@ -40,6 +41,7 @@ class Evidence:
 
 # Figures drawn once, from the JSON contents of those names; and those drawn for every run.
 ONCE = {
+    "ranking": "diagnosis",
     "error_by_axis": "comparison",
     "error_growth": "growth",
     "ladder": "ladder",

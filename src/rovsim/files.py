@@ -1,5 +1,6 @@
 """Files that appear whole or not at all. No pickle anywhere: JSON, safe YAML and plain arrays."""
 
+import errno
 import io
 import json
 import os
@@ -17,17 +18,36 @@ from rovsim.errors import BadInput
 
 @contextmanager
 def appearing(path: Path) -> Iterator[Path]:
-    """Yield a temporary path beside `path`; on success it becomes `path` in one step."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
-    os.close(handle)
-    temporary = Path(name)
+    """Yield a temporary path beside `path`; on success it becomes `path` in one step.
+
+    Raises:
+        BadInput: no file can be written there.
+    """
+    temporary = _beside(path)
     try:
         yield temporary
         os.chmod(temporary, 0o644)
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _beside(path: Path) -> Path:
+    """A new empty file in the folder of `path`, which is made if need be."""
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, "a folder of that name is in the way")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
+    except OSError as error:
+        raise BadInput(
+            f"cannot be written ({error.strerror})",
+            where=path,
+            expected="a place where a file can be written",
+            remedy="Name another place, or make that one writable.",
+        ) from None
+    os.close(handle)
+    return Path(name)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -1,11 +1,13 @@
 """What most commands begin with: a campaign's motions and quality, and the models to compare."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rovsim.campaign import Campaign, load_campaign
 from rovsim.config import Settings
+from rovsim.diagnosing import Runs
 from rovsim.errors import BadInput
 from rovsim.model import Model, load_model
 from rovsim.quality import quality_of
@@ -24,6 +26,11 @@ class Measured:
     motions: dict[str, Motion]
     quality: dict[str, dict[str, Any]]
     stages: dict[str, Stage]
+
+    @property
+    def runs(self) -> Runs:
+        """The usable runs, as a diagnosis takes them."""
+        return Runs(self.motions, self.stages)
 
 
 def given_campaign(settings: Settings) -> Campaign:
@@ -67,6 +74,24 @@ def measured(settings: Settings, even_unusable: bool = False) -> Measured:
             remedy="Record longer runs in which the vehicle moves.",
         )
     return Measured(campaign, campaign_vehicle(campaign), motions, quality, stages)
+
+
+def results_folder(path: str | Path) -> Path:
+    """`path`, after a look whether results can be written there; the folder need not exist yet.
+
+    Raises:
+        BadInput: it or something on its way is a file, or may not be written to.
+    """
+    whole = Path(path).absolute()
+    there = next(place for place in (whole, *whole.parents) if place.exists())
+    if there.is_dir() and os.access(there, os.W_OK):
+        return Path(path)
+    raise BadInput(
+        "may not be written to" if there.is_dir() else "is not a folder",
+        where=there,
+        expected="a folder that results can be written into",
+        remedy="Give another out=.",
+    )
 
 
 def models(settings: Settings, vehicle: Vehicle) -> list[Model]:

@@ -78,3 +78,9 @@ def flattened(content: Mapping[str, Any], above: str = "") -> dict[str, Any]:
         if isinstance(value, Mapping):
             found |= flattened(value, f"{above}{key}.")
     return found
+
+
+def leaves(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Nested values by dotted name, without the sections themselves."""
+    found = flattened(content)
+    return {name: v for name, v in found.items() if not isinstance(v, Mapping) or not v}

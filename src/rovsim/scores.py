@@ -12,7 +12,7 @@ from rovsim.recording.quality import EXCITED
 from rovsim.replay import OPEN_LOOP, Prediction, Replay, windows
 from rovsim.signals.motion import Motion
 
-COMPARISON, LADDER = "rovsim.comparison/1", "rovsim.ladder/1"
+COMPARISON = "rovsim.comparison/1"
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,20 +101,6 @@ def comparison(scores: Iterable[dict[str, Any]]) -> dict[str, Any]:
         runs = models.setdefault(one["model"], {"runs": {}})["runs"]
         runs[one["run"]] = {k: one[k] for k in ("split", "control", "open_loop", "windows")}
     return {"schema": COMPARISON, "models": models}
-
-
-def step(name: str, motions: Sequence[Motion], replays: Sequence[Replay], split: str = "test"):
-    """One step of the ladder: a model's error in 2 s windows, all runs of the split pooled."""
-    pairs = [(m, r) for m, r in zip(motions, replays, strict=True) if m.run.split == split]
-    found = pooled([errors(m, r.horizons["2"]) for m, r in pairs])
-    numbers = metrics(found)
-    return {
-        "model": name,
-        "split": split,
-        "acceleration_rmse": numbers["acceleration_rmse"],
-        "velocity_mae": numbers["velocity_mae"],
-        "windows_2s": normalised([m for m, _ in pairs], rms(found.nu)),
-    }
 
 
 def normalised(motions: Sequence[Motion], velocity_rmse: Array) -> float | None:

@@ -10,12 +10,14 @@ from rovsim.config import Settings, compose
 from rovsim.effects import use_effect_files
 from rovsim.errors import BadInput
 from rovsim.evidence import PER_RUN
+from rovsim.ladder import EFFECTS
 from rovsim.provenance import digest, own_digest, provenance
 from rovsim.residual.learner import learner
 from rovsim.tank.campaign import SEALED, describe
 
 BASELINES = ("zero_acceleration", "nominal")
-DRAWN = ("nominal", "knn_6dof", "gp_6dof")  # few enough to be told apart in a time series
+PHYSICS = ("refitted", EFFECTS)
+DRAWN = ("nominal", EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
 
 
 @dataclass(frozen=True)
@@ -117,15 +119,28 @@ class Study:
             learner(kind, "study.residuals")
         return [f"{kind}_{control}" for kind in kinds for control in controls]
 
+    @cached_property
+    def on_effects(self) -> list[str]:
+        """Names of the residuals trained on top of the effects that were found."""
+        wanted = self.settings.study.on_effects
+        for name in wanted:
+            learner(name.rpartition("_")[0], "study.on_effects")
+        return [f"{EFFECTS}+{name}" for name in self.trained if name in wanted]
+
+    @property
+    def files(self) -> list[str]:
+        """Models with a file of their own: all but the baselines."""
+        return [*PHYSICS, *self.trained, *self.on_effects]
+
     @property
     def models(self) -> list[str]:
-        """Every model of the study, the baselines first."""
-        return [*BASELINES, *self.trained]
+        """Every model of the study, in the order of the ladder."""
+        return [*BASELINES, *self.files]
 
     @property
     def searched(self) -> list[str]:
         """Models searched for conditions in which they fail; the last is reported first."""
-        return [*self.trained, "nominal"]
+        return [*self.trained, EFFECTS, "nominal"]
 
     @property
     def drawn(self) -> list[str]:

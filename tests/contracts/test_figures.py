@@ -53,7 +53,9 @@ def test_it_takes_any_models(name, models, tmp_path):
 @EVERY
 def test_nothing_measured_is_said_not_crashed(name, tmp_path):
     content = study()
-    for key in ("comparison", "growth", "ladder", "timing", "quality", "where", "parts"):
+    for key in (
+        "comparison", "growth", "ladder", "timing", "quality", "where", "diagnosis", "parts"
+    ):  # fmt: skip
         content[key] = {}
     for key in ("nu", "nu_dot", "eta", "missing"):
         content[key] = np.full_like(content[key], np.nan)
@@ -67,6 +69,25 @@ def test_the_bars_of_the_ladder_are_its_numbers():
     bars = [p for p in drawn("ladder", content).axes[0].patches if isinstance(p, Rectangle)]
     assert [bar.get_width() for bar in bars] == pytest.approx(list(steps.values()))
     assert all(bar.get_x() == 0 for bar in bars)
+
+
+def test_a_baseline_far_above_all_models_is_cut_so_that_they_can_be_told_apart():
+    content = study()
+    steps = {s["model"]: s for s in content["ladder"]["steps"]}
+    steps["zero_acceleration"]["windows_2s"] = 50.0
+    axes = drawn("ladder", content).axes[0]
+    assert axes.get_xlim()[1] < 2.0
+    assert "50.0 →" in [text.get_text() for text in axes.texts]
+
+
+def test_the_ranking_shows_each_share_and_what_the_selected_add():
+    found = study()["diagnosis"]
+    axes = drawn("ranking", {"diagnosis": found}).axes[0]
+    names = [label.get_text() for label in axes.get_yticklabels()]
+    assert names[:2] == ["thruster_lag", "quadratic_damping"]
+    widths = [bar.get_width() for bar in axes.patches]
+    assert widths == pytest.approx([0.0, 38.0, 36.0, 18.0, 0.0])
+    assert [line.get_xdata()[0] for line in axes.lines] == pytest.approx([42.0, 36.0])
 
 
 def test_the_measured_line_is_the_measurement():

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from rovsim.errors import BadInput
-from rovsim.files import appearing, read_arrays, read_json, read_yaml, write_arrays, write_json
+from rovsim.files import (
+    appearing,
+    read_arrays,
+    read_json,
+    read_yaml,
+    write_arrays,
+    write_json,
+)
+from rovsim.loading import results_folder
 from rovsim.signals.chain import SignalSettings
 from rovsim.strict import checked
 
@@ -48,6 +56,18 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path):
     with pytest.raises(ValueError, match="JSON"):
         write_json(path, {"bad": float("nan")})
     assert read_json(path) == {"kept": 1}
+
+
+def test_a_place_that_cannot_be_written_is_said(tmp_path):
+    (tmp_path / "file").write_text("x")
+    (tmp_path / "folder").mkdir()
+    for path in (tmp_path / "file" / "x.json", tmp_path / "folder"):
+        with pytest.raises(BadInput, match="cannot be written"):
+            write_json(path, {})
+    with pytest.raises(BadInput, match=r"file: is not a folder"):
+        results_folder(tmp_path / "file" / "deeper" / "out")
+    assert results_folder(tmp_path / "not" / "yet") == tmp_path / "not" / "yet"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "folder"]
 
 
 def _cut_off(path):

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from rovsim.config import compose
-from rovsim.diagnosing import watches
 from rovsim.diagnosis.candidates import candidates
 from rovsim.diagnosis.diagnose import FIRST_NOISE
 from rovsim.diagnosis.evidence import Observatory
@@ -24,7 +23,7 @@ def test_a_tank_that_hides_it_gives_it_back(name, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
     settings = compose([f"campaign='{tmp_path / 'raw'}'"])
     data = measured(settings)
-    base, runs = nominal(data.vehicle), watches(data, settings, "train")
+    base, runs = nominal(data.vehicle), data.runs.watches("train", settings.replay.step)
     observatory = Observatory.built(runs, base, FIRST_NOISE, "held")
     noise, _ = observatory.noise([e[0] for e in observatory.innovations([base])], FIRST_NOISE)
     starts = [c.term() for c in candidates(runs) if c.effect.id == name]

@@ -10,7 +10,8 @@ import pytest
 from rovsim import AXES
 from rovsim.figures import kind
 from rovsim.figures.style import save
-from rovsim.report import page
+from rovsim.report import page, terminal
+from rovsim.report.verdict import verdict
 from rovsim.tables import errors_table, escaped, ladder_table
 from synthetic_study import study
 
@@ -28,9 +29,15 @@ def html(content, tmp_path_factory):
     inputs = page.ReportInputs(
         "tank <b>&", content["comparison"], content["ladder"], content["timing"],
         content["quality"], [picture], {"settings": {"seed": 0}},
-        where=content["where"],
+        where=content["where"], diagnosis=_rude(content["diagnosis"]),
     )  # fmt: skip
     return page.render(inputs)
+
+
+def _rude(found):
+    """A diagnosis whose texts would be markup, were they not escaped."""
+    unexplained = found["unexplained"] | {"hint": "<script>alert(1)</script>"}
+    return found | {"unexplained": unexplained, "next_experiment": "Run <i>6dof & co</i>"}
 
 
 class Tags(HTMLParser):
@@ -58,7 +65,12 @@ def test_the_page_needs_nothing_but_itself(html):
 
 def test_names_are_escaped_and_every_section_is_there(html):
     assert "tank &lt;b&gt;&amp;" in html
+    assert "<script>" not in html
+    assert "&lt;script&gt;alert(1)" in html
+    assert "Run &lt;i&gt;6dof &amp; co&lt;/i&gt;" in html
+    assert html.index(">Verdict<") < html.index("<h2>Summary<")
     for heading in (
+        "Verdict",
         "Summary",
         "Where the models fail",
         "Compare",
@@ -79,6 +91,46 @@ def test_the_findings_of_every_model_are_sentences_on_the_page(html, content):
     for model in content["where"]["models"].values():
         for sentence in model["sentences"]:
             assert sentence in html
+
+
+def test_the_verdict_says_what_how_much_how_sure_and_what_is_open(html):
+    for words in (
+        "79.5 ± 1.5 N s²/m²",
+        "0.1500 ± 0.0078 s",
+        "removes 42\u202f% of the error, probability 0.970",
+        "These runs cannot tell input_delay and thruster_lag apart.",
+        "The runner-up for quadratic_damping is linear_damping, 90 times less likely.",
+        "falls from 0.190 to 0.0440",
+        "noise floor",
+        "Nothing can be said about roll and pitch",
+    ):
+        assert words in html
+
+
+def test_terminal_and_page_say_the_same(content):
+    found = content["diagnosis"]
+    text = " ".join(terminal.diagnosed(found).split())
+    for remark in verdict(found).remarks:
+        assert " ".join(remark.split()) in text
+
+
+def test_sections_without_content_are_left_out(content):
+    inputs = page.ReportInputs("x", diagnosis=content["diagnosis"], ladder=content["ladder"])
+    found = page.render(inputs)
+    assert re.findall(r"<h2>(.*?)</h2>", found) == ["Verdict", "Ladder"]
+    assert re.findall(r"<a href=\"#(\w+)\"", found) == ["verdict", "ladder"]
+
+
+def test_too_little_data_is_a_verdict_without_an_error():
+    error = {"nominal": None, "with_effects": None, "noise_floor": None}
+    nothing = {"fraction": 0.0, "significant": False, "hint": "Nothing is left but noise."}
+    found = {
+        "verdict": "insufficient_data", "selected": [], "ranking": [], "indistinguishable": [],
+        "unexplained": nothing, "next_experiment": "Record more.", "error": error,
+    }  # fmt: skip
+    said = verdict(found)
+    assert said.remarks[0].startswith("No test run could be used")
+    assert not any("noise" in remark for remark in said.remarks)
 
 
 def test_an_empty_study_is_a_page_too():

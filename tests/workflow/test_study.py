@@ -56,11 +56,27 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     results = study / "results" / "tank-tiny"
     ladder = json.loads((results / "ladder.json").read_text())
     steps = {step["model"]: step["windows_2s"] for step in ladder["steps"]}
-    assert list(steps) == ["zero_acceleration", "nominal", "knn_6dof"]
-    assert steps["nominal"] < steps["zero_acceleration"]
+    assert list(steps) == [
+        "zero_acceleration", "nominal", "refitted", "+thruster_lag", "knn_6dof",
+        "effects+knn_6dof", "noise_floor",
+    ]  # fmt: skip
+    assert steps["+thruster_lag"] < 0.2 * steps["nominal"] < steps["zero_acceleration"]
+    assert steps["+thruster_lag"] < steps["refitted"] < steps["nominal"]
+    assert 0.5 < steps["+thruster_lag"] / steps["noise_floor"] < 1.5
     for name in ("report.html", "comparison.json", "tables/ladder.tex", "figures/ladder.pdf"):
         assert (results / name).stat().st_size > 500
-    assert (study / "results" / "mlflow.db").exists()
+    assert ">Verdict<" in (results / "report.html").read_text()
+
+    found = json.loads((results / "diagnosis.json").read_text())
+    assert [one["effect"] for one in found["selected"]] == ["thruster_lag"]
+    assert steps["+thruster_lag"] == pytest.approx(found["error"]["with_effects"], rel=1e-5)
+    scored = json.loads((results / "comparison.json").read_text())["models"]
+    assert set(scored) == {
+        "zero_acceleration", "nominal", "refitted", "effects", "knn_6dof", "effects+knn_6dof"
+    }  # fmt: skip
+    assert set(tracked(study, results / "tracked.json")) == {*steps, "study", "diagnosis"} | set(
+        scored
+    )
 
     assert to_run(study) == set()
 
@@ -73,6 +89,19 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     }  # fmt: skip
     assert {"filter", "replay"} <= _edited(study, "src/rovsim/signals/filter.py")
     assert "read" not in _edited(study, "src/rovsim/signals/filter.py")
+    touched = _edited(study, "src/rovsim/diagnosis/search.py")
+    assert {"diagnose", "add", "compare"} <= touched
+    assert not reading & touched
+
+
+def tracked(folder: Path, path: Path) -> list[str]:
+    """Names of the study's MLflow runs; all of them exist."""
+    from mlflow.tracking import MlflowClient
+
+    client = MlflowClient(f"sqlite:///{folder / 'results' / 'mlflow.db'}")
+    runs = json.loads(path.read_text())
+    flat = {**runs, **runs["diagnosis"]}
+    return [client.get_run(number).info.run_name for number in flat.values()]
 
 
 def _edited(folder: Path, name: str) -> set[str]:

@@ -1,7 +1,7 @@
 def model_files(wildcards):
-    """A trained model's file; the baselines have none."""
-    trained = wildcards.model in study.trained
-    return [f"{R}/models/{wildcards.model}/model.yaml"] if trained else []
+    """A model's file; the baselines have none."""
+    written = wildcards.model in study.files
+    return [f"{R}/models/{wildcards.model}/model.yaml"] if written else []
 
 
 rule replay:
@@ -61,16 +61,16 @@ rule budget:
 
 
 rule score:
-    "Errors of one model on one run."
+    "Errors of one model on all runs: a job a run would take longer to start than to score."
     input:
-        motion=f"{R}/motions/{{run}}.npz",
-        replay=f"{R}/replay/{{model}}/{{run}}.npz",
+        motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
+        replays=expand(f"{R}/replay/{{{{model}}}}/{{run}}.npz", run=study.runs()),
     output:
-        f"{R}/scores/{{model}}/{{run}}.json",
+        f"{R}/scores/{{model}}.json",
     log:
-        f"{R}/logs/score/{{model}}/{{run}}.log",
+        f"{R}/logs/score/{{model}}.log",
     benchmark:
-        f"{R}/benchmarks/score/{{model}}/{{run}}.tsv"
+        f"{R}/benchmarks/score/{{model}}.tsv"
     params:
         code=study.code("scores"),
     script:

@@ -1,17 +1,18 @@
 rule train:
-    "Learn what the nominal model's acceleration misses, on the train runs of one control."
+    "Learn what the acceleration of a model misses, on the train runs of one control."
     input:
         motions=lambda w: expand(
             f"{R}/motions/{{run}}.npz", run=study.control_runs(w.control)
         ),
         campaign=lambda w: study.campaign_file,
+        base=lambda w: [f"{R}/models/effects/model.yaml"] if w.base else [],
     output:
-        model=f"{R}/models/{{residual}}_{{control}}/model.yaml",
-        arrays=f"{R}/models/{{residual}}_{{control}}/residual.npz",
+        model=f"{R}/models/{{base}}{{residual}}_{{control}}/model.yaml",
+        arrays=f"{R}/models/{{base}}{{residual}}_{{control}}/residual.npz",
     log:
-        f"{R}/logs/train/{{residual}}_{{control}}.log",
+        f"{R}/logs/train/{{base}}{{residual}}_{{control}}.log",
     benchmark:
-        f"{R}/benchmarks/train/{{residual}}_{{control}}.tsv"
+        f"{R}/benchmarks/train/{{base}}{{residual}}_{{control}}.tsv"
     params:
         settings=study.section("replay", "signals", "seed"),
         residual=lambda w: study.learner(w.residual),

@@ -1,20 +1,16 @@
 from rovsim.evidence import ONCE, PER_RUN
 
 
-def of_models(folder, ending, models):
-    """Files of models and runs, by model and then by run."""
-    return expand(
-        f"{R}/{folder}/{{model}}/{{run}}.{ending}", model=models, run=study.runs()
-    )
-
-
 rule compare:
     "All scores in one file, the ladder, and how errors grow."
     input:
-        scores=of_models("scores", "json", study.models),
-        replays=of_models("replay", "npz", study.models),
+        scores=expand(f"{R}/scores/{{model}}.json", model=study.models),
+        replays=expand(
+            f"{R}/replay/{{model}}/{{run}}.npz", model=study.models, run=study.runs()
+        ),
         motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
         searches=expand(f"{R}/where/{{model}}.json", model=study.searched),
+        diagnosis=f"{R}/diagnosis.json",
     output:
         where=f"{R}/where.json",
         comparison=f"{R}/comparison.json",
@@ -26,7 +22,7 @@ rule compare:
         f"{R}/benchmarks/compare.tsv"
     params:
         models=study.models,
-        code=study.code("scores"),
+        code=study.code("ladder"),
     script:
         "../scripts/compare.py"
 
@@ -43,6 +39,7 @@ for figure in ONCE:
             growth=f"{R}/growth.json",
             timing=f"{R}/timing.json",
             where=f"{R}/where.json",
+            diagnosis=f"{R}/diagnosis.json",
             quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         output:
             png=report(
@@ -121,6 +118,7 @@ rule report:
         ladder=f"{R}/ladder.json",
         timing=f"{R}/timing.json",
         where=f"{R}/where.json",
+        diagnosis=f"{R}/diagnosis.json",
         quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         figures=expand(f"{R}/figures/{{name}}.png", name=[*ONCE, *study.figures()]),
     output:
@@ -143,9 +141,10 @@ rule track:
     input:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
+        diagnosis=f"{R}/diagnosis.json",
         figures=expand(f"{R}/figures/{{name}}.png", name=ONCE),
         report=f"{R}/report.html",
-        models=expand(f"{R}/models/{{model}}/model.yaml", model=study.trained),
+        models=expand(f"{R}/models/{{model}}/model.yaml", model=study.files),
     output:
         f"{R}/tracked.json",
     log:
@@ -155,6 +154,7 @@ rule track:
     params:
         campaign=study.name,
         tracking=study.section("tracking")["tracking"],
+        diagnosis=study.section("search", "signals", "replay", "seed"),
         code=study.code("tracking"),
     script:
         "../scripts/track.py"

@@ -4,15 +4,16 @@ from pathlib import Path
 
 from rovsim.files import read_json, write_json
 from rovsim.jobs import job
+from rovsim.ladder import step, with_diagnosis
 from rovsim.replay import Replay
-from rovsim.scores import LADDER, comparison, growth, step
+from rovsim.scores import comparison, growth
 from rovsim.signals.motion import Motion
 from rovsim.where import merged
 
 
 def main(
     *, scores: list[Path], replays: list[Path], motions: list[Path], models: list[str],
-    searches: list[Path], out: dict[str, Path],
+    searches: list[Path], diagnosis: Path, out: dict[str, Path],
 ) -> None:  # fmt: skip
     measured = [Motion.read(path) for path in motions]
     steps, curves = [], {}
@@ -20,11 +21,11 @@ def main(
         runs = [Replay.read(p) for p in replays[k * len(measured) : (k + 1) * len(measured)]]
         steps.append(step(name, measured, runs))
         curves[name] = growth(measured, runs)
-    found = [read_json(path) for path in searches]
-    write_json(out["where"], merged(found))
+    write_json(out["where"], merged([read_json(path) for path in searches]))
     write_json(out["growth"], {"models": curves})
-    write_json(out["ladder"], {"schema": LADDER, "steps": steps})
-    write_json(out["comparison"], comparison(read_json(path) for path in scores))
+    found = read_json(diagnosis)["ladder"]["steps"]
+    write_json(out["ladder"], with_diagnosis(steps, found))
+    write_json(out["comparison"], comparison(one for path in scores for one in read_json(path)))
 
 
 if __name__ == "__main__":
@@ -34,6 +35,7 @@ if __name__ == "__main__":
             replays=[Path(path) for path in snakemake.input.replays],
             motions=[Path(path) for path in snakemake.input.motions],
             searches=[Path(path) for path in snakemake.input.searches],
+            diagnosis=Path(snakemake.input.diagnosis),
             models=list(snakemake.params.models),
             out={name: Path(path) for name, path in snakemake.output.items()},
         )

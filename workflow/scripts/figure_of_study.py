@@ -22,7 +22,7 @@ if __name__ == "__main__":
             figure=snakemake.params.figure,
             contents={
                 name: Path(snakemake.input[name])
-                for name in ("comparison", "ladder", "growth", "timing", "where")
+                for name in ("comparison", "ladder", "growth", "timing", "where", "diagnosis")
             },
             quality=dict(
                 zip(snakemake.params.runs, map(Path, snakemake.input.quality), strict=True)

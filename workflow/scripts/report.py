@@ -30,7 +30,7 @@ if __name__ == "__main__":
             campaign=snakemake.params.campaign,
             contents={
                 name: Path(snakemake.input[name])
-                for name in ("comparison", "ladder", "timing", "where")
+                for name in ("comparison", "ladder", "timing", "where", "diagnosis")
             },
             quality=dict(
                 zip(snakemake.params.runs, map(Path, snakemake.input.quality), strict=True)

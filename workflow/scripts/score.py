@@ -1,4 +1,4 @@
-"""Score one replay."""
+"""Score all replays of one model."""
 
 from pathlib import Path
 
@@ -9,14 +9,15 @@ from rovsim.scores import score
 from rovsim.signals.motion import Motion
 
 
-def main(*, motion: Path, replay: Path, out: Path) -> None:
-    write_json(out, score(Motion.read(motion), Replay.read(replay)))
+def main(*, motions: list[Path], replays: list[Path], out: Path) -> None:
+    pairs = zip(map(Motion.read, motions), map(Replay.read, replays), strict=True)
+    write_json(out, [score(motion, replay) for motion, replay in pairs])
 
 
 if __name__ == "__main__":
     with job(snakemake):
         main(
-            motion=Path(snakemake.input.motion),
-            replay=Path(snakemake.input.replay),
+            motions=[Path(path) for path in snakemake.input.motions],
+            replays=[Path(path) for path in snakemake.input.replays],
             out=Path(snakemake.output[0]),
         )

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rovsim.campaign import load_campaign
 from rovsim.jobs import job
-from rovsim.model import nominal
+from rovsim.model import load_model
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import learner_settings
 from rovsim.residual.storage import write_residual
@@ -16,16 +16,17 @@ from rovsim.vehicle import campaign_vehicle
 
 
 def main(
-    *, motions: list[Path], campaign: Path, control: str, out: Path, residual: dict, settings: dict
-) -> None:
-    base = nominal(campaign_vehicle(load_campaign(campaign)))
+    *, motions: list[Path], campaign: Path, file: str, name: str, control: str, out: Path,
+    residual: dict, settings: dict,
+) -> None:  # fmt: skip
+    base = load_model(file or name, campaign_vehicle(load_campaign(campaign)))
     runs = [Motion.read(path) for path in motions]
     learner = learner_settings(residual, "conf/residual")
     signals = checked(SignalSettings, settings["signals"], "conf")
     how = checked(ReplaySettings, settings["replay"], "conf")
     trained = train_residual(base, runs, control, learner, signals, how, settings["seed"])
     description = write_residual(out.parent, trained, control)
-    story = {"base": "nominal", "train_runs": [m.run.id for m in runs], "seed": settings["seed"]}
+    story = {"base": name, "train_runs": [m.run.id for m in runs], "seed": settings["seed"]}
     base.write(out, description, story)
 
 
@@ -34,6 +35,8 @@ if __name__ == "__main__":
         main(
             motions=[Path(path) for path in snakemake.input.motions],
             campaign=Path(snakemake.input.campaign),
+            file=str(snakemake.input.get("base") or ""),
+            name=snakemake.wildcards.base.removesuffix("+") or "nominal",
             control=snakemake.wildcards.control,
             out=Path(snakemake.output.model),
             residual=snakemake.params.residual,

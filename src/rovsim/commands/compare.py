@@ -11,15 +11,16 @@ from pathlib import Path
 
 from rovsim.budget import Budget, budget, totals
 from rovsim.config import Settings
-from rovsim.evidence import PER_RUN, Evidence, about, arguments
+from rovsim.evidence import PER_RUN, Evidence
 from rovsim.files import write_json
-from rovsim.loading import Measured, measured, models
+from rovsim.ladder import step
+from rovsim.loading import Measured, measured, models, results_folder
 from rovsim.model import Model
 from rovsim.progress import counted
 from rovsim.provenance import provenance
 from rovsim.replay import replay
-from rovsim.report.terminal import told
-from rovsim.scores import comparison, growth, score, step
+from rovsim.report.terminal import compared
+from rovsim.scores import comparison, growth, score
 from rovsim.training import samples
 from rovsim.where import content, judged
 
@@ -28,7 +29,7 @@ def run(settings: Settings) -> None:
     """Compare, then write numbers, figures and the report."""
     data = measured(settings)
     chosen = models(settings, data.vehicle)
-    out = Path(settings.out or f"results/{data.campaign.name}/compare")
+    out = results_folder(settings.out or f"results/{data.campaign.name}/compare")
     evidence = _evidence(data, chosen, settings)
     _present(out, data.campaign.name, evidence, settings)
     write_json(out / "where.json", evidence.where)
@@ -36,7 +37,7 @@ def run(settings: Settings) -> None:
     write_json(out / "comparison.json", evidence.comparison)
     motions = list(data.motions.values())
     ladder = [step(n, motions, list(runs.values())) for n, runs in evidence.replays.items()]
-    print(told({s["model"]: s["windows_2s"] for s in ladder}, evidence.where))
+    print(compared({s["model"]: s["windows_2s"] for s in ladder}, evidence.where))
     print(f"\n{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}")
 
 
@@ -70,24 +71,10 @@ def _budgets(data: Measured, model: Model, settings: Settings) -> dict[str, Budg
     }  # fmt: skip
 
 
-def _present(out: Path, name: str, evidence: Evidence, settings: Settings) -> None:
-    from rovsim.figures import kind
-    from rovsim.figures.style import save
-    from rovsim.report import page
+def _present(out: Path, campaign: str, evidence: Evidence, settings: Settings) -> None:
+    from rovsim.report.folder import present
 
-    names = list(evidence.replays)
     once = ("where", "where_map", "error_by_axis", "error_growth", "excitation")
     wanted = [(figure, "") for figure in once]
     wanted += [(figure, run) for run in evidence.motions for figure in PER_RUN]
-    pictures = []
-    for figure, one in counted(wanted, "drawing"):
-        drawn = kind(figure).draw(**arguments(figure, evidence, one, names))
-        stem = f"{figure}-{one}" if one else figure
-        save(drawn, out / "figures", stem)
-        path = out / "figures" / f"{stem}.png"
-        pictures.append(page.Picture.read(path, figure, about(figure, one, evidence)))
-    inputs = page.ReportInputs(
-        name, evidence.comparison, quality=evidence.quality, pictures=pictures,
-        provenance=provenance(settings), where=evidence.where,
-    )  # fmt: skip
-    page.write(out / "report.html", inputs)
+    present(out, campaign, evidence, wanted, provenance(settings))

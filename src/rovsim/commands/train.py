@@ -6,12 +6,10 @@ Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comp
 an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof.
 """
 
-from pathlib import Path
-
 from rovsim.config import Settings
 from rovsim.errors import BadInput
 from rovsim.files import write_json
-from rovsim.loading import measured, models
+from rovsim.loading import measured, models, results_folder
 from rovsim.model import read_model
 from rovsim.progress import reported
 from rovsim.provenance import provenance
@@ -35,7 +33,7 @@ def run(settings: Settings) -> None:
         )
     base, motions = chosen[0], list(data.motions.values())
     name = f"{settings.learner.kind}_{settings.control}"
-    out = Path(settings.out or f"results/{data.campaign.name}/trained/{name}")
+    out = results_folder(settings.out or f"results/{data.campaign.name}/trained/{name}")
     used = training_runs(motions, settings.control)
     with reported("training") as progress:
         trained = train_residual(

@@ -13,4 +13,5 @@ def diagnosis(campaign: Path, out: Path) -> dict[str, Any]:
     """What `rovsim diagnose` writes, without the report."""
     settings = compose(["command=diagnose"]).model_copy(update={"campaign": str(campaign)})
     data = measured(settings, even_unusable=True)
-    return diagnosed(data, nominal(data.vehicle), settings, lambda name: None)
+    base = nominal(data.vehicle)
+    return diagnosed(data.runs, base, settings.diagnosing, lambda name: None).content

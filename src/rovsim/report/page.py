@@ -12,8 +12,9 @@ from rovsim.figures import SECTIONS, kind
 from rovsim.figures.inference_time import RATES
 from rovsim.figures.marks import AXES, number, significant
 from rovsim.files import write_text
-from rovsim.provenance import flattened
+from rovsim.provenance import leaves
 from rovsim.report.sentences import summary
+from rovsim.report.verdict import verdict
 from rovsim.tables import Table, errors_table, ladder_table
 
 # What the Compare section tabulates: horizon and quantity.
@@ -65,21 +66,22 @@ class Picture:
 
 @dataclass(frozen=True)
 class ReportInputs:
-    """Everything the report shows; what is empty is said to be missing, not left out silently.
+    """Everything the report shows; a section without content is left out.
 
-    `comparison`, `ladder`, `timing`, `where`: contents of the JSON files of those names. `quality`:
-    the quality reports by run. `pictures`: in the order of appearance. `provenance`: nested plain
-    values (settings, code digest, versions).
+    `comparison`, `ladder`, `timing`, `where`, `diagnosis`: contents of the JSON files of those
+    names. `quality`: the quality reports by run. `pictures`: in the order of appearance.
+    `provenance`: nested plain values (settings, code digest, versions).
     """
 
     campaign: str
-    comparison: Mapping[str, Any]
+    comparison: Mapping[str, Any] = field(default_factory=dict)
     ladder: Mapping[str, Any] = field(default_factory=dict)
     timing: Mapping[str, Any] = field(default_factory=dict)
     quality: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     pictures: Sequence[Picture] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
     where: Mapping[str, Any] = field(default_factory=dict)
+    diagnosis: Mapping[str, Any] = field(default_factory=dict)
 
 
 def render(inputs: ReportInputs) -> str:
@@ -95,9 +97,10 @@ def render(inputs: ReportInputs) -> str:
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
     return environment.get_template("report.html").render(
         campaign=inputs.campaign,
-        summary=summary(inputs.comparison, inputs.ladder, inputs.timing, inputs.quality),
+        verdict=verdict(inputs.diagnosis) if inputs.diagnosis else None,
+        summary=_summary(inputs),
         where=inputs.where.get("models", {}),
-        errors=_errors(inputs.comparison),
+        errors=_errors(inputs.comparison) if inputs.comparison else [],
         ladder=ladder_table(inputs.ladder),
         timing=inputs.timing.get("inference", {}),
         rates=RATES,
@@ -108,6 +111,12 @@ def render(inputs: ReportInputs) -> str:
     )
 
 
+def _summary(inputs: ReportInputs) -> list[str]:
+    if not inputs.comparison:
+        return []
+    return summary(inputs.comparison, inputs.ladder, inputs.timing, inputs.quality)
+
+
 def write(path: Path, inputs: ReportInputs) -> None:
     """Write the report, whole or not at all."""
     write_text(path, render(inputs))
@@ -115,8 +124,7 @@ def write(path: Path, inputs: ReportInputs) -> None:
 
 def rows_of(content: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Nested values as rows of a dotted name and a text."""
-    leaves = {k: v for k, v in flattened(content).items() if not isinstance(v, Mapping) or not v}
-    return [(name, _text(value)) for name, value in leaves.items()]
+    return [(name, _text(value)) for name, value in leaves(content).items()]
 
 
 def _text(value: Any) -> str:

@@ -12,6 +12,7 @@ from rovsim.figures.pooled import pooled, relative
 from rovsim.report.speed import timing_sentences
 
 EQUAL = 0.01  # share: a smaller change is called none
+REACHED = 0.05  # the noise floor is an estimate itself
 
 
 def summary(
@@ -181,7 +182,7 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
 
 
 def _floor_sentence(ratio: float, floor: float) -> str:
-    if ratio <= 1 + EQUAL:
+    if ratio <= 1 + REACHED:
         return (
             f"It reaches the noise floor, {significant(floor)}: no model can be seen to do better."
         )

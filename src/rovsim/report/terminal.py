@@ -1,15 +1,17 @@
-"""What `compare` says on the terminal: how far each model is, and where the last one fails."""
+"""What `compare` and `diagnose` say on the terminal."""
 
 import textwrap
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 from rovsim.figures.marks import number, short, significant
+from rovsim.report.verdict import Missing, verdict
 
-WIDTH = 96
+WIDTH, BAR = 96, 24
 MOST = 6  # findings printed; the report has them all
+RANKED = 5  # effects of the ranking printed
 
 
-def told(errors: Mapping[str, float | None], where: Mapping[str, Any]) -> str:
+def compared(errors: Mapping[str, float | None], where: Mapping[str, Any]) -> str:
     """A table {model: normalised 2 s error}, then the findings of the last model searched."""
     lines = [
         "",
@@ -35,3 +37,36 @@ def _findings(where: Mapping[str, Any]) -> list[str]:
     for one in told:
         lines += textwrap.wrap(one, WIDTH, initial_indent="  - ", subsequent_indent="    ")
     return [*lines, f"  … and {rest} more in the report"] if rest > 0 else lines
+
+
+def diagnosed(found: Mapping[str, Any]) -> str:
+    """The verdict, the selected effects and those most worth by themselves, with bars."""
+    said = verdict(found)
+    lines = ["", f"{said.name}: {said.sentence}", ""]
+    for one, words in zip(found["selected"], said.missing, strict=True):
+        lines += _effect(one["error_reduction"] or 0.0, words)
+    lines += _ranking(found["ranking"])
+    for remark in said.remarks:
+        lines += ["", *textwrap.wrap(remark, WIDTH)]
+    return "\n".join(lines)
+
+
+def _effect(share: float, words: Missing) -> list[str]:
+    values = [f"      {value}" for value in words.parameters]
+    return [f"  {words.effect:<22}{_bar(share)} {words.worth}", *values]
+
+
+def _ranking(ranking: Sequence[Mapping[str, Any]]) -> list[str]:
+    shown = [r for r in ranking if (r["error_reduction"] or 0.0) > 0.0][:RANKED]
+    if not shown:
+        return []
+    rows = [
+        f"  {r['effect']:<22}{_bar(r['error_reduction'])} {100 * r['error_reduction']:.0f} %"
+        for r in shown
+    ]
+    return ["", "each alone, at its first estimate:", *rows]
+
+
+def _bar(share: float) -> str:
+    full = max(0, min(BAR, round(BAR * share)))
+    return "█" * full + "·" * (BAR - full)

@@ -1,64 +1,129 @@
-"""What `diagnose` says on the terminal."""
+"""What a diagnosis found, in plain language: for the report and for the terminal."""
 
-import textwrap
-from typing import Any, Mapping
+import math
+import re
+from dataclasses import dataclass
+from typing import Any, Mapping, Sequence
 
-from rovsim.figures.marks import number, significant
+from rovsim.effects import catalogue
+from rovsim.figures.marks import listed, number, significant
 
-WIDTH, BAR = 96, 24
 VERDICTS = {
     "missing_effects": "The model lacks physics that the catalogue knows.",
     "adequate": "Nothing is missing: what is left is noise.",
     "unexplained": "Something is missing that the catalogue does not know.",
     "insufficient_data": "The recording does not say: not enough was moved.",
 }
+INTERVAL = 1.96  # standard deviations to either side hold 95 %
+MANY = 1e6  # odds that need no number
 
 
-def told(found: Mapping[str, Any]) -> str:
-    """Verdict, selected effects with bars, what is left, what to record next."""
-    lines = ["", f"{found['verdict']}: {VERDICTS[found['verdict']]}", ""]
-    lines += [line for one in found["selected"] for line in _effect(one)]
-    lines += _ranking(found)
-    if found["indistinguishable"]:
-        groups = "; ".join(" = ".join(g) for g in found["indistinguishable"])
-        lines += ["", f"cannot be told apart: {groups}"]
-    if found["unexplained"]["significant"]:
-        lines += ["", *_wrapped(found["unexplained"]["hint"])]
-    errors = ", ".join(
-        f"{k.replace('_', ' ')} {significant(number(v))}" for k, v in found["error"].items()
+@dataclass(frozen=True)
+class Missing:
+    """A selected effect: its id, what it is, its parameters as text, and how sure it is."""
+
+    effect: str
+    meaning: str
+    parameters: tuple[str, ...]
+    worth: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A diagnosis in words: one sentence, the effects that are missing, and what else to know."""
+
+    name: str
+    sentence: str
+    missing: tuple[Missing, ...]
+    remarks: tuple[str, ...]
+
+
+def verdict(found: Mapping[str, Any]) -> Verdict:
+    """`diagnosis.json` in words."""
+    remarks = [
+        error_sentence(found["error"], bool(found["selected"])),
+        *apart_sentences(found),
+        *unexplained_sentences(found),
+        *still_sentences(found.get("not_excited", [])),
+        f"Record next: {found['next_experiment']}" if found["next_experiment"] else "",
+    ]
+    return Verdict(
+        found["verdict"], VERDICTS[found["verdict"]], tuple(map(_missing, found["selected"])),
+        tuple(remark for remark in remarks if remark),
+    )  # fmt: skip
+
+
+def _missing(one: Mapping[str, Any]) -> Missing:
+    known = catalogue().get(one["effect"])
+    meaning = (known.__doc__ or "").split("\n")[0] if known else ""
+    values = tuple(f"{name} {interval(v)}" for name, v in one["parameters"].items())
+    worth = f"removes {percent(one['error_reduction'])} of the error, {_sure(one['probability'])}"
+    return Missing(one["effect"], meaning, values, worth)
+
+
+def interval(value: Mapping[str, Any]) -> str:
+    """A fitted value with its 95 % interval and unit: 0.181 ± 0.002 s."""
+    unit = "" if value["unit"] == "1" else re.sub(r"(?<=[a-z])2", "²", value["unit"])
+    half = INTERVAL * number(value.get("std"))
+    if not math.isfinite(half) or half <= 0.0:
+        return f"{significant(number(value['value']), 4)} {unit}".strip()
+    places = max(0, 1 - math.floor(math.log10(half)))
+    return f"{number(value['value']):.{places}f} ± {half:.{places}f} {unit}".strip()
+
+
+def percent(share: float | None) -> str:
+    """A share as a whole number of percent."""
+    return "an unknown share" if share is None else f"{100 * share:.0f}\u202f%"
+
+
+def _sure(probability: float | None) -> str:
+    p = number(probability)
+    return "probability above 0.999" if p > 0.999 else f"probability {p:.3f}"
+
+
+def error_sentence(error: Mapping[str, float | None], changed: bool) -> str:
+    """The error on the test runs before and after, and what a perfect model would show."""
+    before, after, floor = (
+        number(error.get(k)) for k in ("nominal", "with_effects", "noise_floor")
     )
-    lines += ["", f"error on the test runs (2 s windows, normalised): {errors}"]
-    return "\n".join([*lines, "", *_wrapped(f"next: {found['next_experiment']}")])
+    if not math.isfinite(before):
+        return "No test run could be used, so there is no error to report."
+    now = f"falls from {significant(before)} to {significant(after)}"
+    text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
+    text += " (velocity in 2 s windows, in units of its spread)."
+    if not math.isfinite(floor):
+        return text
+    return f"{text} A perfect model would show about {significant(floor)} (noise floor)."
 
 
-def _wrapped(text: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH)
+def apart_sentences(found: Mapping[str, Any]) -> list[str]:
+    """Which effects the runs cannot tell apart, and how far behind the next names are."""
+    alike = found["indistinguishable"]
+    sentences = [f"These runs cannot tell {listed(group)} apart." for group in alike]
+    for one in found["selected"]:
+        rivals = [r for r in found.get("rivals", []) if r["instead_of"] == one["effect"]]
+        taken = {name for group in alike if one["effect"] in group for name in group}
+        behind = [r for r in rivals if r["effect"] not in taken]
+        if behind:
+            sentences.append(_runner_up(min(behind, key=lambda r: r["deficit"])))
+    return sentences
 
 
-def _bar(share: float) -> str:
-    full = max(0, min(BAR, round(BAR * share)))
-    return "█" * full + "·" * (BAR - full)
+def _runner_up(rival: Mapping[str, Any]) -> str:
+    odds = math.exp(min(0.5 * rival["deficit"], 700.0))
+    times = "more than a million" if odds > MANY else f"{significant(odds, 2)}"
+    name, instead = rival["effect"], rival["instead_of"]
+    return f"The runner-up for {instead} is {name}, {times} times less likely."
 
 
-def _effect(one: Mapping[str, Any]) -> list[str]:
-    share = one["error_reduction"] or 0.0
-    sure = f"of the error, probability {one['probability']:.3f}"
-    head = f"  {one['effect']:<22}{_bar(share)} {100 * share:5.1f} % {sure}"
-    rows = [
-        f"      {name:<18}{value['value']:>10.4g} ± {1.96 * value['std']:.2g} {value['unit']}"
-        if "std" in value
-        else f"      {name:<18}{value['value']:>10.4g} {value['unit']}"
-        for name, value in one["parameters"].items()
-    ]
-    return [head, *rows]
+def unexplained_sentences(found: Mapping[str, Any]) -> list[str]:
+    """What no effect of the catalogue explains."""
+    left = found["unexplained"]
+    return [f"Unexplained: {left['hint']}"] if left["significant"] else []
 
 
-def _ranking(found: Mapping[str, Any]) -> list[str]:
-    shown = [r for r in found["ranking"] if (r["error_reduction"] or 0.0) > 0.0][:5]
-    if not shown:
+def still_sentences(axes: Sequence[str]) -> list[str]:
+    """Axes that nobody moved."""
+    if not axes:
         return []
-    rows = [
-        f"  {r['effect']:<22}{_bar(r['error_reduction'])} {100 * r['error_reduction']:5.1f} %"
-        for r in shown
-    ]
-    return ["", "each alone:", *rows]
+    return [f"Nothing can be said about {listed(axes)}: no train run moves there."]

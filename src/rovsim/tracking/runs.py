@@ -1,7 +1,4 @@
-"""MLflow: one experiment a campaign, one run a trained model. Written after results, never read.
-
-Runs are written under a lock, one writer at a time, so parallel jobs never find a locked database.
-"""
+"""One MLflow run: its tags, parameters, metrics and files."""
 
 import os
 from pathlib import Path
@@ -58,13 +55,14 @@ def metrics_of(scores: Mapping[str, Any]) -> dict[str, float]:
     for run in scores.values():
         for horizon in HORIZONS:
             numbers = run["open_loop"] if horizon == "open_loop" else run["windows"].get(horizon)
-            for key, value in _flat(numbers or {}):
+            for key, value in flat(numbers or {}):
                 if value is not None:
                     found.setdefault(f"{run['split']}/{horizon}/{key}", []).append(value)
     return {key: float(np.mean(values)) for key, values in found.items()}
 
 
-def _flat(numbers: Mapping[str, Any]) -> Iterable[tuple[str, float | None]]:
+def flat(numbers: Mapping[str, Any]) -> Iterable[tuple[str, float | None]]:
+    """Numbers by name; those of axes as `quantity/axis`."""
     for quantity, value in numbers.items():
         if isinstance(value, Mapping):
             yield from ((f"{quantity}/{axis}", v) for axis, v in value.items())

@@ -1,0 +1,9 @@
+"""MLflow: one experiment a campaign, one run a model or diagnosis. Written after results, unread.
+
+Runs are written under a lock, one writer at a time, so parallel jobs never find a locked database.
+"""
+
+from rovsim.tracking.diagnosis import track_diagnosis
+from rovsim.tracking.runs import track
+
+__all__ = ["track", "track_diagnosis"]

@@ -1,0 +1,130 @@
+"""`rovsim diagnose`: everything it writes, and nothing for input that cannot be used."""
+
+import pytest
+
+from rovsim.adding import added
+from rovsim.cli import main
+from rovsim.files import read_json, read_yaml
+from rovsim.ladder import floor_step, step, with_diagnosis
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """Runs so short that nothing can be said: the quickest verdict there is."""
+    out = tmp_path_factory.mktemp("tank") / "short"
+    main(["tank", "tank=tiny", "tank.duration=4", f"out={out}"])
+    return out
+
+
+@pytest.fixture(scope="module")
+def diagnosed(campaign, tmp_path_factory):
+    """A folder in which `rovsim diagnose` ran."""
+    folder = tmp_path_factory.mktemp("work")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        main(["diagnose", f"campaign={campaign}", "out=found"])
+    return folder
+
+
+def test_too_little_data_is_a_verdict_with_a_report(diagnosed):
+    found = read_json(diagnosed / "found" / "diagnosis.json")
+    assert found["verdict"] == "insufficient_data"
+    assert found["selected"] == []
+    assert found["error"]["nominal"] == found["error"]["with_effects"] > 0
+    assert found["error"]["noise_floor"] is None
+    page = (diagnosed / "found" / "report.html").read_text()
+    assert page.index(">Verdict<") < page.index(">Where the models fail<")
+    for name in ("ranking", "ladder"):
+        assert (diagnosed / "found" / "figures" / f"{name}.png").stat().st_size > 3000
+
+
+def test_its_ladder_is_that_of_the_contract(diagnosed):
+    found = read_json(diagnosed / "found" / "diagnosis.json")
+    ladder = found["ladder"]
+    assert ladder["schema"] == "rovsim.ladder/1"
+    assert [s["model"] for s in ladder["steps"]] == ["nominal", "noise_floor"]
+    assert ladder["steps"][0]["windows_2s"] == pytest.approx(found["error"]["nominal"], rel=1e-5)
+
+
+def test_a_diagnosis_is_a_run_and_every_step_a_run_in_it(diagnosed):
+    from mlflow.tracking import MlflowClient
+
+    client = MlflowClient(f"sqlite:///{diagnosed / 'results' / 'mlflow.db'}")
+    experiment = client.get_experiment_by_name("tank-tiny")
+    runs = {r.info.run_name: r for r in client.search_runs([experiment.experiment_id])}
+    assert set(runs) == {"diagnosis", "nominal", "noise_floor"}
+    whole = runs.pop("diagnosis")
+    assert whole.data.tags["verdict"] == "insufficient_data"
+    assert whole.data.params["search.false_alarm"] == "0.01"
+    assert {"error/nominal", "error/with_effects"} <= set(whole.data.metrics)
+    files = {f.path for f in client.list_artifacts(whole.info.run_id)}
+    assert {"diagnosis.json", "report.html", "ladder.png"} <= files
+    assert all(r.data.tags["mlflow.parentRunId"] == whole.info.run_id for r in runs.values())
+    assert "windows_2s" in runs["nominal"].data.metrics
+
+
+def test_nothing_selected_adds_nothing(diagnosed, capsys):
+    source = diagnosed / "found" / "diagnosis.json"
+    model, names = added(read_json(source), source, "nominal", None)
+    assert names == []
+    assert model.entries == ()
+    main(["add", f"diagnosis={source}", f"model={diagnosed / 'new.yaml'}"])
+    assert "selected no effect" in capsys.readouterr().out
+    assert read_yaml(diagnosed / "new.yaml")["effects"] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["out=taken"], "taken: is not a folder"),
+        (["out=taken/deeper"], "taken: is not a folder"),
+        (["out=o", "model=[nominal,zero_acceleration]"], "cannot diagnose nominal"),
+        (["out=o", "model=zero_acceleration"], "cannot diagnose zero_acceleration"),
+        (["out=o", "model=corrected.yaml"], "without a trained residual"),
+        (["out=o", "serach.draws=3"], "Did you mean 'search.draws'"),
+        (["out=o", "search.drows=3"], "Did you mean 'search.draws'"),
+        (["out=o", "search.false_alarm=2"], "search.false_alarm"),
+    ],
+)
+def test_bad_input_is_one_message_and_nothing_written(
+    campaign, corrected, tmp_path, monkeypatch, capsys, words, message
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "taken").write_text("a file")
+    for file in corrected:
+        (tmp_path / file.name).symlink_to(file)
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(SystemExit) as ended:
+        main(["diagnose", f"campaign={campaign}", *words])
+    text = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert text.startswith("rovsim: ")
+    assert message in text
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.fixture(scope="module")
+def corrected(campaign, tmp_path_factory):
+    """A model file with a trained residual, and the arrays beside it."""
+    folder = tmp_path_factory.mktemp("corrected")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        main(["train", f"campaign={campaign}", "residual=knn", f"out={folder / 'knn'}"])
+    (folder / "knn" / "model.yaml").rename(folder / "knn" / "corrected.yaml")
+    return [folder / "knn" / name for name in ("corrected.yaml", "residual.npz")]
+
+
+def test_the_ladder_of_a_study_puts_the_effects_where_their_model_stands():
+    models = [{"model": m} for m in ("nominal", "refitted", "effects", "knn_6dof")]
+    found = [{"model": m} for m in ("nominal", "+lift", "+payload", "noise_floor")]
+    steps = [s["model"] for s in with_diagnosis(models, found)["steps"]]
+    assert steps == ["nominal", "refitted", "+lift", "+payload", "knn_6dof", "noise_floor"]
+    steps = [s["model"] for s in with_diagnosis(models, [found[0], found[-1]])["steps"]]
+    assert steps == ["nominal", "refitted", "knn_6dof", "noise_floor"]
+
+
+def test_a_step_without_runs_has_every_key_and_no_number():
+    empty = step("nominal", [], [])
+    assert empty["windows_2s"] is None
+    assert set(empty) == set(floor_step(0.1))
+    assert set(empty["velocity_mae"].values()) == {None}

@@ -1,0 +1,56 @@
+"""Nominal parameters that are wrong come back; what is not theirs stays physical."""
+
+import numpy as np
+import pytest
+
+from rovsim.campaign import load_campaign
+from rovsim.diagnosing import Runs
+from rovsim.diagnosis.refitted import refitted
+from rovsim.model import EffectEntry, nominal
+from rovsim.recording import read_run
+from rovsim.signals.chain import SignalSettings, differentiated, filtered, resampled
+from rovsim.tank.campaign import make_campaign
+from rovsim.tank.settings import TankRun, TankSettings
+from rovsim.vehicle import campaign_vehicle
+
+
+def train(folder, effects, control="6dof", duration=25.0):
+    """The nominal model, and one train run as the observer sees it."""
+    run = TankRun(id="a", control=control, split="train")
+    settings = TankSettings(runs=(run,), duration=duration, effects=effects, seed=5)
+    make_campaign(settings, folder / "raw")
+    campaign = load_campaign(folder / "raw")
+    stage = resampled(read_run(campaign, "a")[0], SignalSettings())
+    motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
+    watches = Runs({"a": motion}, {"a": stage}).watches("train", 0.01)
+    return nominal(campaign_vehicle(campaign)), watches
+
+
+def test_wrong_nominal_parameters_come_back(tmp_path):
+    hidden = (
+        EffectEntry(effect="quadratic_damping", parameters={"surge": 80.0, "sway": 90.0}),
+        EffectEntry(effect="net_buoyancy", parameters={"force": 3.0}),
+    )
+    base, watches = train(tmp_path, hidden)
+    found = refitted(base, watches, "held")
+    changes = {e.id: e for e in found.effects[len(base.effects) :]}
+    gain = changes["thruster_gain"]["all"]  # masses, drag and forces are known in units of it
+    assert changes["net_buoyancy"]["force"] / gain == pytest.approx(3.0, abs=0.3)
+    drag = base.body.quadratic[:2] + np.array([80.0, 90.0])
+    assert found.body.quadratic[:2] / gain == pytest.approx(drag, rel=0.2)
+
+
+def test_what_is_not_theirs_leaves_them_physical(tmp_path):
+    lag = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.3})
+    base, watches = train(tmp_path, (lag,), control="3dof")
+    body = refitted(base, watches, "held").body
+    assert np.all(body.linear >= -1e-9)
+    assert np.all(body.quadratic >= -1e-9)
+    assert np.all(np.linalg.eigvalsh(body.M) > 0.0)
+
+
+def test_too_little_changes_nothing(tmp_path):
+    base, watches = train(tmp_path, (), duration=4.0)
+    found = refitted(base, watches, "held")
+    assert found.name == "refitted"
+    assert found.entries == ()

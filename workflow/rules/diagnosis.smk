@@ -1,0 +1,59 @@
+def clean_runs():
+    """Every run as a motion, and as poses before the filter."""
+    return {
+        "motions": expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
+        "stages": expand(f"{R}/resampled/{{run}}.npz", run=study.runs()),
+    }
+
+
+rule diagnose:
+    "Which effects the nominal model lacks on the train runs; their worth on the test runs."
+    input:
+        **clean_runs(),
+        campaign=lambda w: study.campaign_file,
+    output:
+        f"{R}/diagnosis.json",
+    log:
+        f"{R}/logs/diagnose.log",
+    benchmark:
+        f"{R}/benchmarks/diagnose.tsv"
+    priority: 10  # most of the study waits for it
+    params:
+        settings=study.section("search", "signals", "replay", "seed"),
+        code=study.code("diagnosing", "effects"),
+    script:
+        "../scripts/diagnose.py"
+
+
+rule add:
+    "The nominal model and the effects that were found."
+    input:
+        f"{R}/diagnosis.json",
+    output:
+        f"{R}/models/effects/model.yaml",
+    log:
+        f"{R}/logs/add.log",
+    benchmark:
+        f"{R}/benchmarks/add.tsv"
+    params:
+        code=study.code("adding", "effects"),
+    script:
+        "../scripts/add.py"
+
+
+rule refit:
+    "The nominal model with its own parameters refitted on the train runs."
+    input:
+        **clean_runs(),
+        campaign=lambda w: study.campaign_file,
+    output:
+        f"{R}/models/refitted/model.yaml",
+    log:
+        f"{R}/logs/refit.log",
+    benchmark:
+        f"{R}/benchmarks/refit.tsv"
+    params:
+        settings=study.section("replay"),
+        code=study.code("diagnosis.refitted", "diagnosing", "effects"),
+    script:
+        "../scripts/refit.py"

@@ -1,0 +1,31 @@
+"""Diagnose the nominal model."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.diagnosing import DiagnosisSettings, Runs, diagnosed
+from rovsim.files import write_json
+from rovsim.jobs import job
+from rovsim.model import nominal
+from rovsim.strict import checked
+from rovsim.vehicle import campaign_vehicle
+
+
+def main(
+    *, motions: list[Path], stages: list[Path], campaign: Path, out: Path, settings: dict
+) -> None:
+    base = nominal(campaign_vehicle(load_campaign(campaign)))
+    how = checked(DiagnosisSettings, settings, "conf")
+    found = diagnosed(Runs.read(motions, stages), base, how, lambda stage: None)
+    write_json(out, found.content)
+
+
+if __name__ == "__main__":
+    with job(snakemake):
+        main(
+            motions=[Path(path) for path in snakemake.input.motions],
+            stages=[Path(path) for path in snakemake.input.stages],
+            campaign=Path(snakemake.input.campaign),
+            out=Path(snakemake.output[0]),
+            settings=snakemake.params.settings,
+        )

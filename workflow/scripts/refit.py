@@ -1,0 +1,33 @@
+"""Refit the nominal model's own parameters."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.diagnosing import Runs
+from rovsim.diagnosis.refitted import refitted
+from rovsim.jobs import job
+from rovsim.model import nominal
+from rovsim.replay import ReplaySettings
+from rovsim.strict import checked
+from rovsim.vehicle import campaign_vehicle
+
+
+def main(
+    *, motions: list[Path], stages: list[Path], campaign: Path, out: Path, settings: dict
+) -> None:
+    base = nominal(campaign_vehicle(load_campaign(campaign)))
+    how = checked(ReplaySettings, settings["replay"], "conf")
+    train = Runs.read(motions, stages).watches("train", how.step)
+    story = {"base": "nominal", "train_runs": [one.motion.run.id for one in train]}
+    refitted(base, train, how.commands).write(out, provenance=story)
+
+
+if __name__ == "__main__":
+    with job(snakemake):
+        main(
+            motions=[Path(path) for path in snakemake.input.motions],
+            stages=[Path(path) for path in snakemake.input.stages],
+            campaign=Path(snakemake.input.campaign),
+            out=Path(snakemake.output[0]),
+            settings=snakemake.params.settings,
+        )
