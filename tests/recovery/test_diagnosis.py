@@ -24,7 +24,8 @@ PRACTICE = (
 def diagnosis(folder, *overrides):
     settings = compose([f"campaign='{folder}'", *overrides])
     data = measured(settings, even_unusable=True)
-    return diagnosed(data, nominal(data.vehicle), settings, lambda stage: None)
+    base, asked = nominal(data.vehicle), settings.diagnosing
+    return diagnosed(data.runs, base, asked, lambda stage: None).content
 
 
 def named(found):
