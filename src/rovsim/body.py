@@ -60,14 +60,19 @@ class Body:
         self.weight_moment += mass * self.gravity * place
 
     @property
+    def least_inertia(self) -> float:
+        """Smallest eigenvalue of the total inertia: of a body that can exist it is positive."""
+        M = self.M_RB + self.M_A
+        return float(np.linalg.eigvalsh(0.5 * (M + M.T))[0])
+
+    @property
     def M(self) -> Array:
         """Total inertia (6, 6).
 
         Raises:
             BadInput: it is not positive definite, so no such body exists.
         """
-        M = self.M_RB + self.M_A
-        lowest = float(np.linalg.eigvalsh(0.5 * (M + M.T))[0])
+        M, lowest = self.M_RB + self.M_A, self.least_inertia
         if lowest > 0:
             return M
         raise BadInput(

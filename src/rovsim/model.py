@@ -121,6 +121,11 @@ class Model:
         return body
 
     @cached_property
+    def possible(self) -> bool:
+        """Whether such a body can exist."""
+        return self.body.least_inertia > 0.0
+
+    @cached_property
     def constants(self) -> Constants:
         """The same, packed for the engine."""
         constants = packed([self.body])

@@ -16,7 +16,7 @@ from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import Fit, fit
 from rovsim.diagnosis.gram import Gain, coarse, greedy, inner_products, joint, without
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.library import Library
+from rovsim.diagnosis.library import Library, remaining_noise
 from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.settings import SearchSettings
 
@@ -40,6 +40,12 @@ class Desk:
     noise: Noise
     settings: SearchSettings
     _fitted: dict[tuple, Fit] = field(default_factory=dict)
+
+    def renewed(self, current: Fit) -> "Desk":
+        """The desk whose filters and noise suit what is now known to act."""
+        noise = remaining_noise(self.library, current.hypothesis, current.noise)
+        fresh = self.observatory.suiting(current.hypothesis.model, noise)
+        return Desk(fresh, self.library, noise, self.settings)
 
     @cached_property
     def price(self) -> float:

@@ -22,7 +22,7 @@ from rovsim.diagnosis.fit import Fit, fit
 from rovsim.diagnosis.heldout import held_out_gain
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.leftover import Structure, leftover
-from rovsim.diagnosis.library import Library, library, remainder
+from rovsim.diagnosis.library import Library, library, remaining_noise
 from rovsim.diagnosis.noise import Noise, tuning
 from rovsim.diagnosis.search import Rival, matters, search
 from rovsim.diagnosis.settings import SearchSettings
@@ -38,7 +38,7 @@ Stages = Callable[[str], None]
 FIRST_NOISE = Noise(
     np.array([0.02] * 3 + [0.05] * 3), np.ones(6), np.array([1e-3] * 3 + [3e-3] * 3)
 )
-NOISE_ROUNDS = 3
+POLISHED = 2  # times: the noise of the first is already the right one
 SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
 
 
@@ -121,11 +121,11 @@ def diagnose(
     nothing = desk.fit(Hypothesis(base))
     alone = proposals(desk, nothing)
     stage("searching")
-    found, rivals = search(desk, nothing, seed)
+    desk, found, rivals = search(desk, nothing, seed)
     stage("checking")
     found = _checked(desk, found)
     rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
-    found, observatory = _polished(found, observatory)
+    found, observatory = _polished(found, desk.observatory)
     structures = _leftover(found, observatory)
     return Diagnosis(
         base, found, _selected(found, rivals, watches, between),
@@ -151,8 +151,7 @@ def _observed(base: Model, watches, between) -> tuple[Observatory, Library, Nois
     noise, _ = first.noise([e[0] for e in first.innovations([base])], FIRST_NOISE)
     close = Observatory.built(watches, base, noise, between)
     known = library(close, Hypothesis(base), candidates(watches))
-    for _ in range(NOISE_ROUNDS):
-        noise, _ = close.noise(remainder(known, noise), noise)
+    noise = remaining_noise(known, Hypothesis(base), noise)
     return Observatory.built(watches, base, noise, between), known, noise
 
 
@@ -174,10 +173,12 @@ def _checked(desk: Desk, found: Fit) -> Fit:
 
 
 def _polished(found: Fit, observatory: Observatory) -> tuple[Fit, Observatory]:
-    """Fitted once more, with filters that suit the final model's own damping."""
-    watches, between = observatory.watches, observatory.between
-    fresh = Observatory.built(watches, found.hypothesis.model, found.noise, between)
-    return fit(found.hypothesis, fresh, found.noise), fresh
+    """Fitted once more under its own noise, with filters that suit it and the model's damping."""
+    fresh = observatory
+    for _ in range(POLISHED):
+        fresh = observatory.suiting(found.hypothesis.model, found.noise)
+        found = fit(found.hypothesis, fresh, found.noise)
+    return found, fresh
 
 
 def _leftover(found: Fit, observatory: Observatory) -> list[Structure]:

@@ -34,12 +34,21 @@ class Observatory:
         found = tuple(tuning(noise, damping, w) for w in watches)
         return Observatory(tuple(watches), damping, found, between)
 
+    def suiting(self, model: Model, noise: Noise) -> "Observatory":
+        """The same runs, with filters that suit another model and noise."""
+        return Observatory.built(self.watches, model, noise, self.between)
+
     def innovations(self, models: Sequence[Model]) -> list[Array]:
-        """Innovations (m, 6, n) of each run."""
-        return [
-            observe(models, w, t, self.between)
-            for w, t in zip(self.watches, self.tunings, strict=True)
-        ]
+        """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
+        able = [m.possible for m in models]
+        found = []
+        for watch, own in zip(self.watches, self.tunings, strict=True):
+            e = np.full((len(models), 6, len(watch.time)), np.nan)
+            if any(able):
+                movable = [m for m in models if m.possible]
+                e[able] = observe(movable, watch, own, self.between)
+            found.append(e)
+        return found
 
     def white(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""

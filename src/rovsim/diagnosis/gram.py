@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from scipy.optimize import lsq_linear
 
 FEW = 4
+MOST = 12  # columns of one effect: more is not an effect but a fit of everything
 RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
 
 
@@ -66,7 +67,7 @@ def joint(H: Array, b: Array, offset: float, low: Array, high: Array) -> Gain:
 def greedy(H: Array, b: Array, price: float) -> Gain:
     """The columns that are worth their price each, added one by one, then pruned."""
     chosen: list[int] = []
-    while len(chosen) < len(b):
+    while len(chosen) < min(len(b), MOST):
         left = [j for j in range(len(b)) if j not in chosen]
         worth = _worth(H, b, chosen)
         best = max(left, key=lambda j: worth[j])

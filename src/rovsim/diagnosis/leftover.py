@@ -30,6 +30,7 @@ KICKS = (0.2, 1.0)  # s, from a knock to a snag
 SPIN = 0.3  # s within which propellers and motors follow a command
 SUDDEN = 0.2  # s, about what the readings resolve
 RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
+UNEVEN = 1.15  # turbulence is not equally strong all the time, nor in all runs
 
 
 @dataclass(frozen=True)
@@ -188,7 +189,7 @@ def _sudden(i, w, watches, level) -> Iterator[Structure]:
     # the median is not moved by what is looked for (Gaussian: 0.6745 standard deviations)
     usual = float(np.median(np.abs(sums))) / 0.6745
     count = int(np.sum(np.abs(sums) > RARE * usual))
-    limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE))
+    limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE / UNEVEN))
     if count > limit:
         what = f"sudden pushes, one in about {len(sums) * SUDDEN / count:.2g} s"
         yield Structure(AXES[i], what, level, 1.0, count / limit)

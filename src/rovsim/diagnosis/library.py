@@ -16,6 +16,7 @@ from rovsim.diagnosis.gram import coarse, inner_products
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
 
+ROUNDS = 3  # of fitting the noise and what it leaves in turns
 SHRINK = 1e-4  # of each column's own square: parallel candidates share
 
 Progress = Callable[[int, int], None]
@@ -84,14 +85,28 @@ def _columns(
     return [own.astype(np.float32) for own in J]  # six digits are enough for columns
 
 
-def remainder(found: Library, noise: Noise) -> list[Array]:
-    """What no candidate explains, all together: innovations (6, n) of each run.
+def remaining_noise(found: Library, at: Hypothesis, noise: Noise) -> Noise:
+    """The noise of what a hypothesis leaves and no candidate explains, all acting together.
 
-    Their noise is close to the true one whatever is missing: candidates are compared under it.
+    It is close to the true one whatever is still missing: candidates are compared under it.
     """
-    stacked = [np.concatenate([e[None], c]) for e, c in zip(found.base, found.columns, strict=True)]
-    white = coarse(found.observatory.white(stacked, noise))
+    close = found.observatory
+    e, J = close.linearised(at) if at.terms else (found.base, None)
+    columns = found.columns if J is None else _both(J, found.columns)
+    for _ in range(ROUNDS):
+        noise, _ = close.noise(_remainder(close, e, columns, noise), noise)
+    return noise
+
+
+def _both(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
+    return [np.concatenate([own, more]) for own, more in zip(J, columns, strict=True)]
+
+
+def _remainder(close: Observatory, e, columns, noise: Noise) -> list[Array]:
+    """Innovations (6, n) of each run less the best combination of all columns (c, 6, n)."""
+    stacked = [np.concatenate([one[None], c]) for one, c in zip(e, columns, strict=True)]
+    white = coarse(close.white(stacked, noise))
     M = inner_products(white.reshape(len(white), -1))
     H = M[1:, 1:] + np.diag(SHRINK * np.diag(M)[1:] + 1e-9)
     x = -np.linalg.solve(H, M[1:, 0])
-    return [e + np.tensordot(x, c, axes=1) for e, c in zip(found.base, found.columns, strict=True)]
+    return [one + np.tensordot(x, c, axes=1) for one, c in zip(e, columns, strict=True)]

@@ -12,6 +12,7 @@ from rovsim.diagnosis.windows import window_errors
 from rovsim.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
+SWAP = 1.0  # in twice the log likelihood: less is not worth another name
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 
 
@@ -56,16 +57,16 @@ def promising(desk: Desk, current: Fit, but: Sequence[str] = ()) -> list[Proposa
     return [p for p in proposals(desk, current) if p.term.id not in but and p.gain > 0.0]
 
 
-def close(desk: Desk, ranked: Sequence[Proposal]) -> list[Proposal]:
+def close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
     """The first proposals, as far as they could turn out best once refitted."""
-    return [p for p in ranked[: desk.settings.trials] if p.gain > CLOSE * ranked[0].gain]
+    return [p for p in ranked[:trials] if p.gain > CLOSE * ranked[0].gain]
 
 
 def forward(desk: Desk, current: Fit, threshold: float) -> Fit | None:
     """The best single addition, refitted and pruned; None when none beats chance and matters."""
     left = promising(desk, current)
     for _ in range(ROUNDS):
-        trying = close(desk, left)
+        trying = close(left, desk.settings.trials)
         left = [p for p in left if p not in trying]
         tried = [desk.fit(current.hypothesis.with_term(p.term)) for p in trying]
         for best in sorted(tried, key=desk.score, reverse=True):
@@ -95,29 +96,32 @@ class Rival:
     deficit: float
 
 
-def contested(desk: Desk, current: Fit) -> tuple[Fit, list[Rival]]:
+def contested(desk: Desk, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close."""
     rivals = []
     for i, term in enumerate(current.hypothesis.terms):
         rest = desk.fit(current.hypothesis.without(i))
-        for p in close(desk, promising(desk, rest, but=[term.id])):
+        for p in close(promising(desk, rest, but=[term.id]), trials):
             trial = desk.fit(rest.hypothesis.with_term(p.term))
             deficit = desk.score(current) - desk.score(trial)
-            if deficit < 0.0:
-                return contested(desk, pruned(desk, trial))
+            if deficit < -SWAP:
+                return contested(desk, pruned(desk, trial), trials)
             rivals.append(Rival(p.term.id, term.id, deficit))
     return current, rivals
 
 
-def search(desk: Desk, base: Fit, seed: int) -> tuple[Fit, list[Rival]]:
-    """From the base to the model to which nothing can be added, swapped or taken away."""
+def search(desk: Desk, base: Fit, seed: int) -> tuple[Desk, Fit, list[Rival]]:
+    """From the base to the model to which nothing can be added, swapped or taken away.
+
+    Also the desk as it is then: its noise and filters follow what is found.
+    """
     current, settings = base, desk.settings
-    rivals: list[Rival] = []
     while len(current.hypothesis.terms) < settings.most_effects:
         by_chance = chance(desk, current, settings.draws, seed)
         threshold = max(0.0, float(np.quantile(by_chance, 1.0 - settings.false_alarm)))
         found = forward(desk, current, threshold)
         if found is None:
             break
-        current, rivals = contested(desk, found)
-    return current, rivals
+        desk = desk.renewed(found)
+        current, _ = contested(desk, desk.fit(found.hypothesis), 1)  # the likeliest other name
+    return desk, *contested(desk, current, settings.trials)

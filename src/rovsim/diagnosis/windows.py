@@ -24,9 +24,16 @@ SECONDS = 2.0  # contract, section 3
 def window_errors(
     models: Sequence[Model], watches: Sequence[Watch], between: Between = "held"
 ) -> tuple[Array, list[float | None]]:
-    """Velocity RMSE (m, 6) of models in windows of 2 s, and the normalised mean of each."""
-    parts = [differences(models, w, between) for w in watches]
-    rmse = np.array([rms(np.concatenate([p[m] for p in parts])) for m in range(len(models))])
+    """Velocity RMSE (m, 6) of models in windows of 2 s, and the normalised mean of each.
+
+    NaN for models that cannot exist.
+    """
+    able = [m for m in models if m.possible]
+    parts = [differences(able, w, between) for w in watches]
+    rmse = np.full((len(models), 6), np.nan)
+    rmse[[m.possible for m in models]] = [
+        rms(np.concatenate([p[k] for p in parts])) for k in range(len(able))
+    ]
     return rmse, [normalised([w.motion for w in watches], row) for row in rmse]
 
 

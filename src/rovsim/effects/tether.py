@@ -123,7 +123,8 @@ class TetherDrag(Wrench):
         north = known(p.anchor_x * at.axes[0], 0.5 * (x0 + x1)) - at.position[0]
         east = known(p.anchor_y * at.axes[1], 0.5 * (y0 + y1)) - at.position[1]
         down = known(p.anchor_z * at.axes[2], surface) - at.position[2]
-        r = sqrt(north * north + east * east + down * down)
+        # nothing, where no place is known and the drag is none
+        r = known(sqrt(north * north + east * east + down * down), 0.0)
         v = at.nu_r[:3]
         drag = -p.coefficient * r * sqrt(dot3(v, v))
         return attached(p, (drag * v[0], drag * v[1], drag * v[2]))

@@ -1,0 +1,53 @@
+"""Least squares on inner products is least squares on the columns themselves."""
+
+import numpy as np
+import pytest
+
+from rovsim.diagnosis.gram import coarse, greedy, inner_products, joint, solved, without
+
+
+@pytest.fixture
+def columns():
+    return np.random.default_rng(4).normal(size=(8, 500))
+
+
+def test_the_few_that_matter_are_chosen_among_many(columns):
+    noise = np.random.default_rng(5).normal(size=500)
+    target = -(3.0 * columns[2] - 2.0 * columns[6]) + 0.1 * noise
+    found = greedy(inner_products(columns), columns @ target, price=12.0)
+    assert set(found.chosen) == {2, 6}
+    by_name = dict(zip(found.chosen, found.x, strict=True))
+    assert by_name[2] == pytest.approx(3.0, abs=0.05)
+    assert by_name[6] == pytest.approx(-2.0, abs=0.05)
+    left = target + found.x @ columns[list(found.chosen)]
+    assert found.decrease == pytest.approx(target @ target - left @ left, rel=1e-6)
+
+
+def test_the_joint_solution_is_the_bounded_one(columns):
+    target = -(3.0 * columns[0] - 2.0 * columns[1])
+    b, H = columns[:2] @ target, inner_products(columns[:2])
+    free = joint(H, b, 0.0, np.full(2, -9.0), np.full(2, 9.0))
+    np.testing.assert_allclose(free.x, [3.0, -2.0], atol=1e-6)
+    held = joint(H, b, 0.0, np.full(2, -1.0), np.full(2, 1.0))
+    np.testing.assert_allclose(held.x, [1.0, -1.0], atol=1e-6)
+    assert 0.0 < held.decrease < free.decrease
+
+
+def test_projected_columns_are_gone(columns):
+    M = inner_products(columns)
+    left = without(M, [0, 3])
+    np.testing.assert_allclose(left[[0, 3]], 0.0, atol=1e-5)
+    basis = np.linalg.qr(columns[[0, 3]].T)[0]
+    own = columns[5] - basis @ (basis.T @ columns[5])
+    assert left[5, 5] == pytest.approx(own @ own)
+
+
+def test_parallel_columns_share():
+    H = np.array([[1.0, 1.0], [1.0, 1.0]])
+    np.testing.assert_allclose(solved(H, np.array([2.0, 2.0])), [1.0, 1.0], atol=1e-6)
+
+
+def test_coarse_rows_keep_their_variance():
+    rows = np.random.default_rng(0).normal(size=(2, 6, 4001))
+    assert coarse(rows).shape == (2, 6, 1000)
+    assert np.var(coarse(rows)) == pytest.approx(1.0, abs=0.05)

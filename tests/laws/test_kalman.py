@@ -1,0 +1,139 @@
+"""The filters of the diagnosis: their equations, and what they make of what they are told."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import solve_discrete_are
+from scipy.signal import lfilter
+
+from rovsim.diagnosis.kalman import (
+    LEAST_DRIVING,
+    SOLVABLE,
+    axis_filter,
+    characteristic,
+    filter_kept,
+    sum_of_squares,
+)
+from rovsim.diagnosis.noise import Noise, Tuning, fit_noise
+
+H = 0.01
+noises = st.tuples(
+    st.booleans(), st.floats(0.0, 5.0), st.floats(0.003, 0.3), st.floats(0.2, 3.0),
+    st.floats(1e-4, 1e-2),
+)  # fmt: skip
+
+
+def rung(f, h, level, memory, reading, n, seed):
+    """Readings (n,) of the very process that a filter is made for."""
+    random = np.random.default_rng(seed)
+    x = np.zeros(len(f.C))
+    driving = level * np.sqrt(1.0 - f.decay**2)
+    y = np.empty(n)
+    for k in range(n):
+        y[k] = f.C @ x + reading * random.normal()
+        x = f.F @ x
+        x[-1] += driving * random.normal()
+    return y
+
+
+def innovations(f, y):
+    """What a filter cannot foresee of readings."""
+    x, e = np.zeros(len(f.C)), np.empty(len(y))
+    for k, one in enumerate(y):
+        e[k] = one - f.C @ x
+        x = f.F @ (x + f.gain * e[k])
+    return e
+
+
+@given(noises)
+def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
+    binned, d, level, memory, reading = noise
+    f = axis_filter(binned, H, d, level, memory, reading)
+    n, r = len(f.C), reading**2
+    Q = SOLVABLE * r * np.eye(n)
+    Q[-1, -1] = level**2 * (1.0 - np.exp(-2.0 * H / memory)) + LEAST_DRIVING
+    P = solve_discrete_are(f.F.T, f.C[:, None], Q, np.array([[r]]))
+    assert f.variance == pytest.approx(f.C @ P @ f.C + r, rel=1e-6)
+    np.testing.assert_allclose(f.gain, P @ f.C / (f.C @ P @ f.C + r), rtol=1e-4, atol=1e-9)
+
+
+@given(noises)
+def test_a_filter_is_stable_and_its_poles_are_its_eigenvalues(noise):
+    f = axis_filter(noise[0], H, *noise[1:])
+    A = f.F @ (np.eye(len(f.C)) - np.outer(f.gain, f.C))
+    assert np.abs(np.linalg.eigvals(A)).max() < 1.0
+    np.testing.assert_allclose(f.poles, np.poly(A), atol=1e-9)
+    np.testing.assert_allclose(characteristic(A), f.poles, atol=1e-12)
+
+
+@pytest.mark.parametrize("binned", [False, True])
+def test_innovations_of_one_filter_become_those_of_another(binned):
+    h = 0.16 if binned else H
+    old = axis_filter(binned, h, 1.0, 0.2, 0.5, 1e-3)
+    new = axis_filter(binned, h, 1.0, 0.05, 1.5, 2e-3)
+    y = rung(new, h, 0.05, 1.5, 2e-3, 4000, 3)
+    np.testing.assert_allclose(
+        lfilter(*new.whitening(old), innovations(old, y)), innovations(new, y), atol=1e-9
+    )
+
+
+def test_the_right_filter_leaves_white_noise_of_the_variance_it_says():
+    f = axis_filter(False, H, 1.0, 0.05, 1.0, 1e-3)
+    e = innovations(f, rung(f, H, 0.05, 1.0, 1e-3, 40000, 1))[500:]
+    assert np.var(e) == pytest.approx(f.variance, rel=0.03)
+    for lag in (1, 3, 10, 50):
+        assert abs(np.mean(e[lag:] * e[:-lag]) / np.var(e)) < 0.02
+
+
+@pytest.mark.parametrize("binned", [False, True])
+def test_a_push_shows_in_the_innovations_as_the_response_says(binned):
+    h = 0.16 if binned else H
+    f = axis_filter(binned, h, 1.0, 0.05, 1.0, 1e-3)
+    push = np.where(np.arange(400) % 90 < 30, 0.3, -0.1)
+    x, y = np.zeros(len(f.C)), np.empty(len(push))
+    B = np.array([0.5 * h * h, h, 0.0][-len(x) :])
+    for k, a in enumerate(push):  # felt over the step before the reading
+        x = f.F @ x + B * a
+        y[k] = f.C @ x
+    b, a = f.response
+    expected = innovations(f, y) / np.sqrt(f.variance)
+    np.testing.assert_allclose(lfilter(b, a, np.append(push, 0.0))[1:], expected, atol=1e-9)
+
+
+def test_spans_are_filtered_by_themselves_and_only_kept_ones_written():
+    random = np.random.default_rng(0)
+    b, a = random.normal(size=(6, 4)), np.column_stack([np.ones(6), np.full((6, 3), 0.1)])
+    e, spans = random.normal(size=(2, 6, 50)), np.array([[0, 20], [20, 50]])
+    kept, scale = random.random(50) > 0.4, np.arange(1.0, 7.0)
+    out = np.empty((2, 6, kept.sum()))
+    filter_kept(b, a, e, spans, kept, scale, out)
+    for i in range(6):
+        parts = [lfilter(b[i], a[i], e[1, i, p:q]) for p, q in spans]
+        whole = np.concatenate(parts)[kept]
+        np.testing.assert_allclose(out[1, i], whole * scale[i], atol=1e-12)
+        assert sum_of_squares(b[i], a[i], e[1, i], spans, kept)[0] == pytest.approx(whole @ whole)
+
+
+def test_the_noise_of_made_innovations_is_found():
+    true = Noise(np.full(6, 0.04), np.full(6, 1.0), np.full(6, 1.5e-3))
+    damping = np.ones(6)
+
+    def tuned(noise):
+        rows = zip(damping, noise.level, noise.memory, noise.reading, strict=True)
+        return Tuning(tuple(axis_filter(False, H, *row) for row in rows), H)
+
+    start = Noise(np.full(6, 0.1), np.full(6, 0.5), np.full(6, 5e-4))
+    found = tuned(start)
+    y = rung(tuned(true).filters[0], H, 0.04, 1.0, 1.5e-3, 20000, 7)
+    e = np.array([innovations(f, y) for f in found.filters])
+    kept = np.arange(20000) > 100
+    run = SimpleNamespace(
+        period=H, motion=SimpleNamespace(binned=False), rows=np.array([[0, 20000]]), settled=kept
+    )
+    noise, _ = fit_noise([e], [run], [found], damping, start)
+    np.testing.assert_allclose(noise.reading, true.reading, rtol=0.03)
+    np.testing.assert_allclose(noise.level, true.level, rtol=0.25)
+    assert np.all((noise.memory > 0.6) & (noise.memory < 1.7))

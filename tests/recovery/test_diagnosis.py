@@ -1,0 +1,61 @@
+"""Hidden physics is named, with its values; nothing is named where nothing is hidden."""
+
+import json
+
+import pytest
+
+from rovsim.config import compose
+from rovsim.diagnosing import diagnosed
+from rovsim.diagnosis.content import SCHEMA
+from rovsim.files import read_yaml
+from rovsim.hidden.flight import fly
+from rovsim.hidden.suites import combination, nothing
+from rovsim.loading import measured
+from rovsim.model import nominal
+from worlds import SHARED, needed
+
+pytestmark = pytest.mark.slow
+PRACTICE = (
+    "current", "mix-buoy-quad", "null-2", "quadratic_damping", "tether_tension", "thruster_lag",
+    "unknown-pulse",
+)  # fmt: skip
+
+
+def diagnosis(folder, *overrides):
+    settings = compose([f"campaign='{folder}'", *overrides])
+    data = measured(settings, even_unusable=True)
+    base, asked = nominal(data.vehicle), settings.diagnosing
+    return diagnosed(data.runs, base, asked, lambda stage: None).content
+
+
+def named(found):
+    return {one["effect"]: one["parameters"] for one in found["selected"]}
+
+
+@pytest.mark.parametrize("name", PRACTICE)
+def test_independent_exports_give_up_what_they_hide(name):
+    folder = needed(SHARED / "practice" / name)
+    answer = read_yaml(folder / "answer.yaml")
+    found = diagnosis(folder)
+    assert found["verdict"] == answer["verdict"]
+    if answer["verdict"] == "unexplained":
+        assert found["unexplained"]["significant"]
+        return
+    truth = {e["effect"]: e["parameters"] for e in answer.get("effects", [])}
+    assert set(named(found)) == set(truth)
+    for effect, values in truth.items():
+        for parameter, value in values.items():
+            assert named(found)[effect][parameter]["value"] == pytest.approx(value, rel=0.05)
+    before, after, floor = (found["error"][k] for k in ("nominal", "with_effects", "noise_floor"))
+    assert after <= before
+    assert after == pytest.approx(floor, rel=0.15)
+
+
+@pytest.mark.parametrize("case", [nothing(40, "development"), combination(2, 41, "development")])
+def test_the_tank_gives_up_what_it_hides(case, tmp_path):
+    flown = fly(case, tmp_path / "raw")
+    found = diagnosis(tmp_path / "raw")
+    assert found["verdict"] in flown.verdicts
+    assert set(named(found)) == set(flown.names)
+    assert found["schema"] == SCHEMA
+    assert json.loads(json.dumps(found, allow_nan=False)) == found
