@@ -94,9 +94,11 @@ class Model:
     entries: tuple[EffectEntry, ...] = ()
     residual: Residual | None = None
     inert: bool = False  # keeps its body velocity whatever pushes: the baseline to beat
-    unlisted: tuple[Effect, ...] = ()  # what only a tank can hide; no model file can name it
+    unlisted: tuple[Effect, ...] = ()  # physics that no model file can name
 
     def __add__(self, added: Effect) -> "Model":
+        if not added.listed:
+            return replace(self, unlisted=(*self.unlisted, added))
         entry = EffectEntry(
             effect=added.id, parameters={k: Value(value=v) for k, v in added.given().items()}
         )

@@ -5,10 +5,9 @@ from typing import Any, Mapping, Sequence
 from rovsim.diagnosis.advice import next_experiment
 from rovsim.diagnosis.diagnose import Diagnosis
 from rovsim.diagnosis.hypothesis import Term
-from rovsim.diagnosis.search import Rival
+from rovsim.diagnosis.search import SURE, Rival
 
 SCHEMA = "rovsim.diagnosis/1"
-SURE = 6.0  # twice a log likelihood: odds of 20 to 1
 LISTED = 10  # effects of the ranking
 
 

@@ -26,6 +26,7 @@ from rovsim.diagnosis.library import Library, library, remaining_noise
 from rovsim.diagnosis.noise import Noise, tuning
 from rovsim.diagnosis.search import Rival, matters, search
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.stretched import unstretched
 from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import window_errors
 from rovsim.model import Model
@@ -123,10 +124,10 @@ def diagnose(
     stage("searching")
     desk, found, rivals = search(desk, nothing, seed)
     stage("checking")
-    found = _checked(desk, found)
+    found, strange = unstretched(desk, _checked(desk, found))
     rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
     found, observatory = _polished(found, desk.observatory)
-    structures = _leftover(found, observatory)
+    structures = [*strange, *_leftover(found, observatory)]
     return Diagnosis(
         base, found, _selected(found, rivals, watches, between),
         _ranking(alone, base, watches, between), rivals, structures, still, seconds,

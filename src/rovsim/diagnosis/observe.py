@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.body import packed
 from rovsim.diagnosis.noise import Tuning
+from rovsim.diagnosis.strangers import STRANGERS
 from rovsim.diagnosis.watch import Watch
 from rovsim.effects import catalogue
 from rovsim.effects.base import Wrench
@@ -86,7 +87,7 @@ def batch(
 def _slots(models: Sequence[Model]) -> list[type[Wrench]]:
     """Wrench effects of the one engine that serves all candidates, some perhaps twice."""
     known = [c for c in catalogue().values() if issubclass(c, Wrench)]
-    most: Counter[type[Wrench]] = Counter(known)
+    most: Counter[type[Wrench]] = Counter([*known, *STRANGERS])
     for model in models:
         most |= Counter(type(w) for w in model.wrenches)
     return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]

@@ -12,6 +12,7 @@ from rovsim.diagnosis.windows import window_errors
 from rovsim.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
+SURE = 6.0  # twice a log likelihood: odds of 20 to 1
 SWAP = 1.0  # in twice the log likelihood: less is not worth another name
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 

@@ -1,0 +1,42 @@
+"""Is a name stretched over physics that the catalogue does not have?
+
+Where a drag law of no name is more likely than the linear and quadratic drag that were selected,
+those go, and the verdict says that something is unexplained.
+"""
+
+from dataclasses import replace
+
+from rovsim import AXES
+from rovsim.diagnosis.desk import Desk
+from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.leftover import Structure
+from rovsim.diagnosis.search import SURE
+from rovsim.diagnosis.strangers import STRANGERS
+from rovsim.effects.base import Wrench
+
+IMITATORS = ("linear_damping", "quadratic_damping")
+
+
+def unstretched(desk: Desk, found: Fit) -> tuple[Fit, list[Structure]]:
+    """The fit without drag that a law of no name explains better, and what that law is."""
+    h = found.hypothesis
+    drag = [term for term in h.terms if term.id in IMITATORS]
+    if not drag:
+        return found, []
+    rest = replace(h, terms=tuple(term for term in h.terms if term.id not in IMITATORS))
+    axes = tuple(axis for axis in AXES if any(axis in term.free for term in drag))
+    trials = [(cls, desk.fit(_with(rest, cls, axes))) for cls in STRANGERS]
+    cls, best = max(trials, key=lambda one: desk.score(one[1]))
+    gain = desk.score(best) - desk.score(found)
+    if gain < SURE:
+        return found, []
+    law = (cls.__doc__ or "").rstrip(".").lower()
+    names = " and ".join(term.id for term in drag)
+    what = f"{law}, rather than {names}"
+    level = float(found.noise.level[AXES.index(axes[0])])
+    return desk.fit(rest), [Structure(axes[0], what, level, 1.0, gain / SURE)]
+
+
+def _with(rest: Hypothesis, cls: type[Wrench], axes: tuple[str, ...]) -> Hypothesis:
+    return rest.with_term(Term(cls(), axes))
