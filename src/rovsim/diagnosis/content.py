@@ -3,7 +3,7 @@
 from typing import Any, Mapping, Sequence
 
 from rovsim.diagnosis.advice import next_experiment
-from rovsim.diagnosis.diagnose import Diagnosis
+from rovsim.diagnosis.diagnose import Diagnosis, Ranked
 from rovsim.diagnosis.hypothesis import Term
 from rovsim.diagnosis.search import SURE, Rival
 
@@ -44,7 +44,7 @@ def content(
                 "probability": _rounded(one.probability),
                 "parameters": _parameters(one.term, {}),
             }
-            for one in found.ranking[:LISTED]
+            for one in _listed(found)
         ],
         "indistinguishable": indistinguishable(found.rivals),
         "where": list(where),
@@ -59,6 +59,12 @@ def content(
         "noise": _noise(found),
         "base": dict(base),
     }
+
+
+def _listed(found: Diagnosis) -> list[Ranked]:
+    """The first effects of the ranking, and those selected."""
+    named = {one.term.id for one in found.selected}
+    return [r for k, r in enumerate(found.ranking) if k < LISTED or r.term.id in named]
 
 
 def _rounded(value: float | None) -> float | None:

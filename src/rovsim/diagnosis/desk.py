@@ -58,6 +58,10 @@ class Desk:
             self._fitted[start.key] = fit(start, self.observatory, self.noise)
         return self._fitted[start.key]
 
+    def knows(self, start: Hypothesis) -> bool:
+        """Whether that start was fitted already."""
+        return start.key in self._fitted
+
     def score(self, found: Fit) -> float:
         """Twice the log likelihood, the price of the free parameters paid."""
         return found.likelihood - self.price * len(found.hypothesis.x)

@@ -122,15 +122,15 @@ def diagnose(
     nothing = desk.fit(Hypothesis(base))
     alone = proposals(desk, nothing)
     stage("searching")
-    desk, found, rivals = search(desk, nothing, seed)
+    last, found, rivals = search(desk, nothing, seed)
     stage("checking")
-    found, strange = unstretched(desk, _checked(desk, found))
+    found, strange = unstretched(last, _checked(last, found))
     rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
-    found, observatory = _polished(found, desk.observatory)
+    found, observatory = _polished(found, last.observatory)
     structures = [*strange, *_leftover(found, observatory)]
     return Diagnosis(
         base, found, _selected(found, rivals, watches, between),
-        _ranking(alone, base, watches, between), rivals, structures, still, seconds,
+        _ranking(desk, nothing, alone, found), rivals, structures, still, seconds,
     )  # fmt: skip
 
 
@@ -235,14 +235,25 @@ def _probability(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
     return float(1.0 / (1.0 + odds))
 
 
-def _ranking(alone: Sequence[Proposal], base: Model, watches, between) -> list[Ranked]:
-    """Every candidate by itself, to first order, best gain first."""
-    models = [base, *(base + p.term.effect for p in alone)]
-    errors = _error(models, watches, between)
-    gains = np.array([0.5 * max(p.gain, 0.0) for p in alone])
-    weight = np.exp(gains - gains.max()) * (gains > 0.0)
-    share = weight / (weight.sum() + np.exp(-gains.max()))
+def _ranking(desk: Desk, nothing: Fit, alone: Sequence[Proposal], found: Fit) -> list[Ranked]:
+    """Every effect by itself: those refitted first, by their likelihood, then the others' promise.
+
+    The probability is that of the name if one effect alone is missing, or none.
+    """
+    named = {term.id for term in found.hypothesis.terms}
+    starts = [(p, nothing.hypothesis.with_term(p.term)) for p in alone]
+    fits = [desk.fit(h) for p, h in starts if p.term.id in named or desk.knows(h)]
+    fits.sort(key=desk.score, reverse=True)
+    terms = [one.hypothesis.terms[0] for one in fits]
+    terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
+    gain = np.array([0.5 * (desk.score(one) - desk.score(nothing)) for one in fits])
+    weight = np.exp(gain - np.max(gain, initial=0.0))
+    share = weight / (weight.sum() + np.exp(-np.max(gain, initial=0.0)))
+    observatory, base = desk.observatory, nothing.hypothesis.base
+    models = [base, *(base + term.effect for term in terms)]
+    error = _error(models, observatory.watches, observatory.between)
+    sure = np.append(share, np.zeros(len(terms) - len(fits)))
     return [
-        Ranked(p.term, float(max(0.0, 1.0 - e / errors[0])), float(s))
-        for p, e, s in zip(alone, errors[1:], share, strict=True)
+        Ranked(term, float(max(0.0, 1.0 - e / error[0])), float(p))
+        for term, e, p in zip(terms, error[1:], sure, strict=True)
     ]
