@@ -12,7 +12,7 @@ help:
 	@echo "make test    every test"
 	@echo "make check   formatting, lint, types, layers"
 	@echo "make bench   replay and inference speed, into results/bench.json"
-	@echo "make benchmark-hidden   known physics hidden in the tank: is it found? SUITE=quick|full"
+	@echo "make benchmark-hidden   known physics hidden in the tank: is it found? SUITE=quick|standard|full"
 	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
 	@echo "make setup   the environment alone"
 

@@ -36,7 +36,7 @@ class TimingSettings(Section):
 class HiddenSettings(Section):
     """The hidden-effect benchmark: which cases, who answers, on how many cores."""
 
-    suite: Literal["quick", "full"] = "quick"
+    suite: Literal["quick", "standard", "full"] = "quick"
     seeds: Literal["development", "reporting"] = "reporting"
     methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")
     cores: PositiveInt = 2

@@ -40,7 +40,7 @@ def diagnosis(*named, verdict=None, groups=(), **parameters):
 # the suites
 
 
-@pytest.mark.parametrize("name", ["quick", "full"])
+@pytest.mark.parametrize("name", ["quick", "standard", "full"])
 def test_every_effect_of_the_catalogue_is_hidden_once_alone(name):
     assert set(RECIPES) == set(catalogue()) == frozenset.union(*FAMILIES)
     alone = [c.hidden[0].effect for c in suite(name, "development") if c.kind == "single"]
@@ -50,7 +50,9 @@ def test_every_effect_of_the_catalogue_is_hidden_once_alone(name):
 def test_cases_are_valid_and_their_effects_do_something():
     cases = suite("full", "development")
     assert len({c.id for c in cases}) == len(cases)
-    assert {c.id for c in suite("quick", "development")} <= {c.id for c in cases}
+    quick, standard = (suite(name, "development") for name in ("quick", "standard"))
+    assert {c.id for c in quick} < {c.id for c in standard} < {c.id for c in cases}
+    assert len({c.id for c in standard}) == len(standard)
     for one in cases:
         one.settings()
         for entry in one.hidden:

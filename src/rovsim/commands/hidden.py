@@ -1,6 +1,6 @@
 """Hide known physics in the tank, ask what is missing, and keep the score.
 
-rovsim hidden [hidden.suite=quick|full] [hidden.seeds=reporting|development]
+rovsim hidden [hidden.suite=quick|standard|full] [hidden.seeds=reporting|development]
               [hidden.methods=[diagnosis,stlsq,frols]] [hidden.cores=2] [out=results/hidden]
 
 One JSON per case and method in OUT/SEEDS/METHOD/; what is there and still true is not asked again.
