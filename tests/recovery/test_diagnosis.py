@@ -59,3 +59,16 @@ def test_the_tank_gives_up_what_it_hides(case, tmp_path):
     assert set(named(found)) == set(flown.names)
     assert found["schema"] == SCHEMA
     assert json.loads(json.dumps(found, allow_nan=False)) == found
+
+
+def test_the_same_runs_give_the_same_diagnosis_on_any_number_of_cores(tmp_path):
+    import numba
+
+    short = {"duration": 20.0}
+    fly(nothing(42, "development", "none, 20 s", short), tmp_path / "raw")
+    first, cores = diagnosis(tmp_path / "raw"), numba.get_num_threads()
+    numba.set_num_threads(1)
+    try:
+        assert json.dumps(diagnosis(tmp_path / "raw")) == json.dumps(first)
+    finally:
+        numba.set_num_threads(cores)

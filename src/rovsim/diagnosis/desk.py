@@ -97,7 +97,12 @@ def _flat(observatory: Observatory, rows: Sequence[Array], noise: Noise) -> Arra
 
 
 def proposals(desk: Desk, current: Fit) -> list[Proposal]:
-    """All candidates, best first, judged to first order on top of what is there."""
+    """All candidates, best first, judged to first order on top of what is there.
+
+    None where the observer cannot hold the current model.
+    """
+    if not np.isfinite(current.likelihood):
+        return []
     M = desk.products(current)
     best: dict[str, Proposal] = {}
     for candidate, secant, columns in zip(

@@ -89,7 +89,10 @@ def _step(here, observatory, noise, H, g, cost, trust):
     """A step that lowers the cost, where it leads and what is left; None when none does."""
     x = here.x
     while trust < LARGEST_TRUST:
-        wanted = here.at(x - solved(H + trust * np.diag(np.diag(H)), g))
+        goal = x - solved(H + trust * np.diag(np.diag(H)), g)
+        if not np.isfinite(goal).all():
+            break
+        wanted = here.at(goal)
         step = wanted.x - x
         e = [one[0] for one in observatory.innovations([wanted.model])]
         left = _cost(observatory, e, noise) if _finite(e, []) else np.inf

@@ -90,7 +90,13 @@ def _client(settings: TrackingSettings):
 
     logging.getLogger("alembic").setLevel(logging.WARNING)
     logging.getLogger("mlflow").setLevel(logging.WARNING)
-    return MlflowClient(tracking_uri=settings.uri)
+    return MlflowClient(tracking_uri=_absolute(settings.uri))
+
+
+def _absolute(uri: str) -> str:
+    """A local database by its whole path: MLflow keeps open what it knows by this name."""
+    local = uri.removeprefix("sqlite:///") if uri.startswith("sqlite:///") else ""
+    return f"sqlite:///{Path(local).absolute()}" if local else uri
 
 
 def _experiment(client, settings: TrackingSettings, name: str) -> str:
