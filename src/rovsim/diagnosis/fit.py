@@ -12,7 +12,7 @@ from rovsim.diagnosis.noise import Noise
 
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
-ROUGH = 1e-3  # of what the model does not explain: a wrong model need not be fitted finely
+ROUGH = 1e-2  # of what the model does not explain: a wrong model need not be fitted finely
 FIRST_TRUST, LARGEST_TRUST = 1e-4, 1e4  # damping of the steps (Levenberg-Marquardt)
 
 

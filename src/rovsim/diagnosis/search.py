@@ -53,9 +53,9 @@ def _without_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
     return Hypothesis(h.base, (*h.terms[:i], smaller, *h.terms[i + 1 :]))
 
 
-def promising(desk: Desk, current: Fit, but: Sequence[str] = ()) -> list[Proposal]:
+def promising(desk: Desk, current: Fit) -> list[Proposal]:
     """The proposals that should gain something."""
-    return [p for p in proposals(desk, current) if p.term.id not in but and p.gain > 0.0]
+    return [p for p in proposals(desk, current) if p.gain > 0.0]
 
 
 def close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
@@ -102,13 +102,21 @@ def contested(desk: Desk, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
     rivals = []
     for i, term in enumerate(current.hypothesis.terms):
         rest = desk.fit(current.hypothesis.without(i))
-        for p in close(promising(desk, rest, but=[term.id]), trials):
+        for p in _others(desk, rest, term.id, trials):
             trial = desk.fit(rest.hypothesis.with_term(p.term))
             deficit = desk.score(current) - desk.score(trial)
             if deficit < -SWAP:
                 return contested(desk, pruned(desk, trial), trials)
             rivals.append(Rival(p.term.id, term.id, deficit))
     return current, rivals
+
+
+def _others(desk: Desk, rest: Fit, name: str, trials: int) -> list[Proposal]:
+    """Other names for what a term took: one where it could win, or several to report."""
+    ranked = promising(desk, rest)
+    if trials == 1:
+        return [p for p in close(ranked, 2) if p.term.id != name][:1]
+    return close([p for p in ranked if p.term.id != name], trials)
 
 
 def search(desk: Desk, base: Fit, seed: int) -> tuple[Desk, Fit, list[Rival]]:
