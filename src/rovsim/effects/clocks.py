@@ -3,7 +3,7 @@
 from numpy import ndarray as Array
 
 from rovsim.effects.base import Clock, Parameter
-from rovsim.effects.parameters import Signature
+from rovsim.effects.parameters import STAMP, Signature
 
 
 class InputDelay(Clock):
@@ -23,7 +23,7 @@ class InputDelay(Clock):
         "the response, a lag rounds it, and with a drifting clock the shift grows during the run."
     )
     signature = Signature({"delay": 0.2}, "sway", "change of sway thrust")
-    parameters = (Parameter("delay", "s", r"\delta", scale=0.05),)
+    parameters = (Parameter("delay", "s", r"\delta", scale=0.05, grain=STAMP),)
     # a step of a command that comes 0.1 s late looks like nothing that a small delay does
     starts = ({}, {"delay": 0.1}, {"delay": 0.3}, {"delay": -0.1})
 
@@ -45,7 +45,9 @@ class ClockDrift(Clock):
         "min: drift shifts the response more and more, a delay always by the same time."
     )
     signature = Signature({"rate": 0.005}, "surge", "time in the run", size=True)
-    parameters = (Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002),)
+    parameters = (  # one stamp in a minute
+        Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002, grain=STAMP / 60.0),
+    )
     # 0.2 s and 0.6 s after a minute; see InputDelay
     starts = ({}, {"rate": 0.003}, {"rate": -0.003}, {"rate": 0.01}, {"rate": -0.01})
 

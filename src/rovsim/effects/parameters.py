@@ -7,6 +7,8 @@ import numpy as np
 
 from rovsim import AXES
 
+STAMP = 0.001  # s: command logs are stamped in whole milliseconds
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -14,7 +16,7 @@ class Parameter:
 
     A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
     change worth looking for: a fit works in multiples of it. `grain`: changes much smaller than
-    this do nothing, or all at once. Not `fitted`: only when asked for.
+    this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`: only when asked for.
     """
 
     name: str

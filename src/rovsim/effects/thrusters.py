@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter, Response, Shaping, Strength
-from rovsim.effects.parameters import Signature
+from rovsim.effects.parameters import STAMP, Signature
 
 THRUSTERS = tuple(f"t{i}" for i in range(1, 9))
 
@@ -118,7 +118,7 @@ class ThrusterLag(Response):
         "response by its time constant at any step size, added mass only slows the rise."
     )
     signature = Signature({"time_constant": 0.2}, "surge", "change of surge thrust")
-    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1),)
+    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1, grain=STAMP),)
     starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
