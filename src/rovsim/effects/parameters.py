@@ -16,7 +16,8 @@ class Parameter:
 
     A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
     change worth looking for: a fit works in multiples of it. `grain`: changes much smaller than
-    this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`: only when asked for.
+    this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`: only
+    when asked for.
     """
 
     name: str
