@@ -68,7 +68,7 @@ def work(job: Job) -> None:
             content = {
                 "schema": SCHEMA, "digest": mark, "method": method.name,
                 "case": flown.model_dump(mode="json"),
-                "redrawn": flown.strength != job.case.strength,
+                "redrawn": flown != job.case,
                 "seconds": time.perf_counter() - begin, **answer,
             }  # fmt: skip
             write_json(path, content)
