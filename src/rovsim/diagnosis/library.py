@@ -99,14 +99,15 @@ def remaining_noise(found: Library, at: Hypothesis, noise: Noise) -> Noise:
 
 
 def _both(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
-    return [np.concatenate([own, more]) for own, more in zip(J, columns, strict=True)]
+    pairs = zip(J, columns, strict=True)
+    return [np.concatenate([own.astype(more.dtype), more]) for own, more in pairs]
 
 
 def _remainder(close: Observatory, e, columns, noise: Noise) -> list[Array]:
     """Innovations (6, n) of each run less the best combination of all columns (c, 6, n)."""
-    stacked = [np.concatenate([one[None], c]) for one, c in zip(e, columns, strict=True)]
-    white = coarse(close.white(stacked, noise))
-    M = inner_products(white.reshape(len(white), -1))
-    H = M[1:, 1:] + np.diag(SHRINK * np.diag(M)[1:] + 1e-9)
-    x = -np.linalg.solve(H, M[1:, 0])
+    target = coarse(close.white(e, noise)).ravel()
+    white = coarse(close.white(columns, noise))
+    white = white.reshape(len(white), -1)
+    H = inner_products(white).astype(float)
+    x = -np.linalg.solve(H + np.diag(SHRINK * np.diag(H) + 1e-9), white @ target)
     return [one + np.tensordot(x, c, axes=1) for one, c in zip(e, columns, strict=True)]
