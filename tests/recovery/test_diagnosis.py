@@ -4,14 +4,11 @@ import json
 
 import pytest
 
-from rovsim.config import compose
-from rovsim.diagnosing import diagnosed
 from rovsim.diagnosis.content import SCHEMA
 from rovsim.files import read_yaml
+from rovsim.hidden.asking import diagnosis
 from rovsim.hidden.flight import fly
 from rovsim.hidden.suites import combination, nothing
-from rovsim.loading import measured
-from rovsim.model import nominal
 from worlds import SHARED, needed
 
 pytestmark = pytest.mark.slow
@@ -19,13 +16,6 @@ PRACTICE = (
     "current", "mix-buoy-quad", "null-2", "quadratic_damping", "tether_tension", "thruster_lag",
     "unknown-pulse",
 )  # fmt: skip
-
-
-def diagnosis(folder, *overrides):
-    settings = compose([f"campaign='{folder}'", *overrides])
-    data = measured(settings, even_unusable=True)
-    base, asked = nominal(data.vehicle), settings.diagnosing
-    return diagnosed(data.runs, base, asked, lambda stage: None).content
 
 
 def named(found):
@@ -36,7 +26,7 @@ def named(found):
 def test_independent_exports_give_up_what_they_hide(name):
     folder = needed(SHARED / "practice" / name)
     answer = read_yaml(folder / "answer.yaml")
-    found = diagnosis(folder)
+    found = diagnosis(folder, folder)
     assert found["verdict"] == answer["verdict"]
     if answer["verdict"] == "unexplained":
         assert found["unexplained"]["significant"]
@@ -54,7 +44,7 @@ def test_independent_exports_give_up_what_they_hide(name):
 @pytest.mark.parametrize("case", [nothing(40, "development"), combination(2, 41, "development")])
 def test_the_tank_gives_up_what_it_hides(case, tmp_path):
     flown = fly(case, tmp_path / "raw")
-    found = diagnosis(tmp_path / "raw")
+    found = diagnosis(tmp_path / "raw", tmp_path)
     assert found["verdict"] in flown.verdicts
     assert set(named(found)) == set(flown.names)
     assert found["schema"] == SCHEMA
@@ -66,9 +56,9 @@ def test_the_same_runs_give_the_same_diagnosis_on_any_number_of_cores(tmp_path):
 
     short = {"duration": 20.0}
     fly(nothing(42, "development", "none, 20 s", short), tmp_path / "raw")
-    first, cores = diagnosis(tmp_path / "raw"), numba.get_num_threads()
+    first, cores = diagnosis(tmp_path / "raw", tmp_path), numba.get_num_threads()
     numba.set_num_threads(1)
     try:
-        assert json.dumps(diagnosis(tmp_path / "raw")) == json.dumps(first)
+        assert json.dumps(diagnosis(tmp_path / "raw", tmp_path)) == json.dumps(first)
     finally:
         numba.set_num_threads(cores)

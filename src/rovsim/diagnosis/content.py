@@ -3,7 +3,7 @@
 from typing import Any, Mapping, Sequence
 
 from rovsim.diagnosis.advice import next_experiment
-from rovsim.diagnosis.diagnose import Diagnosis, Ranked
+from rovsim.diagnosis.diagnose import Diagnosis, Ranked, Selected
 from rovsim.diagnosis.hypothesis import Term
 from rovsim.diagnosis.search import SURE, Rival
 
@@ -25,31 +25,16 @@ def content(
         error: of the base, with the effects, and the noise floor, on the test runs.
         base: the base model's own content, so that `rovsim add` needs nothing else.
     """
+    alike = indistinguishable(found.rivals)
     return {
         "schema": SCHEMA,
         "verdict": found.verdict,
-        "selected": [
-            {
-                "effect": one.term.id,
-                "parameters": _parameters(one.term, one.std),
-                "error_reduction": _rounded(one.error_reduction),
-                "probability": _rounded(one.probability),
-            }
-            for one in found.selected
-        ],
-        "ranking": [
-            {
-                "effect": one.term.id,
-                "error_reduction": _rounded(one.error_reduction),
-                "probability": _rounded(one.probability),
-                "parameters": _parameters(one.term, {}),
-            }
-            for one in _listed(found)
-        ],
-        "indistinguishable": indistinguishable(found.rivals),
+        "selected": [_entry(one, one.std) for one in found.selected],
+        "ranking": [_entry(one, {}) for one in _listed(found)],
+        "indistinguishable": alike,
         "where": list(where),
         "unexplained": unexplained(found),
-        "next_experiment": next_experiment(found, indistinguishable(found.rivals)),
+        "next_experiment": next_experiment(found, alike),
         "error": {name: _rounded(value) for name, value in error.items()},
         "not_excited": found.still,
         "rivals": [
@@ -58,6 +43,15 @@ def content(
         ],
         "noise": _noise(found),
         "base": dict(base),
+    }
+
+
+def _entry(one: Selected | Ranked, std: Mapping[str, float]) -> dict[str, Any]:
+    return {
+        "effect": one.term.id,
+        "parameters": _parameters(one.term, std),
+        "error_reduction": _rounded(one.error_reduction),
+        "probability": _rounded(one.probability),
     }
 
 

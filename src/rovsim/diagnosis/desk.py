@@ -14,7 +14,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import Fit, fit
-from rovsim.diagnosis.gram import Gain, coarse, greedy, inner_products, joint, without
+from rovsim.diagnosis.gram import Gain, greedy, inner_products, joint, without
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.library import Library, remaining_noise
 from rovsim.diagnosis.noise import Noise
@@ -40,6 +40,7 @@ class Desk:
     noise: Noise
     settings: SearchSettings
     _fitted: dict[tuple, Fit] = field(default_factory=dict)
+    _proposed: dict[tuple, list[Proposal]] = field(default_factory=dict)
 
     def renewed(self, current: Fit) -> "Desk":
         """The desk whose filters and noise suit what is now known to act."""
@@ -69,7 +70,7 @@ class Desk:
     @cached_property
     def columns(self) -> Array:
         """The candidates' columns (c, m), white."""
-        return _flat(self.library.observatory, self.library.columns, self.noise)
+        return self.library.observatory.coarse(self.library.columns, self.noise)
 
     @cached_property
     def gram(self) -> Array:
@@ -83,26 +84,27 @@ class Desk:
         """
         pairs = zip(current.e, current.J, strict=True)
         stacked = [np.concatenate([e[None], J]) for e, J in pairs]
-        own = _flat(self.observatory, stacked, self.noise)
+        own = self.observatory.coarse(stacked, self.noise)
         across = own @ self.columns.T
         M = np.block([[inner_products(own), across], [across.T, self.gram]])
         kept = [0, *range(len(own), len(M))]
         return without(M, range(1, len(own)))[np.ix_(kept, kept)]
 
 
-def _flat(observatory: Observatory, rows: Sequence[Array], noise: Noise) -> Array:
-    """Rows (q, 6, n_run) of each run, whitened and coarse: (q, m)."""
-    found = coarse(observatory.white(rows, noise))
-    return found.reshape(len(found), -1)
-
-
 def proposals(desk: Desk, current: Fit) -> list[Proposal]:
-    """All candidates, best first, judged to first order on top of what is there.
+    """All candidates, best first, judged to first order on top of what is there; made once.
 
     None where the observer cannot hold the current model.
     """
     if not np.isfinite(current.likelihood):
         return []
+    key = current.hypothesis.key
+    if key not in desk._proposed:
+        desk._proposed[key] = _proposals(desk, current)
+    return desk._proposed[key]
+
+
+def _proposals(desk: Desk, current: Fit) -> list[Proposal]:
     M = desk.products(current)
     best: dict[str, Proposal] = {}
     for candidate, secant, columns in zip(

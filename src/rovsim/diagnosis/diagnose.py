@@ -23,7 +23,7 @@ from rovsim.diagnosis.heldout import held_out_gain
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.leftover import Structure, leftover
 from rovsim.diagnosis.library import Library, library, remaining_noise
-from rovsim.diagnosis.noise import Noise, tuning
+from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.search import Rival, matters, search
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.stretched import unstretched
@@ -66,7 +66,8 @@ class Ranked:
 class Diagnosis:
     """What was found on the train runs.
 
-    `ladder` the base and the models after each selected effect; `noise` what remains.
+    `fit` of the base and all selected effects, None where there was too little to judge; `still`
+    axes that nobody moved; `seconds` that could be used.
     """
 
     base: Model
@@ -111,10 +112,8 @@ def diagnose(
     stage: Stages = lambda name: None,
 ) -> Diagnosis:
     """Find what a model lacks on the train runs of a campaign."""
-    watches = [w for w in train if len(w.spans)]
-    seconds = float(sum(w.settled.sum() * w.period for w in watches))
-    still = not_excited(watches)
-    if seconds < SHORTEST or len(still) == len(AXES):
+    watches, still, seconds = usable(train)
+    if not enough(still, seconds):
         return Diagnosis(base, None, [], [], [], [], still, seconds)
     stage("observing")
     observatory, known, noise = _observed(base, watches, between)
@@ -134,6 +133,18 @@ def diagnose(
     )  # fmt: skip
 
 
+def usable(train: Sequence[Watch]) -> tuple[list[Watch], list[str], float]:
+    """Runs with something to observe, axes that none of them moved, and how many seconds count."""
+    watches = [w for w in train if len(w.spans)]
+    seconds = float(sum(w.settled.sum() * w.period for w in watches))
+    return watches, not_excited(watches), seconds
+
+
+def enough(still: Sequence[str], seconds: float) -> bool:
+    """Whether anything can be judged."""
+    return seconds >= SHORTEST and len(still) < len(AXES)
+
+
 def not_excited(watches: Sequence[Watch]) -> list[str]:
     """Axes that no train run moved: nothing can be said about them."""
     moved = np.zeros(len(AXES), bool)
@@ -150,10 +161,10 @@ def _observed(base: Model, watches, between) -> tuple[Observatory, Library, Nois
     """
     first = Observatory.built(watches, base, FIRST_NOISE, between)
     noise, _ = first.noise([e[0] for e in first.innovations([base])], FIRST_NOISE)
-    close = Observatory.built(watches, base, noise, between)
+    close = first.suiting(base, noise)
     known = library(close, Hypothesis(base), candidates(watches))
     noise = remaining_noise(known, Hypothesis(base), noise)
-    return Observatory.built(watches, base, noise, between), known, noise
+    return close.suiting(base, noise), known, noise
 
 
 def _checked(desk: Desk, found: Fit) -> Fit:
@@ -161,11 +172,11 @@ def _checked(desk: Desk, found: Fit) -> Fit:
     while found.hypothesis.terms:
         h = found.hypothesis
         smaller = [desk.fit(h.without(i)) for i in range(len(h.terms))]
+        noticed = matters(desk, found, [h.without(i).model for i in range(len(h.terms))])
         idle = [
             i
             for i, one in enumerate(smaller)
-            if held_out_gain(found, one, desk.observatory) <= 0.0
-            or not matters(desk, found, h.without(i).model)
+            if not noticed[i] or held_out_gain(found, one, desk.observatory) <= 0.0
         ]
         if not idle:
             break
@@ -184,13 +195,12 @@ def _polished(found: Fit, observatory: Observatory) -> tuple[Fit, Observatory]:
 
 def _leftover(found: Fit, observatory: Observatory) -> list[Structure]:
     """Structure in the innovations of the final model."""
-    wanted = [tuning(found.noise, observatory.damping, w) for w in observatory.watches]
     counts = np.cumsum([int(w.settled.sum()) for w in observatory.watches])[:-1]
     white = observatory.white(found.e, found.noise)
     J = observatory.white(found.J, found.noise)
     return leftover(
         np.split(white, counts, axis=-1), np.split(J, counts, axis=-1), observatory.watches,
-        wanted, found.noise, found.hypothesis.model.thrust_path,
+        observatory.tuned(found.noise), found.noise, found.hypothesis.model.thrust_path,
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.gram import coarse
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise, Tuning, fit_noise, tuning, whitened
 from rovsim.diagnosis.observe import damping_rates, observe
@@ -41,19 +42,27 @@ class Observatory:
     def innovations(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
         able = [m.possible for m in models]
+        movable = [m for m in models if m.possible]
         found = []
         for watch, own in zip(self.watches, self.tunings, strict=True):
             e = np.full((len(models), 6, len(watch.time)), np.nan)
-            if any(able):
-                movable = [m for m in models if m.possible]
+            if movable:
                 e[able] = observe(movable, watch, own, self.between)
             found.append(e)
         return found
 
     def white(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
-        wanted = [tuning(noise, self.damping, w) for w in self.watches]
-        return whitened(e, self.watches, self.tunings, wanted)
+        return whitened(e, self.watches, self.tunings, self.tuned(noise))
+
+    def coarse(self, rows: Sequence[Array], noise: Noise) -> Array:
+        """Rows (q, 6, n_run) of each run, whitened, a few neighbours together: (q, m)."""
+        found = coarse(self.white(rows, noise))
+        return found.reshape(len(found), -1)
+
+    def tuned(self, noise: Noise) -> list[Tuning]:
+        """Filters of each run that suit another noise."""
+        return [tuning(noise, self.damping, w) for w in self.watches]
 
     def noise(self, e: Sequence[Array], start: Noise) -> tuple[Noise, float]:
         """The most likely noise of innovations (6, n) of each run; twice its log likelihood."""

@@ -83,21 +83,10 @@ class Hypothesis:
         return np.concatenate([np.empty(0), *(term.x for term in self.terms)])
 
     @property
-    def absent(self) -> Array:
-        """What x would be with none of the terms there."""
-        parts = [p.default / p.scale for term in self.terms for p in term.parameters]
-        return np.array(parts)
-
-    @property
     def columns(self) -> list[list[int]]:
         """Entries of x that belong to each term."""
         stops = np.cumsum([len(term.free) for term in self.terms])
         return [list(range(b - len(t.free), b)) for t, b in zip(self.terms, stops, strict=True)]
-
-    @property
-    def names(self) -> list[tuple[str, str]]:
-        """Effect and parameter of each entry of x."""
-        return [(term.id, name) for term in self.terms for name in term.free]
 
     def at(self, x: Array) -> "Hypothesis":
         """The same hypothesis at other scaled values."""

@@ -35,14 +35,13 @@ UNEVEN = 1.15  # turbulence is not equally strong all the time, nor in all runs
 
 @dataclass(frozen=True)
 class Structure:
-    """Something the remainder varies with: axis, what, how large (m/s2 or rad/s2, rms), how sure.
+    """Something the remainder varies with.
 
     `share` of the remaining disturbance's power, `surprise` = its chi-square above the limit.
     """
 
     axis: str
     what: str
-    size: float
     share: float
     surprise: float
 
@@ -67,6 +66,7 @@ def leftover(
     """
     found: list[Structure] = []
     vague = [watch.vague(path) for watch in watches]
+    tables = [shapes(watch) for watch in watches]
     for i in range(len(AXES)):
         filters = [t.filters[i] for t in tunings]
         w = [
@@ -75,9 +75,9 @@ def leftover(
         ]
         level = float(noise.level[i])
         used = np.concatenate([one[:, i] for one in J], axis=1)
-        found += _shapes(i, w, used, watches, filters, level)
+        found += _shapes(i, w, used, tables, watches, filters, level)
         found += _lines(i, w, watches, filters, level)
-        found += _sudden(i, w, watches, level)
+        found += _sudden(i, w, watches)
         for run, watch, f in zip(w, watches, filters, strict=True):
             found += _kicks(i, run, watch, f, level)
     return sorted(found, key=lambda s: -s.surprise)
@@ -102,11 +102,10 @@ def _cleared(w: Array, f: AxisFilter, watch: Watch, vague: Array) -> Array:
     return w - solved(columns @ columns.T, columns @ w) @ columns
 
 
-def _shapes(i, w, used, watches, filters, level) -> Iterator[Structure]:
+def _shapes(i, w, used, tables, watches, filters, level) -> Iterator[Structure]:
     """Functions of state, command, place and time, with one factor for all runs."""
     target = np.concatenate(w)
     basis = np.linalg.qr(used.T)[0] if len(used) else np.empty((len(target), 0))
-    tables = [shapes(watch) for watch in watches]
     limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
     for name in tables[0]:
         pushes = [table[name] for table in tables]
@@ -127,7 +126,7 @@ def _shapes(i, w, used, watches, filters, level) -> Iterator[Structure]:
 def _if_matters(i, what, size, level, statistic, limit) -> Iterator[Structure]:
     if statistic > limit and size > MATTERS * level:
         share = min(1.0, (size / level) ** 2)
-        yield Structure(AXES[i], what, float(size), float(share), float(statistic / limit))
+        yield Structure(AXES[i], what, float(share), float(statistic / limit))
 
 
 def _lines(i, w, watches, filters, level) -> Iterator[Structure]:
@@ -182,7 +181,7 @@ def _spectrum(w: Array, watch: Watch, count: int) -> Array:
     return np.fft.rfft(full)
 
 
-def _sudden(i, w, watches, level) -> Iterator[Structure]:
+def _sudden(i, w, watches) -> Iterator[Structure]:
     """Pushes that come at once: innovations with a heavier tail than any Gaussian disturbance."""
     few = max(1, round(SUDDEN / watches[0].period))
     sums = np.concatenate([_sums(x, few) for x in w])
@@ -192,7 +191,7 @@ def _sudden(i, w, watches, level) -> Iterator[Structure]:
     limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE / UNEVEN))
     if count > limit:
         what = f"sudden pushes, one in about {len(sums) * SUDDEN / count:.2g} s"
-        yield Structure(AXES[i], what, level, 1.0, count / limit)
+        yield Structure(AXES[i], what, 1.0, count / limit)
 
 
 def _sums(w: Array, few: int) -> Array:

@@ -12,7 +12,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.candidates import Candidate
 from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.gram import coarse, inner_products
+from rovsim.diagnosis.gram import inner_products
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
 
@@ -105,9 +105,8 @@ def _both(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
 
 def _remainder(close: Observatory, e, columns, noise: Noise) -> list[Array]:
     """Innovations (6, n) of each run less the best combination of all columns (c, 6, n)."""
-    target = coarse(close.white(e, noise)).ravel()
-    white = coarse(close.white(columns, noise))
-    white = white.reshape(len(white), -1)
+    target = close.coarse([one[None] for one in e], noise)[0]
+    white = close.coarse(columns, noise)
     H = inner_products(white).astype(float)
     x = -np.linalg.solve(H + np.diag(SHRINK * np.diag(H) + 1e-9), white @ target)
     return [one + np.tensordot(x, c, axes=1) for one, c in zip(e, columns, strict=True)]

@@ -17,7 +17,7 @@ from rovsim.engine.at import NO_MEMORY, Inputs, Jobs
 from rovsim.engine.compiled import engine
 from rovsim.memory import measured_memory
 from rovsim.model import Model
-from rovsim.replay import as_true, place
+from rovsim.replay import as_true, packed_inputs, place
 from rovsim.thrust import Between
 
 NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
@@ -108,7 +108,7 @@ def _wrench_parameters(model: Model, slots: Sequence[type[Wrench]]) -> Array:
 def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
     """Thrust of all models; those with the same thrust path share a row."""
     rows: dict[tuple, int] = {}
-    wrench, force, demand, row = [], [], np.empty((0, 6)), []
+    parts, row, duration = [], [], float(watch.edges[-1] - watch.edges[0])
     for model in models:
         path = model.thrust_path
         acting = (*path.clocks, *path.shapings, *path.strengths, *path.responses)
@@ -116,12 +116,11 @@ def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
         if key not in rows:
             rows[key] = len(rows)
             thrust = path.over_steps(watch.motion.commands, watch.edges, between)
-            wrench.append(thrust.wrench + thrust.force @ model.body.B.T)
-            force.append(thrust.force)
-            demand = thrust.demand
+            parts.append(packed_inputs(model, thrust, duration))
         row.append(rows[key])
-    duration = np.full(len(watch.edges) - 1, watch.edges[-1] - watch.edges[0])
-    return Inputs(np.stack(wrench), np.stack(force), demand, np.array(row, np.int64), duration)
+    wrench = np.concatenate([one.wrench for one in parts])
+    force = np.concatenate([one.force for one in parts])
+    return parts[-1]._replace(wrench=wrench, force=force, row=np.array(row, np.int64))
 
 
 def _seen(models: Sequence[Model], watch: Watch) -> tuple[Array, Array, Array]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.diagnose import FIRST_NOISE, SHORTEST, not_excited
+from rovsim.diagnosis.diagnose import FIRST_NOISE, enough, usable
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
@@ -32,10 +32,8 @@ def refitted(base: Model, train: Sequence[Watch], between: Between) -> Model:
 
     An axis that no run moved keeps its coefficients; with too little to judge all of them stay.
     """
-    watches = [w for w in train if len(w.spans)]
-    still = not_excited(watches)
-    seconds = sum(w.settled.sum() * w.period for w in watches)
-    if seconds < SHORTEST or len(still) == len(AXES):
+    watches, still, seconds = usable(train)
+    if not enough(still, seconds):
         return base.called("refitted")
     here, noise = _start(base, still), FIRST_NOISE
     for _ in range(ROUNDS):

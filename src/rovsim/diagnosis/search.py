@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim.diagnosis.desk import Desk, Proposal, chance, proposals
 from rovsim.diagnosis.fit import Fit
@@ -73,16 +74,16 @@ def forward(desk: Desk, current: Fit, threshold: float) -> Fit | None:
         for best in sorted(tried, key=desk.score, reverse=True):
             if desk.score(best) - desk.score(current) < threshold:
                 break
-            if matters(desk, best, current.hypothesis.model):
+            if matters(desk, best, [current.hypothesis.model])[0]:
                 return pruned(desk, best)
     return None
 
 
-def matters(desk: Desk, found: Fit, without_it: Model) -> bool:
-    """Whether some axis' error in 2 s windows is noticeably larger without an effect."""
+def matters(desk: Desk, found: Fit, without: Sequence[Model]) -> Array:
+    """Whether some axis' error in 2 s windows is noticeably larger with each other model (m,)."""
     between, watches = desk.observatory.between, desk.observatory.watches
-    rmse, _ = window_errors([found.hypothesis.model, without_it], watches, between)
-    return float(np.max(rmse[1] / rmse[0])) - 1.0 > desk.settings.relevant
+    rmse, _ = window_errors([found.hypothesis.model, *without], watches, between)
+    return np.max(rmse[1:] / rmse[0], axis=1) - 1.0 > desk.settings.relevant
 
 
 @dataclass(frozen=True)

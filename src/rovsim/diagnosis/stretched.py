@@ -34,8 +34,7 @@ def unstretched(desk: Desk, found: Fit) -> tuple[Fit, list[Structure]]:
     law = (cls.__doc__ or "").rstrip(".").lower()
     names = " and ".join(term.id for term in drag)
     what = f"{law}, rather than {names}"
-    level = float(found.noise.level[AXES.index(axes[0])])
-    return desk.fit(rest), [Structure(axes[0], what, level, 1.0, gain / SURE)]
+    return desk.fit(rest), [Structure(axes[0], what, 1.0, gain / SURE)]
 
 
 def _with(rest: Hypothesis, cls: type[Wrench], axes: tuple[str, ...]) -> Hypothesis:

@@ -16,6 +16,7 @@ from rovsim.engine.at import Jobs
 from rovsim.model import Model
 from rovsim.replay import place, windows
 from rovsim.scores import normalised, rms
+from rovsim.signals.binned import bin_means
 from rovsim.thrust import Between
 
 SECONDS = 2.0  # contract, section 3
@@ -104,5 +105,4 @@ def _at_readings(watch: Watch, span: tuple[int, int], nu: Array) -> Array:
     at = watch.ends[a : b + 1] - watch.ends[a]
     if not watch.motion.binned:
         return nu[at[1:]] - watch.motion.nu[a + 1 : b + 1]
-    total = np.vstack([np.zeros(6), np.cumsum(0.5 * (nu[1:] + nu[:-1]), axis=0)])
-    return np.diff(total[at], axis=0) / np.diff(at)[:, None] - watch.motion.nu[a:b]
+    return bin_means(np.arange(len(nu), dtype=float), nu, at) - watch.motion.nu[a:b]
