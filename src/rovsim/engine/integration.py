@@ -27,8 +27,8 @@ from rovsim.engine.vectors import (
     vector3,
     vector6,
 )
-from rovsim.residual.features import assemble_one
-from rovsim.residual.predictor import FEATURES, evaluate
+from rovsim.residual.features import FEATURES, assemble_one
+from rovsim.residual.predictor import evaluate
 
 ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
