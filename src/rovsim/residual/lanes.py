@@ -95,7 +95,7 @@ def exponentials(s):
         p = C8 + r * (C9 + r * (C10 + r * (C11 + r * (C12 + r * C13))))
         p = C2 + r * (C3 + r * (C4 + r * (C5 + r * (C6 + r * (C7 + r * p)))))
         p = 1.0 + r * (1.0 + r * p)
-        s[i] = p * _float((_bits(t) + 1023) << 52)  # times 2^n
+        s[i] = p * _float((_bits(t) + 1023) << 52)  # type: ignore[call-arg]  # times 2^n
 
 
 @reordered
