@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rovsim.bench.data import Pairs, fitted
+from rovsim.bench.data import Pairs, fitted, unfading
 from rovsim.bench.inference import ours
 from rovsim.latency import latency
 from rovsim.residual.storage import Residual
@@ -39,15 +39,17 @@ def accuracy(pairs: Pairs) -> list[dict[str, Any]]:
 def _ways(taught: Pairs) -> Iterator[tuple[str, bool, Residual]]:
     for points in (500, 2_000, 5_000, 20_000):
         yield "knn", False, fitted("knn", taught, max_points=points)
-    for trusted in (None, 1.0):
-        for points in (125, 250, 500, 1_000, 2_000):
-            more = {"max_points": points, "trusted": trusted}
-            yield "gp", trusted is not None, fitted("gp", taught, kernel="shared", **more)
-        more = {"max_points": 1_000, "trusted": trusted}
-        yield "gp_six_kernels", trusted is not None, fitted("gp", taught, **more)
-        for inducing in (50, 100, 200):
-            more = {"inducing": inducing, "trusted": trusted}
-            yield "svgp", trusted is not None, fitted("svgp", taught, **more)
+    for name, residual in _processes(taught):
+        yield name, False, unfading(residual)
+        yield name, True, residual
+
+
+def _processes(taught: Pairs) -> Iterator[tuple[str, Residual]]:
+    for points in (125, 250, 500, 1_000, 2_000):
+        yield "gp", fitted("gp", taught, kernel="shared", max_points=points)
+    yield "gp_six_kernels", fitted("gp", taught, max_points=1_000)
+    for inducing in (50, 100, 200):
+        yield "svgp", fitted("svgp", taught, inducing=inducing)
 
 
 def _left(residual: Residual, pairs: Pairs, control: str) -> dict[str, float]:

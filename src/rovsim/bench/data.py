@@ -8,8 +8,9 @@ from numpy import ndarray as Array
 
 from rovsim.residual.export import Kernel, export_expansion, export_neighbours
 from rovsim.residual.features import FeatureSettings
+from rovsim.residual.layout import SURE
 from rovsim.residual.learner import learner_settings, train
-from rovsim.residual.scaling import Scaling
+from rovsim.residual.scaling import fit_scaling
 from rovsim.residual.storage import Residual
 
 SEED = 5  # of the rows that are drawn
@@ -45,17 +46,13 @@ class Pairs:
         return replace(self, X=self.X[kept], Y=self.Y[kept], control=self.control[kept])
 
     def exported(self, kind: str, rows: int, outputs: int) -> Array:
-        """A predictor for only the first so many outputs."""
-        found = fitted(kind, self.first(rows), **({"max_points": rows} if kind == "gp" else {}))
-        a, features = found.arrays, FeatureSettings()
-        scaling = Scaling(a["shift"], a["scale"])
+        """A predictor for only the first so many outputs; a process with some hyperparameters."""
+        X, Y, features = self.X[:rows], self.Y[:rows, :outputs], FeatureSettings()
+        scaling = fit_scaling("standard", X)
+        Z = scaling.apply(X)
         if kind == "knn":
-            k = found.settings.k  # type: ignore[attr-defined]
-            return export_neighbours(
-                features, scaling, a["points"], a["targets"][:, :outputs], k, "distance"
-            )
-        weights = np.random.default_rng(SEED).normal(size=(rows, outputs))  # as fast as any
-        kernel = Kernel(a["points"], a["lengthscale"][0], weights)
+            return export_neighbours(features, scaling, Z, Y, 5, "distance")
+        kernel = Kernel(Z, np.full(Z.shape[1], 5.0), Y)
         return export_expansion(features, scaling, np.zeros(outputs), [kernel])
 
 
@@ -63,3 +60,10 @@ def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
     """A residual of that kind."""
     trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **more}), seed=0)
     return Residual("6dof", trained.settings, trained.data, trained.arrays, trained.info)
+
+
+def unfading(residual: Residual) -> Residual:
+    """The same residual, as `trusted=null` would train it."""
+    data = residual.data.copy()
+    data[SURE] = 0.0
+    return replace(residual, data=data)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.bench import libraries
-from rovsim.bench.data import Pairs, fitted
+from rovsim.bench.data import Pairs, fitted, unfading
 from rovsim.bench.machine import as_a_control_loop
 from rovsim.latency import latency
 from rovsim.residual.layout import POINTS
@@ -104,7 +104,7 @@ def _processes(clock: Clock, points: int, seconds: float) -> None:
     """One kernel for six outputs: mean, mean and variance, and the faded correction."""
     pairs = clock.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points, **GP)
-    never = fitted("gp", pairs, max_points=points, trusted=None, **GP)
+    never = unfading(gp)
     clock.beside("gp_mean", ours(never), points, libraries.means(never), seconds)
     clock.beside("gp_faded", ours(gp), points, {}, seconds)
     theirs = libraries.variances(gp) if points <= 2_000 else {}
@@ -114,7 +114,7 @@ def _processes(clock: Clock, points: int, seconds: float) -> None:
 def _six_kernels(clock: Clock, points: int, seconds: float) -> None:
     pairs = clock.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points)
-    never = fitted("gp", pairs, max_points=points, trusted=None)
+    never = unfading(gp)
     ways: tuple[tuple[str, Callable, dict[str, Any]], ...] = (
         ("gp_mean", ours(never), libraries.means(never)),
         ("gp_faded", ours(gp), {}),
@@ -126,7 +126,7 @@ def _six_kernels(clock: Clock, points: int, seconds: float) -> None:
 
 
 def _inducing(clock: Clock, seconds: float) -> None:
-    svgp = fitted("svgp", clock.pairs.first(2_000), trusted=None)
+    svgp = unfading(fitted("svgp", clock.pairs.first(2_000)))
     points = svgp.points
     clock.beside("svgp", ours(svgp), points, {"gpytorch_svgp": svgp.library()}, seconds)
     theirs = {"gpytorch_svgp_variance": libraries.variances(svgp)["gpytorch_variance"]}

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from rovsim.bench.accuracy import accuracy
-from rovsim.bench.data import Pairs, fitted
+from rovsim.bench.data import Pairs, fitted, unfading
 from rovsim.bench.inference import GP, Effort, inference
 from rovsim.bench.machine import machine
 from rovsim.bench.page import write_page
@@ -35,11 +35,9 @@ def run(settings: Settings) -> None:
     how = settings.bench
     pairs = _pairs(found, FeatureSettings()).drawn()
     large = _pairs(found, LARGE).drawn()
-    residuals = {
-        "knn": fitted("knn", large.first(2_235), features=LARGE),  # the thesis' size
-        "gp": fitted("gp", pairs.first(2_000), max_points=2_000, trusted=None, **GP),
-        "gp_faded": fitted("gp", pairs.first(2_000), max_points=2_000, **GP),
-    }
+    gp = fitted("gp", pairs.first(2_000), max_points=2_000, **GP)
+    knn = fitted("knn", large.first(2_235), features=LARGE)  # the thesis' size
+    residuals = {"knn": knn, "gp": unfading(gp), "gp_faded": gp}
     content: dict[str, Any] = {"schema": "rovsim.bench/1", "machine": machine()}
     content["replay"] = replay_speeds(model, residuals)
     effort = Effort(how.calls, how.warmup, how.seconds)
