@@ -37,7 +37,7 @@ class ReplaySettings(Section):
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """What a model predicts at motion.time, NaN where it predicts nothing.
+    """What a model predicts at motion.time: NaN where it predicts nothing, infinite once it diverged.
 
     `eta` (n, 7) pose, `nu` (n, 6) velocity, `nu_dot` (n, 6) acceleration, after the filter.
     """
@@ -247,10 +247,14 @@ def _predict_samples(model, motion, spans, signals, settings) -> Prediction:
     stride, period = clock(motion, settings.step).stride, float(motion.time[1] - motion.time[0])
     starts = [(a * stride, b - a, motion.state[a]) for a, b in spans]
     paths = model.view.states(np.stack(trajectories(model, motion, starts, settings)))
-    nu, nu_dot = velocities(paths[..., :7], period, signals)
+    nu, nu_dot = np.full((2, *paths.shape[:-1], 6), np.inf)
+    stayed = np.isfinite(paths).all(axis=(1, 2))
+    if stayed.any():
+        nu[stayed], nu_dot[stayed] = velocities(paths[stayed, :, :7], period, signals)
     for i, (a, b) in enumerate(spans):
         at = slice(a + 1, b + 1)
         found.eta[at], found.nu[at], found.nu_dot[at] = paths[i, 1:, :7], nu[i, 1:], nu_dot[i, 1:]
+        _mark_diverged(found, at)
     return found
 
 
@@ -274,7 +278,15 @@ def _predict_bins(model, motion, spans, signals, settings) -> Prediction:
         found.eta[a:b] = np.hstack([means[:, :3], normalized(means[:, 3:7])])
         found.nu[a:b] = means[:, 7:]
         found.nu_dot[a:b] = backward_difference(means[:, 7:], motion.time[a:b])
+        _mark_diverged(found, slice(a, b))
     return found
+
+
+def _mark_diverged(found: Prediction, at: slice) -> None:
+    """Infinite where the model left the finite numbers, so that no score passes over it."""
+    lost = ~np.isfinite(found.nu[at]).all(axis=1)
+    for values in (found.eta, found.nu, found.nu_dot):
+        values[at][lost] = np.inf
 
 
 def state_at(motion: Motion, time: float) -> Array:

@@ -29,17 +29,16 @@ class Errors:
 
 
 def errors(motion: Motion, prediction: Prediction) -> Errors:
-    """Errors of one prediction at usable samples."""
-    both = motion.usable & np.isfinite(prediction.nu).all(axis=1)
-    moved = (
-        both & np.isfinite(prediction.nu_dot).all(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
-    )
-    turn = multiply(conjugate(motion.eta[both, 3:]), prediction.eta[both, 3:])
+    """Errors of one prediction at usable samples; infinite where it diverged."""
+    both = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
+    moved = both & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
+    with np.errstate(invalid="ignore"):
+        turn = log(multiply(conjugate(motion.eta[both, 3:]), prediction.eta[both, 3:]))
     return Errors(
         prediction.nu[both] - motion.nu[both],
         prediction.nu_dot[moved] - motion.nu_dot[moved],
         np.linalg.norm(prediction.eta[both, :3] - motion.eta[both, :3], axis=1),
-        np.linalg.norm(log(turn), axis=1),
+        np.linalg.norm(turn, axis=1),
     )
 
 
@@ -122,7 +121,7 @@ def growth(
     for motion, replay in zip(motions, replays, strict=True):
         if motion.run.split == "test" and horizon in replay.horizons:
             prediction = replay.horizons[horizon]
-            known = motion.usable & np.isfinite(prediction.nu).all(axis=1)
+            known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
             ages.append(_age(motion, prediction, float(horizon))[known])
             found.append((prediction.nu - motion.nu)[known])
     age, error = np.concatenate([*ages, np.empty(0)]), np.concatenate([*found, np.empty((0, 6))])
@@ -132,7 +131,7 @@ def growth(
     rows = np.array([rms(error[bins == b]) for b in kept]).reshape(-1, 6)
     return {
         "horizon_s": [float(edges[b]) for b in kept],
-        "velocity_rmse": {axis: rows[:, i].tolist() for i, axis in enumerate(AXES)},
+        "velocity_rmse": {axis: [number(x) for x in row] for axis, row in zip(AXES, rows.T, strict=True)},
     }
 
 

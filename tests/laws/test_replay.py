@@ -14,11 +14,13 @@ from hypothesis.extra.numpy import arrays
 
 from rovsim.body import Body, packed
 from rovsim.effects.buoyancy import NetBuoyancy
+from rovsim.effects.damping import QuadraticDamping
 from rovsim.engine.at import Inputs, Jobs, Place
 from rovsim.engine.compiled import engine
 from rovsim.frames import from_euler, matrix, rotate, unrotate
 from rovsim.model import zero_acceleration
 from rovsim.replay import Replay, ReplaySettings, replay, trajectories, windows
+from rovsim.scores import score
 from rovsim.signals.chain import SignalSettings
 from rovsim.signals.filter import Butterworth
 from worlds import at_rest, model, motion, sticks
@@ -268,3 +270,14 @@ def test_zero_acceleration_keeps_the_body_velocity():
     turned = matrix(path[-1, 3:7]) @ matrix(start[3:7]).T
     assert np.arctan2(turned[1, 0], turned[0, 0]) == pytest.approx(0.8)  # 0.4 rad/s for 2 s
     np.testing.assert_allclose(unrotate(path[:, 3:7], DOWN), np.tile(DOWN, (201, 1)), atol=1e-12)
+
+
+@pytest.mark.parametrize("binned", [False, True])
+def test_a_model_that_diverges_has_no_score_rather_than_that_of_its_first_seconds(binned):
+    run = replace(simulated(), binned=binned, end=10.0)
+    wild = model(QuadraticDamping(surge=-5e4, sway=-5e4, heave=-5e4))
+    found = score(run, replay(wild, run, OPEN, ReplaySettings()))["open_loop"]
+    assert found["velocity_rmse"]["surge"] is None
+    assert found["velocity_mae"]["surge"] is None
+    assert found["acceleration_rmse"]["surge"] is None
+    assert found["position_rmse_m"] is None
