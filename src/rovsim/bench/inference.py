@@ -44,6 +44,8 @@ class Clock:
                 seconds=seconds,
             )  # fmt: skip
         self.found[f"{name}@{points}"] = stats
+        times = f"{stats['median_us']:12.1f} us median {stats['p999_us']:12.1f} us p99.9"
+        print(f"{name}@{points}".ljust(36), times, flush=True)
         return stats
 
     def beside(
