@@ -13,7 +13,6 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy import ndarray as Array
 
-from rovsim.frames import from_euler
 from rovsim.model import Model, load_model
 from rovsim.stepping import Stepper
 from rovsim.vehicle import load_vehicle
@@ -21,7 +20,7 @@ from rovsim.vehicle import load_vehicle
 ID = "rovsim/Vehicle-v0"
 
 
-class VehicleEnv(gymnasium.Env):
+class VehicleEnv(gymnasium.Env[Array, Array]):
     """A vehicle that starts at rest and level near the origin.
 
     An action (n,) is one command in [-1, 1] per thruster, of what the vehicle allows. An
@@ -68,8 +67,8 @@ class VehicleEnv(gymnasium.Env):
         super().reset(seed=seed)
         options = options or {}
         self.stepper.reset()
-        heading = from_euler(0.0, 0.0, self.np_random.uniform(-np.pi, np.pi))
-        start = np.concatenate([np.zeros(3), heading, np.zeros(6)])
+        half = 0.5 * self.np_random.uniform(-np.pi, np.pi)
+        start = np.concatenate([np.zeros(3), [np.cos(half), 0.0, 0.0, np.sin(half)], np.zeros(6)])
         self.goal = np.array(options.get("goal", self._goal()), dtype=np.float64)
         self.state = np.array(options.get("state", start), dtype=np.float64)
         return self._seen(), {}
@@ -94,4 +93,4 @@ class VehicleEnv(gymnasium.Env):
         return np.concatenate([self.state, self.goal])
 
 
-gymnasium.register(ID, entry_point=VehicleEnv)
+gymnasium.register(ID, entry_point=f"{__name__}:VehicleEnv")

@@ -52,6 +52,9 @@ def test_time_is_bounded(clock):
     stats = latency(call, QUERIES, calls=10**6, warmup=1, points=1, seconds=0.05)
     assert stats["calls"] == 6
     assert latency(call, QUERIES, calls=9, warmup=0, points=1, seconds=0.0)["calls"] == 1
+    before = clock[0]
+    latency(call, QUERIES, calls=1, warmup=10**6, points=1, seconds=0.5)
+    assert clock[0] - before == 7 * 10_000_000  # a tenth of half a second, and one call
 
 
 def test_the_collector_rests_during_the_calls_and_is_put_back():

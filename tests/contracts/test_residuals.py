@@ -93,11 +93,12 @@ def test_a_process_fades_where_it_has_seen_nothing(trained):
     far = X * np.where(np.ptp(X, axis=0) > 0, 1e4, 1.0)
     assert (trained.predict(far) == 0.0).all()
     mean, faded = trained.posterior(X)[0], trained.predict(X)
-    assert (np.abs(faded) <= np.abs(mean)).all()
-    assert (faded == mean).mean() > 0.95
+    whole = np.isclose(faded, mean, rtol=1e-12)
+    assert (whole | (np.abs(faded) < np.abs(mean))).all()
+    assert whole.mean() > 0.95
     plain = settings_of(trained.kind, trained.settings.model_dump() | {"trusted": None})
     never = train(*pairs(plain), plain, seed=3)
-    assert never.predict(far).tobytes() == never.posterior(far)[0].tobytes()
+    assert never.predict(far) == pytest.approx(never.posterior(far)[0], rel=1e-12)
 
 
 def test_the_library_s_model_can_be_rebuilt(trained, queries):

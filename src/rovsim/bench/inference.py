@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy import ndarray as Array
+from threadpoolctl import threadpool_limits
 
 from rovsim.bench import libraries
 from rovsim.bench.data import Pairs, fitted, unfading
@@ -38,12 +39,15 @@ class Clock:
     def time(self, name: str, call: Callable, points: int, seconds: float) -> dict[str, Any]:
         """Time one way under the name@points."""
         effort = self.effort
-        with as_a_control_loop() as self.scheduling:
+        # one query has no work for two threads, and waiting for a second costs milliseconds
+        with threadpool_limits(1), as_a_control_loop() as self.scheduling:
             stats = latency(
                 call, self.pairs.queries, effort.calls, effort.warmup, points=points,
                 seconds=seconds,
             )  # fmt: skip
         self.found[f"{name}@{points}"] = stats
+        times = f"{stats['median_us']:12.1f} us median {stats['p999_us']:12.1f} us p99.9"
+        print(f"{name}@{points}".ljust(36), times, flush=True)
         return stats
 
     def beside(

@@ -1,0 +1,31 @@
+"""Pack a model as an FMI 2.0 co-simulation unit.
+
+rovsim fmu model=nominal|FILE out=vehicle.fmu
+
+The unit holds the model and its residual, not the simulator: the machine that runs it needs rovsim
+in the Python that its FMI tool loads (docs/elsewhere.md). Needs the extra rovsim[fmi].
+"""
+
+from pathlib import Path
+
+from rovsim.config import Settings
+from rovsim.errors import BadInput
+from rovsim.fmi.unit import write_unit
+from rovsim.model import BUILT_IN, load_model
+from rovsim.vehicle import load_vehicle
+
+
+def run(settings: Settings) -> None:
+    """Write the unit."""
+    spec = settings.model
+    if not isinstance(spec, str) or spec == "zero_acceleration" or settings.effect_files:
+        raise BadInput(
+            f"model {spec}" + (", effects_file" if settings.effect_files else ""),
+            where="rovsim fmu",
+            expected="one model, of effects that are installed",
+            remedy="Name one model file; install effects of your own (docs/your_own_effect.md).",
+        )
+    out = Path(settings.out or "results/vehicle.fmu")
+    model = load_model(spec, load_vehicle("bluerov2_heavy"))
+    write_unit(model, None if spec in BUILT_IN else Path(spec), out)
+    print(out)

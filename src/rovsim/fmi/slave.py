@@ -1,0 +1,65 @@
+"""What is inside the unit: a `Stepper` behind FMI's variables. Goes into the .fmu as it stands."""
+
+from pathlib import Path
+from xml.etree.ElementTree import SubElement
+
+import numpy as np
+from pythonfmu import Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
+
+from rovsim.model import read_model
+from rovsim.stepping import Stepper
+
+STATE = ("x", "y", "z", "q0", "q1", "q2", "q3", "u", "v", "w", "p", "q", "r")
+MODEL = "model.yaml"  # among the unit's resources
+
+
+class Vehicle(Fmi2Slave):
+    """A vehicle in water; SI units, NED, body axes FRD at CO, quaternion q0..q3 body to world.
+
+    Parameters `start_x` … are the state to begin with, inputs `command_1` … the thrusters' commands
+    in [-1, 1], which hold over a step, outputs `x` … the state.
+    """
+
+    def __init__(self, **given):
+        super().__init__(**given)
+        self.description = "An underwater vehicle simulated by rovsim"
+        self.stepper = Stepper(read_model(Path(self.resources, MODEL)))
+        self.state = np.zeros(13)
+        self.start = np.array([float(name == "q0") for name in STATE])
+        self.command = np.zeros(self.stepper.columns)
+        for i in range(self.stepper.columns):
+            self._real(f"command_{i + 1}", Fmi2Causality.input, self.command, i)
+        for i, name in enumerate(STATE):
+            fixed = Fmi2Variability.tunable
+            self._real(f"start_{name}", Fmi2Causality.parameter, self.start, i, variability=fixed)
+        for i, name in enumerate(STATE):
+            begins = Fmi2Initial.calculated
+            self._real(name, Fmi2Causality.output, self.state, i, initial=begins)
+
+    def to_xml(self, *options):
+        """What describes the unit; pythonfmu 0.7 leaves out the outputs' part in initialisation."""
+        root = super().to_xml(*options)
+        structure = root.find("ModelStructure")
+        known = SubElement(structure, "InitialUnknowns")
+        for output in structure.iterfind("Outputs/Unknown"):
+            SubElement(known, "Unknown", attrib=dict(output.attrib))
+        return root
+
+    def _real(self, name, causality, array, i, **more):
+        """A variable that is an element of an array."""
+        self.register_variable(
+            Real(
+                name, causality=causality, getter=lambda: float(array[i]),
+                setter=lambda value: array.__setitem__(i, value), **more,
+            )
+        )  # fmt: skip
+
+    def exit_initialization_mode(self):
+        """Begin where the parameters say."""
+        self.stepper.reset()
+        self.state[:] = self.start
+
+    def do_step(self, current_time, step_size):
+        """Hold the commands for a step."""
+        self.state[:] = self.stepper.step(self.state, self.command, step_size)
+        return True

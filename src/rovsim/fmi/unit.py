@@ -1,0 +1,52 @@
+"""A model packed as an FMI 2.0 co-simulation unit, by pythonfmu."""
+
+import shutil
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rovsim.errors import BadInput
+from rovsim.files import appearing, read_yaml
+from rovsim.model import Model
+
+SLAVE, MODEL = "slave.py", "model.yaml"
+
+
+def write_unit(model: Model, source: Path | None, out: Path) -> None:
+    """Write a model as a unit.
+
+    Args:
+        model: what is packed.
+        source: its file, beside which the arrays of its residual lie; None for a built-in model.
+        out: the .fmu.
+
+    Raises:
+        BadInput: `out` is no .fmu, or cannot be written.
+    """
+    if out.suffix != ".fmu":
+        raise BadInput(
+            f"'{out.name}' is no unit", where="out", expected="a name that ends with .fmu",
+            remedy="For example out=vehicle.fmu.",
+        )  # fmt: skip
+    from pythonfmu.builder import FmuBuilder
+
+    with TemporaryDirectory() as folder, appearing(out) as temporary:
+        inside = Path(folder, "inside")
+        inside.mkdir()
+        files = _packed(model, source, inside)
+        script = Path(shutil.copy(Path(__file__).with_name(SLAVE), folder))
+        before = list(sys.path)
+        try:
+            built = FmuBuilder.build_FMU(script, Path(folder, "unit.fmu"), files)
+        finally:
+            sys.path[:] = before  # pythonfmu leaves the script's folder there
+        shutil.copyfile(built, temporary)
+
+
+def _packed(model: Model, source: Path | None, folder: Path) -> list[Path]:
+    """The model's files in a folder, the vehicle written into them where it is no built-in one."""
+    residual = read_yaml(source).get("residual") if source else None
+    model.write(folder / MODEL, residual=residual)
+    if source and residual:
+        shutil.copyfile(source.parent / residual["file"], folder / residual["file"])
+    return sorted(folder.iterdir())

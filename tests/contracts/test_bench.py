@@ -1,0 +1,74 @@
+"""The speed benchmark: all ways predict the same, and the page shows what was found."""
+
+import numpy as np
+import pytest
+
+from rovsim.bench.accuracy import _left
+from rovsim.bench.data import Pairs, fitted, unfading
+from rovsim.bench.inference import Clock, Effort, _neighbours, _processes
+from rovsim.bench.page import text, write_page
+from rovsim.report.marked import BEGIN, END
+
+FEW = Effort(calls=5, warmup=1, seconds=0.05)
+
+
+def pairs(rows=150, asked=20):
+    rng = np.random.default_rng(0)
+    X, queries = rng.normal(size=(rows, 12)), rng.normal(size=(asked, 12))
+    kinds = np.array(["3dof", "6dof"])
+    return Pairs(
+        X, np.tanh(X[:, :6]), kinds[np.arange(rows) % 2], queries, np.tanh(queries[:, :6]),
+        kinds[np.arange(asked) % 2],
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def found():
+    clock = Clock(pairs(), FEW)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delattr("os.setpriority")  # tests do not push other programs aside
+        _neighbours(clock, 150, 0.05)
+        _processes(clock, 150, 0.05)
+    return clock.found
+
+
+def test_all_ways_predict_the_same(found):
+    gaps = {
+        f"{name} {other}": gap
+        for name, stats in found.items()
+        for other, gap in stats.get("largest_difference", {}).items()
+        if other != "gpytorch_love"  # an approximation
+    }
+    assert len(gaps) == 7
+    assert max(gaps.values()) < 1e-6, gaps
+
+
+def test_the_page_shows_the_results(found, tmp_path):
+    row = {"points": 5, "median_us": 2.0, "seen": {"mean": 0.5, "worst": 0.6}}
+    row |= {"unseen": {"mean": 0.9, "worst": 1.1}}
+    content = {
+        "machine": "M", "scheduling": "S", "replay": {"single_steps_per_s": 2e6},
+        "inference": found,
+        "accuracy": [row | {"name": "gp", "fades": fades} for fades in (False, True)],
+    }  # fmt: skip
+    page = tmp_path / "page.md"
+    page.write_text(f"before\n{BEGIN}\n{END}\nafter\n", encoding="utf-8")
+    write_page(page, content)
+    assert page.read_text(encoding="utf-8").startswith("before")
+    assert "| single | 2,000,000 |" in text(content)
+    assert "| sklearn_knn | 150 |" in text(content)
+    names = sorted(path.name for path in (tmp_path / "images").iterdir())
+    assert names == ["bench_accuracy.png", "bench_sizes.png"]
+
+
+def test_what_is_left_is_measured_where_it_was_asked():
+    knn = fitted("knn", pairs().of("3dof"))
+    left = _left(knn, pairs(), "6dof")
+    assert 0.0 < left["mean"] <= left["worst"]
+
+
+def test_a_process_can_be_asked_not_to_fade():
+    gp = fitted("gp", pairs(60), max_points=60, iterations=3)
+    far = 50.0 * np.ones((1, 12))
+    assert (gp.predict(far) == 0.0).all()
+    assert unfading(gp).predict(far) == pytest.approx(gp.posterior(far)[0])
