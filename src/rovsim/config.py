@@ -58,6 +58,9 @@ class Settings(Section):
     model: str | list[str]
     out: str | None
     effects_file: str | list[str] | None = None
+    output: Literal["text", "json", "quiet"] = "text"
+    port: int = Field(8501, ge=1, le=65535)
+    open: bool = True
     control: Literal["3dof", "6dof"]
     seed: int = Field(ge=0)
     signals: SignalSettings

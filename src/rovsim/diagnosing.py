@@ -20,6 +20,9 @@ from rovsim.strict import Section
 from rovsim.where import content as where_content
 from rovsim.where import judged
 
+# Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
+STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
+
 
 class DiagnosisSettings(Section):
     """All that a diagnosis depends on but the runs and the model."""

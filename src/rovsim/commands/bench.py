@@ -16,6 +16,7 @@ from rovsim.config import Settings
 from rovsim.files import write_json
 from rovsim.loading import measured
 from rovsim.model import nominal
+from rovsim.saying import say
 from rovsim.tank.campaign import make_campaign
 from rovsim.training import samples
 
@@ -48,8 +49,9 @@ def run(settings: Settings) -> None:
     }
     path = Path(settings.out or "results") / "bench.json"
     write_json(path, content)
-    for name, value in content["replay"].items():
-        print(f"{name:<26} {value:14,.0f}")
-    for name, stats in content["inference"].items():
-        print(f"{name:<26} {stats['median_us']:10.1f} us median {stats['p999_us']:10.1f} us p99.9")
-    print(path)
+    rows = [f"{name:<26} {value:14,.0f}" for name, value in content["replay"].items()]
+    rows += [
+        f"{name:<26} {stats['median_us']:10.1f} us median {stats['p999_us']:10.1f} us p99.9"
+        for name, stats in content["inference"].items()
+    ]
+    say(settings, "\n".join([*rows, str(path)]), content)

@@ -19,6 +19,7 @@ from rovsim.hidden.run import run as run_cases
 from rovsim.hidden.suites import suite
 from rovsim.hidden.summary import judged, summary
 from rovsim.progress import reported
+from rovsim.saying import say
 
 SCHEMA = "rovsim.hidden.summary/1"
 
@@ -38,5 +39,4 @@ def run(settings: Settings) -> None:
     text = tables(results)
     if asked.seeds == "reporting":
         replace_tables(Path(asked.page), text)
-    print(text)
-    print(out / "summary.json")
+    say(settings, f"{text}\n{out / 'summary.json'}", results)

@@ -46,7 +46,8 @@ def diagnosed(found: Mapping[str, Any]) -> str:
     for one, words in zip(found["selected"], said.missing, strict=True):
         lines += _effect(one["error_reduction"] or 0.0, words)
     lines += _ranking(found["ranking"])
-    for remark in said.remarks:
+    following = [f"Next: {said.next}"] if said.next else []
+    for remark in (*said.remarks, *following):
         lines += ["", *textwrap.wrap(remark, WIDTH)]
     return "\n".join(lines)
 
