@@ -5,8 +5,7 @@ from typing import Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt
 
-from rovsim.diagnosing import DiagnosisSettings
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.errors import BadInput, nearest
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import LearnerSettings, learner_settings
