@@ -55,7 +55,7 @@ check: setup
 	$(BIN)/lint-imports
 
 bench-ui: setup chromium
-	$(BIN)/python tests/browser/speed.py
+	PYTHONPATH=tests $(BIN)/python tests/browser/speed.py
 
 bench: setup
 	$(BIN)/rovsim bench

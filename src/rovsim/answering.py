@@ -84,8 +84,8 @@ def _base(chosen: Sequence[Model]) -> Model:
     )
 
 
-def train(data: Measured, base: Model, settings: Settings, out: Path) -> Model:
-    """Train a residual on top of a model; writes `out`/model.yaml and returns it as read back."""
+def train(data: Measured, base: Model, settings: Settings, out: Path, name: str = "model") -> Model:
+    """Train a residual on top of a model; writes `out`/`name`.yaml and returns it as read back."""
     used = training_runs(list(data.motions.values()), settings.control)
     with reported(f"training {settings.learner.kind}") as progress:
         trained = train_residual(
@@ -94,5 +94,6 @@ def train(data: Measured, base: Model, settings: Settings, out: Path) -> Model:
         )  # fmt: skip
     description = write_residual(out, trained, settings.control)
     story = provenance(settings) | {"train_runs": [m.run.id for m in used], "base": base.name}
-    base.write(out / "model.yaml", description, story)
-    return read_model(out / "model.yaml")
+    path = out / f"{name}.yaml"
+    base.write(path, description, story)
+    return read_model(path)

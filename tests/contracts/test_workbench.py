@@ -14,9 +14,10 @@ from rovsim.cli import main
 from rovsim.config import compose
 from rovsim.effects import catalogue
 from rovsim.errors import BadInput
+from rovsim.files import read_json
 from rovsim.model import read_model
 from rovsim.progress import counted
-from rovsim.ui import charts, path
+from rovsim.ui import charts, path, tasks
 from rovsim.ui.draft import Draft, reach
 from rovsim.ui.work import Work
 from rovsim.ui.workbench import Workbench
@@ -66,6 +67,24 @@ def test_a_diagnosis_of_other_recordings_settings_or_models_is_not_shown(bench):
 def test_a_campaign_that_cannot_be_read_is_one_message(tmp_path):
     with pytest.raises(BadInput, match="nowhere"):
         Workbench.opened(compose([f"campaign='{tmp_path / 'nowhere'}'"]))
+
+
+def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench, monkeypatch):
+    drawn = []
+    monkeypatch.setattr("rovsim.report.folder.present", lambda *given: drawn.append(given))
+    here = Workbench(bench.settings, bench.data, dict(bench.models), dict(bench.paths))
+    file = tasks.learn(here.only("nominal"), here.out / "knn_6dof.yaml")
+    here.add(read_model(file), file)
+    page = tasks.tell(here.only(*here.models), {"ladder": here.ladder()}, here.out)
+    assert page.name == "report.html"
+    assert len(drawn) == 1
+    comparison = read_json(here.out / "comparison.json")["models"]
+    assert list(comparison) == ["nominal", "knn_6dof"]
+    for name, one in here.models.items():
+        for run, scores in comparison[name]["runs"].items():
+            assert here.metrics(one, run, 2.0) == scores["windows"]["2"]
+    steps = read_json(here.out / "ladder.json")["steps"]
+    assert [s["model"] for s in steps] == ["zero_acceleration", "nominal", "knn_6dof"]
 
 
 def test_a_draft_begins_as_the_diagnosis_and_what_is_saved_is_read_back(tmp_path):

@@ -15,6 +15,7 @@ from rovsim.diagnosing import Diagnosed
 from rovsim.evidence import Evidence
 from rovsim.files import write_json
 from rovsim.loading import Measured, measured, models, results_folder
+from rovsim.progress import reported
 from rovsim.provenance import provenance
 from rovsim.report import terminal
 from rovsim.saying import say
@@ -33,10 +34,11 @@ def run(settings: Settings) -> None:
     write_json(out / "diagnosis.json", found.content)
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
     say(settings, f"{terminal.diagnosed(found.content)}\n\n{files}", found.content)
-    track_diagnosis(
-        settings.tracking, data.campaign.name, chosen[0].name, found.content,
-        settings.diagnosing.model_dump(mode="json"), [out / "diagnosis.json", *shown],
-    )  # fmt: skip
+    with reported("logging to MLflow"):
+        track_diagnosis(
+            settings.tracking, data.campaign.name, chosen[0].name, found.content,
+            settings.diagnosing.model_dump(mode="json"), [out / "diagnosis.json", *shown],
+        )  # fmt: skip
 
 
 def _present(out: Path, data: Measured, found: Diagnosed, settings: Settings) -> list[Path]:

@@ -11,6 +11,7 @@ from rovsim.config import Settings
 from rovsim.errors import BadInput
 from rovsim.files import write_json
 from rovsim.loading import measured, models, results_folder
+from rovsim.progress import reported
 from rovsim.saying import say
 from rovsim.tracking import track
 
@@ -33,13 +34,18 @@ def run(settings: Settings) -> None:
     replays = replayed(data, [base, corrected], settings)
     found = scored(list(data.motions.values()), replays)
     write_json(out / "comparison.json", found)
-    track(
-        settings.tracking,
-        experiment=data.campaign.name,
-        name=name,
-        tags={"model": base.name, "residual": settings.learner.kind, "control": settings.control},
-        params=settings.residual | {"seed": settings.seed},
-        scores=found["models"]["model"]["runs"],
-        files=sorted(p for p in out.iterdir() if p.is_file()),
-    )
+    with reported("logging to MLflow"):
+        track(
+            settings.tracking,
+            experiment=data.campaign.name,
+            name=name,
+            tags={
+                "model": base.name,
+                "residual": settings.learner.kind,
+                "control": settings.control,
+            },
+            params=settings.residual | {"seed": settings.seed},
+            scores=found["models"]["model"]["runs"],
+            files=sorted(p for p in out.iterdir() if p.is_file()),
+        )
     say(settings, str(out / "model.yaml"), {"model": str(out / "model.yaml")})

@@ -19,7 +19,11 @@ def compared(errors: Mapping[str, float | None], where: Mapping[str, Any]) -> st
     ]
     lines += ["in units of the measured velocity's spread, mean over the excited axes", ""]
     width = max((len(short(name)) for name in errors), default=0)
-    lines += [f"  {short(n):<{width}}  {significant(number(e))}" for n, e in errors.items()]
+    most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
+    lines += [
+        f"  {short(n):<{width}}  {_bar((e or 0.0) / most)} {significant(number(e))}"
+        for n, e in errors.items()
+    ]
     return "\n".join([*lines, *_findings(where)])
 
 

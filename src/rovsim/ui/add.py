@@ -204,7 +204,7 @@ class Add:
                 tile("Error before", before, "saved/before", "test runs")
                 tile("Error now", after, "saved/after", "test runs")
                 if floor is not None:
-                    tile("Noise floor", floor, "saved/noise_floor", "no model can do better")
+                    tile("Noise floor", floor, "saved/noise_floor", "of a perfect model, about")
             text(_sentence(before, after))
             ui.label("The same in a terminal").classes("soft")
             campaign = self.bench.settings.campaign

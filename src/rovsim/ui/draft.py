@@ -69,13 +69,6 @@ class Draft:
         """
         return extended(self.base, [self.entry(name) for name in self.ticked])
 
-    def as_found(self) -> bool:
-        """Whether it is what the diagnosis selected, nothing moved."""
-        selected = [one["effect"] for one in self.diagnosis.get("selected", [])]
-        return sorted(self.ticked) == sorted(selected) and not any(
-            self.values.get(name) for name in self.ticked
-        )
-
 
 def reach(parameter: Parameter, value: float) -> tuple[float, float]:
     """Lowest and highest value of a slider that begins at `value`."""

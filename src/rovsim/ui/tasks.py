@@ -28,12 +28,12 @@ def find(settings: Settings, path: Path) -> dict[str, Any]:
     return content
 
 
-def learn(settings: Settings, out: Path) -> Path:
-    """Train a residual on top of settings.model; returns the model file."""
+def learn(settings: Settings, path: Path) -> Path:
+    """Train a residual on top of settings.model; returns the model file, `path`."""
     use_effect_files(settings.effect_files)
     data = measured(settings)
-    train(data, models(settings, data.vehicle)[0], settings, out)
-    return out / "model.yaml"
+    train(data, models(settings, data.vehicle)[0], settings, path.parent, path.stem)
+    return path
 
 
 def tell(settings: Settings, known: dict[str, Any], out: Path) -> Path:

@@ -144,7 +144,7 @@ class Where:
             chart(
                 bins_chart(self.told["axes"][axis][condition], condition, axis, unit),
                 f"Mean {axis} error by bins of {condition}",
-                260,
+                200,
                 on_point_click=lambda e: self._samples(axis, found, e.data_index),
             )
             names = {k: _span(found, k) for k in range(len(found.binning.count))}

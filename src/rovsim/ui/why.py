@@ -58,7 +58,7 @@ def _errors(error: dict[str, Any]) -> None:
     with ui.row().classes("tiles"):
         tile("Error of the model", error["nominal"], "error/nominal", "test runs")
         tile("With the effects", error["with_effects"], "error/with_effects", "test runs")
-        tile("Noise floor", error["noise_floor"], "error/noise_floor", "no model can do better")
+        tile("Noise floor", error["noise_floor"], "error/noise_floor", "of a perfect model, about")
     text(
         "Velocity error after being set to the measured state every 2 s, in units of the measured "
         "velocity's spread.", "soft",
@@ -80,7 +80,9 @@ async def _effect(bench: Workbench, missing: Missing) -> None:
                 text(f"Usual cause: {missing.cause}")
                 ui.link("What it looks like, and how to be sure", f"/gallery/{missing.effect}")
         if known := catalogue().get(missing.effect):
-            await picture(bench, known)
+            with ui.column().classes("seen"):
+                await picture(bench, known)
+                ui.label("From the gallery: what it looks like in a calm tank, not your data.")
 
 
 def _ranking(found: dict[str, Any]) -> None:

@@ -123,10 +123,10 @@ class Workbench:
         settings = self.only(name).model_copy(update={"residual": chosen})
 
         def take(path: Path) -> None:
-            self.add(read_model(path).called(trained), path)
+            self.add(read_model(path), path)
 
-        out = self.out / "trained" / trained
-        self.work = Work.start(f"Training {trained}", take, tasks.learn, settings, out)
+        path = self.out / "trained" / trained / f"{trained}.yaml"
+        self.work = Work.start(f"Training {trained}", take, tasks.learn, settings, path)
 
     def report(self) -> None:
         """Begin to write the report and the JSON files behind it."""
