@@ -1,6 +1,5 @@
 """The workbench shows what the commands write; long work reports, ends, can be cancelled."""
 
-import os
 import socket
 import time
 
@@ -9,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from chores import counting, dying, failing
 from rovsim.answering import compare
 from rovsim.cli import main
 from rovsim.config import compose
@@ -16,7 +16,6 @@ from rovsim.effects import catalogue
 from rovsim.errors import BadInput
 from rovsim.files import read_json
 from rovsim.model import read_model
-from rovsim.progress import counted
 from rovsim.ui import charts, path, tasks
 from rovsim.ui.draft import Draft, reach
 from rovsim.ui.work import Work
@@ -121,23 +120,6 @@ def test_values_no_model_can_have_are_refused():
     draft.move("added_mass", "surge", -1e4)
     with pytest.raises(BadInput):
         draft.model()
-
-
-def counting(rounds, pause):
-    """Something that takes a while and tells how far it is."""
-    for _ in counted(range(rounds), "counting"):
-        time.sleep(pause)
-    return rounds
-
-
-def failing():
-    """Input that cannot be used."""
-    raise BadInput("is broken", where="there", expected="sound input", remedy="Mend it.")
-
-
-def dying():
-    """A process that ends without a word."""
-    os._exit(3)
 
 
 def ended(work):

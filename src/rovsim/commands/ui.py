@@ -12,8 +12,7 @@ import socket
 from rovsim.config import Settings
 from rovsim.errors import BadInput
 from rovsim.saying import say
-
-HOST = "127.0.0.1"
+from rovsim.ui import HOST
 
 
 def run(settings: Settings) -> None:

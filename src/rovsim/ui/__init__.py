@@ -11,3 +11,5 @@ anyway, and ECharts, Vue and fonts in its own package, so that nothing is fetche
     charts, parts ECharts options and HTML that several screens share
     compare …     one screen a file: TITLE, QUESTION, show(bench)
 """
+
+HOST = "127.0.0.1"  # loopback: nobody else can reach it

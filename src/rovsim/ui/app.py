@@ -14,8 +14,8 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from rovsim.config import Settings, compose
 from rovsim.errors import RovsimError
+from rovsim.ui import HOST
 
-HOST = "127.0.0.1"
 SCREENS = ("compare", "where", "why", "add", "ladder", "data")
 STYLE = Path(__file__).with_name("style.css")
 ICON = (
