@@ -86,6 +86,29 @@ def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench
     assert [s["model"] for s in steps] == ["zero_acceleration", "nominal", "knn_6dof"]
 
 
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [("nominal.yaml", "as another"), ("new.json", "yaml"), ("campaign.yaml", "no model file")],
+)
+def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, name, found):
+    path = tmp_path / name
+    path.write_text("name: mine\n")
+    with pytest.raises(BadInput, match=found):
+        bench.save(path)
+    assert path.read_text() == "name: mine\n"
+
+
+def test_a_saved_draft_is_one_of_the_models_and_may_be_saved_again(bench, tmp_path):
+    here = Workbench(bench.settings, bench.data, dict(bench.models), dict(bench.paths))
+    here.draft.tick("thruster_lag", True)
+    for value in (0.1, 0.2):
+        here.draft.move("thruster_lag", "time_constant", value)
+        saved = here.save(tmp_path / "lagging.yaml")
+        assert here.models["lagging"] is saved
+        assert saved.entries[0].parameters["time_constant"].value == value
+    assert here.base.name == "nominal"
+
+
 def test_a_draft_begins_as_the_diagnosis_and_what_is_saved_is_read_back(tmp_path):
     draft = Draft(model(), diagnosis())
     draft.model().write(tmp_path / "new.yaml")

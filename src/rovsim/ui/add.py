@@ -10,8 +10,7 @@ from rovsim.effects import catalogue
 from rovsim.errors import RovsimError
 from rovsim.figures.marks import significant
 from rovsim.gallery.page import unit
-from rovsim.model import Model, read_model
-from rovsim.provenance import provenance
+from rovsim.model import Model
 from rovsim.ui.draft import reach
 from rovsim.ui.parts import computed, heading, onward, section, text, tile, tile_html
 from rovsim.ui.traces import Traces, excited, panels
@@ -176,22 +175,12 @@ class Add:
 
     async def _saved(self) -> None:
         """Write the model file, and show what it does on the test runs."""
-        model, path = self._model(), Path(self.path.value.strip())
-        if model is None:
-            return
-        if path.suffix not in (".yaml", ".yml"):
-            ui.notify("A model file ends in .yaml", type="warning")
-            return
+        path = Path(self.path.value.strip())
         try:
-            story = {"base": self.bench.base.name, "effects": self.draft.ticked}
-            known = provenance(self.bench.settings)
-            story |= {"moved": self.draft.values} | {k: known[k] for k in ("code", "versions")}
-            model.write(path, provenance=story)
-            saved = read_model(path)
+            saved = await computed(self.bench.save, path)
         except RovsimError as error:
             ui.notify(str(error), type="warning", multi_line=True)
             return
-        self.bench.add(saved, path)
         before = (await computed(self.bench.step, self.bench.base))["windows_2s"]
         after = (await computed(self.bench.step, saved))["windows_2s"]
         self._tell(path, before, after)

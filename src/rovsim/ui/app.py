@@ -190,7 +190,10 @@ class Page:
         if bench is None:
             self._choose()
             return
-        await _module(name).show(bench)
+        try:
+            await _module(name).show(bench)
+        except RovsimError as error:
+            ui.label(str(error)).classes("warning")
 
     async def _effect(self, effect: str) -> None:
         self._active("gallery")

@@ -90,7 +90,7 @@ def chart(
     """An ECharts chart that says what it shows to those who do not see it."""
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}
     found = ui.echart({**common, **options}, on_point_click)
-    found.props(f'role="img" aria-label="{about}"')
+    found.props.update({"role": "img", "aria-label": about})
     return found.classes("chart").style(f"height:{height}px" if height else "")
 
 

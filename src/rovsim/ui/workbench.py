@@ -9,11 +9,12 @@ from typing import Any, Mapping
 
 from rovsim.adding import read_diagnosis
 from rovsim.config import Settings, compose
+from rovsim.errors import BadInput, RovsimError
 from rovsim.files import read_json
 from rovsim.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.loading import Measured, measured, models
-from rovsim.model import Model, read_model, zero_acceleration
-from rovsim.provenance import digest
+from rovsim.model import BUILT_IN, Model, read_model, zero_acceleration
+from rovsim.provenance import digest, provenance
 from rovsim.replay import OPEN_LOOP, Prediction, Replay, replay
 from rovsim.scores import errors, metrics
 from rovsim.ui import tasks
@@ -88,6 +89,11 @@ class Workbench:
         return self.out / content.hexdigest()[:12] / "diagnosis.json"
 
     @cached_property
+    def baseline(self) -> Model:
+        """The model to beat: a vehicle that keeps its velocity."""
+        return zero_acceleration(self.data.vehicle)
+
+    @cached_property
     def draft(self) -> Draft:
         """The model that is being put together."""
         return Draft(self.base, self.diagnosis or {})
@@ -100,6 +106,20 @@ class Workbench:
     def add(self, model: Model, path: Path) -> None:
         """Take in a model that was saved or trained."""
         self.models[model.name], self.paths[model.name] = model, str(path)
+
+    def save(self, path: Path) -> Model:
+        """Write the draft as a model file, and take it in as it is read back.
+
+        Raises:
+            BadInput: no such model can be, or the place is taken by something else.
+        """
+        _check_place(path, {*BUILT_IN, self.base.name})
+        known = provenance(self.settings)
+        story = {"base": self.base.name, "effects": self.draft.ticked, "moved": self.draft.values}
+        self.draft.model().write(path, None, story | {k: known[k] for k in ("code", "versions")})
+        saved = read_model(path)
+        self.add(saved, path)
+        return saved
 
     def only(self, *names: str) -> Settings:
         """The settings, with these models."""
@@ -144,7 +164,7 @@ class Workbench:
         key = (model, run, horizon)
         if key not in self._replays:
             if len(self._replays) >= KEPT:
-                self._replays.clear()
+                self._replays.pop(next(iter(self._replays)))
             spans = () if horizon is None else (horizon,)
             how = self.settings.replay.model_copy(update={"horizons": spans})
             self._replays[key] = replay(
@@ -182,7 +202,7 @@ class Workbench:
             extra = [self.step(m) for n, m in self.models.items() if m is not self.base]
             known = list(self.study["steps"])
             return ladder([*known[:-1], *extra, *known[-1:]])
-        first = [zero_acceleration(self.data.vehicle), self.base]
+        first = [self.baseline, self.base]
         others = [m for m in self.models.values() if m.name not in {one.name for one in first}]
         steps = [self.step(m) for m in first]
         steps += [{"model": EFFECTS}] if self.diagnosis else []
@@ -197,3 +217,21 @@ class Workbench:
                 model, motions, self.settings.signals, self.settings.replay
             )
         return self._judged[model]
+
+
+def _check_place(path: Path, taken: set[str]) -> None:
+    """Refuse to write over what is no model file, and to call a model as another one is called."""
+    found = ""
+    if path.suffix not in (".yaml", ".yml"):
+        found = "does not end in .yaml"
+    elif path.stem in taken:
+        found = f"would be called '{path.stem}', as another model is"
+    elif path.exists():
+        try:
+            read_model(path)
+        except RovsimError:
+            found = "is there, and is no model file"
+    if found:
+        raise BadInput(
+            found, where=path, expected="a new model file", remedy="Give it another name."
+        )
