@@ -45,8 +45,8 @@ screenshots: setup chromium
 
 .PHONY: chromium
 chromium: setup
-	command -v chromium chromium-browser google-chrome google-chrome-stable chrome >/dev/null \
-	  || $(BIN)/playwright install chromium
+	for name in chromium chromium-browser google-chrome google-chrome-stable chrome; do \
+	  command -v $$name >/dev/null && exit 0; done; $(BIN)/playwright install chromium
 
 check: setup
 	$(BIN)/ruff format --check src tests workflow
