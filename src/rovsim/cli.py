@@ -44,7 +44,7 @@ def _main(words: list[str]) -> None:
             remedy=nearest(command, names),
         )
     if {"-h", "--help"} & set(rest):
-        print(_command(command).__doc__)
+        print(_doc(command))
         return
     sweep = bool({"-m", "--multirun"} & set(rest))
     words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
@@ -63,16 +63,19 @@ def _main(words: list[str]) -> None:
 
 
 def _help(names: Sequence[str]) -> str:
-    import ast
-
     lines = ["rovsim COMMAND key=value …", ""]
-    for name in names:
-        source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
-        text = ast.get_docstring(ast.parse(source)) or ""
-        lines.append(f"  {name:<9} {text.splitlines()[0]}")
+    lines += [f"  {name:<9} {_doc(name).splitlines()[0]}" for name in names]
     lines += ["", "rovsim COMMAND --help tells more; keys and their values stand in conf/."]
     lines += ["--quiet prints nothing but errors, --json the result as JSON."]
     return "\n".join(lines)
+
+
+def _doc(name: str) -> str:
+    """What a command says of itself; it is not imported, which would take seconds."""
+    import ast
+
+    source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
+    return ast.get_docstring(ast.parse(source)) or ""
 
 
 def _command(name: str) -> Any:

@@ -29,7 +29,18 @@ class TimingSettings(Section):
 
     calls: PositiveInt = 10000
     warmup: PositiveInt = 200
-    seconds: PositiveFloat = 10.0
+    seconds: PositiveFloat = 2.0
+
+
+class BenchSettings(Section):
+    """The speed benchmark: calls of each own path, s for a library's, runs of `duration` s."""
+
+    calls: PositiveInt = 100000
+    warmup: PositiveInt = 200
+    seconds: PositiveFloat = 60.0
+    sweep_seconds: PositiveFloat = 2.0
+    duration: PositiveFloat = 300.0
+    page: str = "docs/benchmark_speed.md"
 
 
 class HiddenSettings(Section):
@@ -72,6 +83,7 @@ class Settings(Section):
     to: str = "nominal"
     study: StudySettings
     timing: TimingSettings
+    bench: BenchSettings
     hidden: HiddenSettings
     tracking: TrackingSettings
 

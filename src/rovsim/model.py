@@ -139,6 +139,12 @@ class Model:
         thrusters = next(e for e in self.effects if isinstance(e, Thrusters))
         return ThrustPath(thrusters, self.effects)
 
+    def actuated(self, force: Array, demand: Array) -> Array:
+        """Wrench (k, 6) of thruster forces (k, n), and of loops that took demands (k, 6)."""
+        inertia = np.diag(self.body.M)
+        loops = (loop.asked(demand, inertia) for loop in self.thrust_path.autopilots)
+        return sum(loops, force @ self.body.B.T)
+
     @cached_property
     def wrenches(self) -> list[Wrench]:
         """Effects evaluated at every instant."""

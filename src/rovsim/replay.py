@@ -113,7 +113,7 @@ def inputs(model: Model, motion: Motion, edges: Array, between: Between) -> Inpu
 
 def packed_inputs(model: Model, thrust: Thrust, duration: float) -> Inputs:
     """Wrench, force and demand of one parameter set, stacked for the engine."""
-    wrench = thrust.wrench + thrust.force @ model.body.B.T
+    wrench = thrust.wrench + model.actuated(thrust.force, thrust.demand)
     steps = len(wrench)
     return Inputs(
         wrench[None], thrust.force[None], thrust.demand, np.zeros(1, np.int64),

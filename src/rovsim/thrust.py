@@ -4,7 +4,7 @@ Order (contract, section 2): clock -> mixer (demands only) -> deadband -> force 
 asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happens in the engine.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Sequence
 
 import numpy as np
@@ -76,7 +76,20 @@ class ThrustPath:
         commands wherever a line falls inside a step.
         """
         arrival = edges[0] + self.arrival(commands.time - edges[0])  # clocks agree at the start
-        value = commands.value
+        duration = float(edges[-1] - edges[0])
+        lines = Commands(arrival, commands.value, commands.kind)
+        static = self.arrived(lines, edges, float(edges[0]), duration, between)
+        force, _ = self.respond(static.force, float(edges[1] - edges[0]), None)
+        return replace(static, force=force)
+
+    def arrived(
+        self, lines: Commands, edges: Array, start: float, duration: float, between: Between
+    ) -> Thrust:
+        """Static mean thrust over each step, of lines by the time at which they take effect.
+
+        `start` s and `duration` s are those of the recording.
+        """
+        arrival, value = lines.time, lines.value
         pieces = np.union1d(edges, arrival[(arrival > edges[0]) & (arrival < edges[-1])])
         middle = 0.5 * (pieces[1:] + pieces[:-1])
         at_middle = _between(arrival, value, middle, between)
@@ -88,14 +101,12 @@ class ThrustPath:
 
         count, steps = len(self.thrusters.spin), len(edges) - 1
         none = np.full((steps, 6), np.nan)
-        if commands.kind == "wrench":
+        if lines.kind == "wrench":
             return Thrust(np.zeros((steps, count)), mean(at_middle), none)
-        command = self.thruster_commands(at_middle, commands.kind)
-        duration = float(edges[-1] - edges[0])
-        static = mean(self.static(command, middle - edges[0], duration))
-        force, _ = self.respond(static, float(edges[1] - edges[0]), None)
-        demand = mean(at_middle) if commands.kind == "demand" else none
-        return Thrust(force, np.zeros((steps, 6)), demand)
+        command = self.thruster_commands(at_middle, lines.kind)
+        static = mean(self.static(command, middle - start, duration))
+        demand = mean(at_middle) if lines.kind == "demand" else none
+        return Thrust(static, np.zeros((steps, 6)), demand)
 
 
 def _between(time: Array, value: Array, at: Array, between: Between) -> Array:

@@ -145,9 +145,10 @@ def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, mon
     assert (tmp_path / "knn" / "residual.npz").read_bytes() == first
 
 
-def test_help_is_quick_because_it_imports_nothing_heavy():
+@pytest.mark.parametrize("words", [["--help"], ["diagnose", "--help"]])
+def test_help_is_quick_because_it_imports_nothing_heavy(words):
     code = (
-        "import sys; from rovsim.cli import main; main(['--help']);"
+        f"import sys; from rovsim.cli import main; main({words});"
         "print(sorted({'torch','mlflow','numba','hydra','matplotlib'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -10,13 +10,14 @@ from rovsim.hidden.case import SEEDS, Case, Unlisted, seed_of
 from rovsim.hidden.flight import fly
 from rovsim.hidden.methods import Method
 from rovsim.hidden.outside import OUTSIDE, drawn_outside
-from rovsim.hidden.page import BEGIN, END, replace_tables, tables
+from rovsim.hidden.page import tables
 from rovsim.hidden.recipes import RECIPES
 from rovsim.hidden.run import answers, place, run
 from rovsim.hidden.score import matching, score
 from rovsim.hidden.suites import FAMILIES, suite
 from rovsim.hidden.summary import detection_limit, judged, summary
 from rovsim.model import EffectEntry
+from rovsim.report.marked import BEGIN, END, replace_tables
 
 SHORT = {
     "duration": 2.0,

@@ -12,9 +12,11 @@ import yaml
 
 from rovsim.errors import BadInput
 from rovsim.files import read_arrays, write_arrays
-from rovsim.residual.features import BLOCKS, FEATURES, FeatureSettings, feature_names
+from rovsim.residual.features import FEATURES, FeatureSettings, feature_names
+from rovsim.residual.layout import BLOCKS, COUNT, POINTS
 from rovsim.residual.learner import learner, learner_settings, learners, spread_rows, train
-from rovsim.residual.predictor import COUNT, POINTS, evaluate, evaluate_many
+from rovsim.residual.predictor import evaluate, evaluate_many
+from rovsim.residual.spectrum import EXACT
 from rovsim.residual.storage import read_residual, write_residual
 
 # the fewest rounds with which a learner still learns: these tests are about promises, not skill
@@ -62,7 +64,40 @@ def queries(trained):
 
 def test_the_exported_prediction_is_the_library_s(trained, queries):
     expected = trained.library_predict(queries)
-    assert np.abs(trained.predict(queries) - expected).max() < 1e-9
+    found = trained.posterior(queries)[0] if is_process(trained) else trained.predict(queries)
+    assert np.abs(found - expected).max() < 1e-9
+
+
+def is_process(trained):
+    return learner(trained.kind).posterior_from is not None
+
+
+def test_the_exported_variance_is_the_library_s(trained, queries):
+    if not is_process(trained):
+        with pytest.raises(BadInput, match="no variance"):
+            trained.posterior(queries)
+        return
+    theirs = learner(trained.kind).posterior_from(trained.arrays, trained.settings)
+    prior = trained.arrays["outputscale"] * trained.arrays["target_scale"] ** 2
+    jitter = 1e-6 * trained.arrays["target_scale"] ** 2  # GPyTorch adds it to what svgp predicts
+    jitter = jitter if trained.kind == "svgp" else 0.0
+    found = trained.posterior(queries)[1]
+    assert (np.abs(found + jitter - theirs(queries)[1]) <= 1.01 * EXACT * prior).all()
+
+
+def test_a_process_fades_where_it_has_seen_nothing(trained):
+    """Full at almost all training rows, exactly nothing far away, never more than the mean."""
+    if not is_process(trained):
+        return
+    X, _ = pairs(trained.settings)
+    far = X * np.where(np.ptp(X, axis=0) > 0, 1e4, 1.0)
+    assert (trained.predict(far) == 0.0).all()
+    mean, faded = trained.posterior(X)[0], trained.predict(X)
+    assert (np.abs(faded) <= np.abs(mean)).all()
+    assert (faded == mean).mean() > 0.95
+    plain = settings_of(trained.kind, trained.settings.model_dump() | {"trusted": None})
+    never = train(*pairs(plain), plain, seed=3)
+    assert never.predict(far).tobytes() == never.posterior(far)[0].tobytes()
 
 
 def test_the_library_s_model_can_be_rebuilt(trained, queries):

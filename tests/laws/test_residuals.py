@@ -9,7 +9,6 @@ from numba import njit, prange
 from rovsim import frames
 from rovsim.residual.export import Kernel, check_exported, export_expansion, export_neighbours
 from rovsim.residual.features import (
-    BLOCKS,
     COLUMNS,
     FEATURES,
     FeatureSettings,
@@ -18,12 +17,55 @@ from rovsim.residual.features import (
     blocks_code,
     feature_names,
 )
-from rovsim.residual.predictor import HEADER, evaluate, evaluate_many
+from rovsim.residual.lanes import exponentials
+from rovsim.residual.layout import BLOCKS, HEADER
+from rovsim.residual.predictor import evaluate, evaluate_many
 from rovsim.residual.scaling import fit_scaling
+from rovsim.residual.spectrum import EXACT, ROUGH, of_exact, rbf
 
 BLOCK_SETS = st.sets(st.sampled_from(list(COLUMNS)), min_size=1).map(tuple)
 SEEDS = st.integers(0, 2**32 - 1)
 SIX = FeatureSettings(blocks=("velocity",), scaling="none")
+
+
+@given(SEEDS, st.integers(1, 4000), st.integers(1, 21), st.floats(0.0, 3.0))
+@settings(max_examples=25, deadline=None)
+def test_a_tree_of_any_size_finds_the_same_as_looking_at_every_point(seed, n, d, spread):
+    """Points in clumps, so that boxes overlap; queries in and far out of them."""
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(n, d)) + spread * rng.integers(-2, 3, (n, 1))
+    chosen = FeatureSettings(blocks=tuple(COLUMNS), scaling="none")
+    wide = np.zeros((n, FEATURES))
+    wide[:, :d] = points
+    Y, k = rng.normal(size=(n, 6)), min(5, n)
+    data = export_neighbours(chosen, fit_scaling("none", wide), wide, Y, k, "uniform")
+    queries = np.concatenate(
+        [wide[:3], rng.normal(size=(5, FEATURES)) * [[1], [1], [3], [9], [99]]]
+    )
+    expected = [Y[nearest_rows(wide, query, k)].mean(0) for query in queries]
+    assert evaluate_many(data, queries) == pytest.approx(np.array(expected), abs=1e-12)
+
+
+def test_exponentials_are_those_of_numpy():
+    x = np.concatenate([np.linspace(0.0, 720.0, 100001), [0.0, 1e-300, 5e3, 1e300]])
+    found = x.copy()
+    exponentials(found)
+    normal = x < 708.0  # below that results are denormal, here zero
+    assert np.abs(found[normal] / np.exp(-x[normal]) - 1.0).max() < 1e-15
+    assert (found[x > 710.0] == 0.0).all()
+    assert found[x == 0.0].tobytes() == np.ones(2).tobytes()
+
+
+@given(SEEDS, st.floats(1e-4, 10.0))
+@settings(max_examples=20, deadline=None)
+def test_the_variance_is_exact_within_its_bound_for_any_query(seed, noise):
+    rng = np.random.default_rng(seed)
+    Z, length = rng.normal(size=(150, 6)), rng.uniform(0.5, 6.0, 6)
+    K, known = rbf(Z, Z, length), of_exact(rbf(Z, Z, length), noise)
+    k = rbf(np.concatenate([Z[:20], 2.0 * rng.normal(size=(80, 6))]), Z, length)
+    exact = 1.0 - (k * np.linalg.solve(K + noise * np.eye(150), k.T).T).sum(1)
+    assert np.abs(known.unsure(k, len(known.spectrum)) - exact).max() < EXACT + 1e-9
+    assert np.abs(known.unsure(k, known.sure) - exact).max() < ROUGH + 1e-9
 
 
 def grid(seed, n, m):

@@ -68,4 +68,4 @@ def test_the_exact_process_is_the_textbook_one():
         K = k(Z, Z) + a["noise"][axis] * np.eye(len(Z))
         f = a["mean"][axis] + k(Q, Z) @ np.linalg.solve(K, T[axis] - a["mean"][axis])
         expected = f * a["target_scale"][axis] + a["target_shift"][axis]
-        assert trained.predict(X[::7] + 0.1)[:, axis] == pytest.approx(expected, abs=1e-9)
+        assert trained.posterior(X[::7] + 0.1)[0][:, axis] == pytest.approx(expected, abs=1e-9)

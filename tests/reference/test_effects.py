@@ -74,7 +74,7 @@ def push(world, state, force=None, walls=None, demand=None, memory=NO_MEMORY):
     demand = np.full((1, 6), np.nan) if demand is None else demand[None]
     force = np.zeros(8) if force is None else force
     given = Inputs(
-        (world.body.B @ force)[None, None], force[None, None], demand,
+        world.actuated(force[None], demand)[None], force[None, None], demand,
         np.zeros(1, np.int64), np.ones(1),
     )  # fmt: skip
     site, out = Place(walls, np.array([1.0, -1.0, -1.0])), np.empty((1, 6))

@@ -1,8 +1,9 @@
-"""Measure replay and inference speed on this machine.
+"""Measure replay and inference speed on this machine, beside the libraries' own.
 
-rovsim bench [out=results] [timing.calls=10000] [timing.seconds=10]
+rovsim bench [out=results] [bench.calls=100000] [bench.seconds=60] [bench.sweep_seconds=2]
 
-Writes results/bench.json. The data are residual features of the default tank campaign.
+Writes results/bench.json, and its table and plots into the page bench.page. The data are residual
+features of the default campaign, flown for bench.duration s a run.
 """
 
 from pathlib import Path
@@ -11,47 +12,65 @@ from typing import Any
 
 import numpy as np
 
-from rovsim import bench
+from rovsim.bench.accuracy import accuracy
+from rovsim.bench.data import Pairs, fitted, unfading
+from rovsim.bench.inference import GP, Effort, inference
+from rovsim.bench.machine import machine
+from rovsim.bench.page import write_page
+from rovsim.bench.replay import replay_speeds
 from rovsim.config import Settings
 from rovsim.files import write_json
 from rovsim.loading import measured
-from rovsim.model import nominal
+from rovsim.model import Model, nominal
+from rovsim.residual.features import FeatureSettings
 from rovsim.saying import say
 from rovsim.tank.campaign import make_campaign
 from rovsim.training import samples
 
+LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
+
 
 def run(settings: Settings) -> None:
-    """Record the default campaign, train on its train runs, time on its test runs."""
-    with TemporaryDirectory() as folder:
-        make_campaign(settings.tank, Path(folder, "raw"))
-        data = measured(settings.model_copy(update={"campaign": str(Path(folder, "raw"))}))
-    model = nominal(data.vehicle)
-    found = {
-        split: [
-            samples(model, m, settings.signals, settings.replay)
-            for m in data.motions.values()
-            if m.run.split == split
-        ]
-        for split in ("train", "test")
-    }
-    features = settings.learner.features
-    X = np.concatenate([s.features(features) for s in found["train"]])
-    Y = np.concatenate([s.a_res for s in found["train"]])
-    queries = np.concatenate([s.features(features) for s in found["test"]])
-    order = np.random.default_rng(settings.seed).permutation(len(X))
-    X, Y = X[order], Y[order]
-    content: dict[str, Any] = {
-        "schema": "rovsim.bench/1",
-        "machine": bench.machine(),
-        "replay": bench.replay_speeds(model, X, Y),
-        "inference": bench.inference(X, Y, queries, settings.timing.calls, settings.timing.seconds),
-    }
+    """Record the campaign, train on its train runs, time on its test runs."""
+    model, found = _samples(settings)
+    how = settings.bench
+    pairs = _pairs(found, FeatureSettings()).drawn()
+    large = _pairs(found, LARGE).drawn()
+    gp = fitted("gp", pairs.first(2_000), max_points=2_000, **GP)
+    knn = fitted("knn", large.first(2_235), features=LARGE)  # the thesis' size
+    residuals = {"knn": knn, "gp": unfading(gp), "gp_faded": gp}
+    content: dict[str, Any] = {"schema": "rovsim.bench/1", "machine": machine()}
+    content["replay"] = replay_speeds(model, residuals)
+    effort = Effort(how.calls, how.warmup, how.seconds)
+    content["inference"], content["scheduling"] = inference(pairs, effort, how.sweep_seconds)
+    content["accuracy"] = accuracy(pairs)
     path = Path(settings.out or "results") / "bench.json"
     write_json(path, content)
-    rows = [f"{name:<26} {value:14,.0f}" for name, value in content["replay"].items()]
-    rows += [
-        f"{name:<26} {stats['median_us']:10.1f} us median {stats['p999_us']:10.1f} us p99.9"
-        for name, stats in content["inference"].items()
-    ]
-    say(settings, "\n".join([*rows, str(path)]), content)
+    write_page(Path(how.page), content)
+    say(settings, str(path), content)
+
+
+def _samples(settings: Settings) -> tuple[Model, dict[str, list]]:
+    """Samples of the train and of the test runs, with the control of each."""
+    tank = settings.tank.model_copy(update={"duration": settings.bench.duration})
+    with TemporaryDirectory() as folder:
+        make_campaign(tank, Path(folder, "raw"))
+        data = measured(settings.model_copy(update={"campaign": str(Path(folder, "raw"))}))
+    model = nominal(data.vehicle)
+    found: dict[str, list] = {"train": [], "test": []}
+    for motion in data.motions.values():
+        taken = samples(model, motion, settings.signals, settings.replay)
+        found[motion.run.split].append((motion.run.control, taken))
+    return model, found
+
+
+def _pairs(found: dict[str, list], features: FeatureSettings) -> Pairs:
+    def joined(split: str) -> tuple:
+        runs = found[split]
+        return (
+            np.concatenate([s.features(features) for _, s in runs]),
+            np.concatenate([s.a_res for _, s in runs]),
+            np.concatenate([np.full(len(s.index), control) for control, s in runs]),
+        )
+
+    return Pairs(*joined("train"), *joined("test"))

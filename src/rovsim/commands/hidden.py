@@ -13,12 +13,13 @@ from typing import Any
 from rovsim.config import Settings
 from rovsim.files import write_json
 from rovsim.hidden.methods import chosen
-from rovsim.hidden.page import replace_tables, tables
+from rovsim.hidden.page import tables
 from rovsim.hidden.run import answers
 from rovsim.hidden.run import run as run_cases
 from rovsim.hidden.suites import suite
 from rovsim.hidden.summary import judged, summary
 from rovsim.progress import reported
+from rovsim.report.marked import replace_tables
 from rovsim.saying import say
 
 SCHEMA = "rovsim.hidden.summary/1"

@@ -111,8 +111,11 @@ def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
     parts, row, duration = [], [], float(watch.edges[-1] - watch.edges[0])
     for model in models:
         path = model.thrust_path
-        acting = (*path.clocks, *path.shapings, *path.strengths, *path.responses)
-        key = (model.body.B.tobytes(), *((e.id, e.values.tobytes()) for e in acting))
+        acting = (
+            *path.clocks, *path.autopilots, *path.shapings, *path.strengths, *path.responses
+        )  # fmt: skip
+        inertia = model.body.M.tobytes() if path.autopilots else b""
+        key = (model.body.B.tobytes(), inertia, *((e.id, e.values.tobytes()) for e in acting))
         if key not in rows:
             rows[key] = len(rows)
             thrust = path.over_steps(watch.motion.commands, watch.edges, between)

@@ -7,7 +7,7 @@ method. Effects are immutable and add: a model is a list of them.
     Coefficients    the constants of Fossen's equation         enter(body)
     Wrench          the forces at one instant (compiled)       wrench(at, p) -> 6 numbers
     Clock           when a logged command takes effect         arrival(time) -> time
-    Autopilot       the demand before the mixer                mixed(demand) -> demand
+    Autopilot       the demand before the mixer                mixed(demand) -> demand; asked(...)
     Shaping         the thruster command                       shaped(command) -> command
     Strength        the static thruster force                  scaled(force, t, duration) -> force
     Response        the dynamic thruster force                 respond(force, h, state) -> ...
@@ -152,6 +152,13 @@ class Autopilot(Effect):
     @abstractmethod
     def mixed(self, demand: Array) -> Array:
         """Demands (m, 6) in [-1, 1] that are left to the mixer."""
+
+    @abstractmethod
+    def asked(self, demand: Array, inertia: Array) -> Array:
+        """Wrench (m, 6) for the demands (m, 6) it took; `inertia` (6,) diagonal of the whole M.
+
+        What it does about the vehicle's motion is its `wrench`.
+        """
 
 
 class Shaping(Effect):

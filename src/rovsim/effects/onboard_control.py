@@ -15,18 +15,13 @@ from rovsim.recording.recording import CommandKind, Site
 
 SPEEDS = ("m/s", "rad/s")
 ROTATION = ("roll", "pitch", "yaw")
+LEANING = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0])  # axes whose angle a loop may hold
 
 
 @inlined
-def loop(inertia, bandwidth, rate, nu):
-    """What a loop of that bandwidth does about a rate; without bandwidth there is no loop."""
-    return inertia * bandwidth * (rate - nu) if bandwidth != 0.0 else 0.0
-
-
-@inlined
-def asked(demand, gain, bandwidth, angle, attitude):
-    """Rate that is asked for: by a rate set-point (attitude 0) or an angle set-point (1)."""
-    return (1.0 - attitude) * gain * demand + attitude * bandwidth * (gain * demand - angle)
+def held(inertia, bandwidth, nu, angle):
+    """What a loop of that bandwidth does about a velocity, and about an angle if it holds one."""
+    return -inertia * bandwidth * (nu + bandwidth * angle)
 
 
 class OnboardControl(Wrench, Autopilot):
@@ -102,19 +97,26 @@ class OnboardControl(Wrench, Autopilot):
         """Demands of axes without a loop."""
         return np.where(self._closed, 0.0, demand)
 
+    def asked(self, demand: Array, inertia: Array) -> Array:
+        """What the loops push for their set-points alone: M_ii b_i g_i demand_i.
+
+        In attitude mode roll and pitch ask for b_i g_i demand_i, a rate in proportion to the angle.
+        """
+        gain, bandwidth = self.values[:6], self.values[6:12]
+        by_angle = 1.0 + self["attitude"] * LEANING * (bandwidth - 1.0)
+        return np.where(self._closed, inertia * bandwidth * by_angle * gain * demand, 0.0)
+
     @staticmethod
     def wrench(at, p):
-        """What the loops do."""
-        M, nu, u, a = at.inertia, at.nu, at.demand, p.attitude
+        """What the loops do about the motion."""
+        M, nu = at.inertia, at.nu
         x, y, z = at.R[2]  # the world's down in body axes
-        roll = asked(u[3], p.gain_roll, p.bandwidth_roll, atan2(y, z), a)
-        lean = atan2(-x, sqrt(y * y + z * z))
-        pitch = asked(u[4], p.gain_pitch, p.bandwidth_pitch, lean, a)
+        roll, pitch = p.attitude * atan2(y, z), p.attitude * atan2(-x, sqrt(y * y + z * z))
         return (
-            loop(M[0], p.bandwidth_surge, p.gain_surge * u[0], nu[0]),
-            loop(M[1], p.bandwidth_sway, p.gain_sway * u[1], nu[1]),
-            loop(M[2], p.bandwidth_heave, p.gain_heave * u[2], nu[2]),
-            loop(M[3], p.bandwidth_roll, roll, nu[3]),
-            loop(M[4], p.bandwidth_pitch, pitch, nu[4]),
-            loop(M[5], p.bandwidth_yaw, p.gain_yaw * u[5], nu[5]),
+            held(M[0], p.bandwidth_surge, nu[0], 0.0),
+            held(M[1], p.bandwidth_sway, nu[1], 0.0),
+            held(M[2], p.bandwidth_heave, nu[2], 0.0),
+            held(M[3], p.bandwidth_roll, nu[3], roll),
+            held(M[4], p.bandwidth_pitch, nu[4], pitch),
+            held(M[5], p.bandwidth_yaw, nu[5], 0.0),
         )

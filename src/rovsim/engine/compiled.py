@@ -88,11 +88,11 @@ def _chain(wrenches: tuple[Any, ...]) -> str:
 
 def _digest(source: str, wrenches: tuple[Any, ...]) -> str:
     """Digest of the engine's source, of all that its kernels may call, and of Numba."""
-    from rovsim.residual import features, predictor
+    from rovsim.residual.predictor import FILES
 
     package = FOLDER.parent
-    files = {*package.glob("engine/*.py"), *package.glob("effects/*.py")}
-    files |= {Path(str(inspect.getsourcefile(m))) for m in (features, predictor, *wrenches)}
+    files = {*package.glob("engine/*.py"), *package.glob("effects/*.py"), *FILES}
+    files |= {Path(str(inspect.getsourcefile(wrench))) for wrench in wrenches}
     content = hashlib.sha256(f"{source}{numba.__version__}".encode())
     for file in sorted(files):
         content.update(file.read_bytes())

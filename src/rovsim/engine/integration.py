@@ -27,8 +27,8 @@ from rovsim.engine.vectors import (
     vector3,
     vector6,
 )
-from rovsim.residual.features import assemble_one
-from rovsim.residual.predictor import FEATURES, evaluate
+from rovsim.residual.features import FEATURES, assemble_one
+from rovsim.residual.predictor import evaluate
 
 ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -150,29 +150,46 @@ def site_of(site):
     return walls, vector3(site.axes)
 
 
+@inlined
+def stepped(t, x, memory, h, body, own, step, data, place, features, a_res):
+    """State and memory one step later; a learned residual is held over the step."""
+    push = ZERO6
+    if body.forgets != 0.0:
+        push = push_over_step(x, memory, h, body)
+    if data.size:
+        a_learned = learned(t, x, body, own, step, push, data, place, features, a_res)
+        push = add6(push, 1.0, a_learned)
+    after = runge_kutta(t, x, h, body, own, step, push, place)
+    if body.forgets != 0.0:
+        memory = memory_after(memory, x, after, h, body)
+    return after, memory
+
+
 @compiled
 def run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out):
-    """Integrate one job; after every `stride` steps its state goes into the next row of out.
-
-    A learned residual is evaluated at the start of each step and held over it.
-    """
+    """Integrate one job; after every `stride` steps its state goes into the next row of out."""
     m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
     x, body, own, place = state_of(jobs.state[job]), constants_of(bodies, m), p[m], site_of(site)
     features, a_res = np.empty(FEATURES), np.empty(6)
     memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
     for n in range(jobs.steps[job]):
-        step, t, push = step_of(inputs, inputs.row[m], first + n), start + n * h, ZERO6
-        if body.forgets != 0.0:
-            push = push_over_step(x, memory, h, body)
-        if data.size:
-            a_learned = learned(t, x, body, own, step, push, data, place, features, a_res)
-            push = add6(push, 1.0, a_learned)
-        after = runge_kutta(t, x, h, body, own, step, push, place)
-        if body.forgets != 0.0:
-            memory = memory_after(memory, x, after, h, body)
-        x = after
+        step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
+        x, memory = stepped(t, x, memory, h, body, own, step, data, place, features, a_res)
         if (n + 1) % stride == 0:
             store(x, out[row + n // stride])
+
+
+@compiled
+def advance(state, memory, t, h, bodies, inputs, p, data, site):
+    """Move state (13,) and memory (6,) on over all steps of the inputs, in place."""
+    x, body, place, m = state_of(state), constants_of(bodies, 0), site_of(site), vector6(memory)
+    features, a_res = np.empty(FEATURES), np.empty(6)
+    for n in range(inputs.duration.size):
+        step = step_of(inputs, 0, n)
+        x, m = stepped(t + n * h, x, m, h, body, p[0], step, data, place, features, a_res)
+    store(x, state)
+    for i in range(6):
+        memory[i] = m[i]
 
 
 @compiled

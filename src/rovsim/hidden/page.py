@@ -1,13 +1,9 @@
-"""The tables of docs/benchmark_hidden.md, written between two marks."""
+"""The tables of docs/benchmark_hidden.md."""
 
-from pathlib import Path
 from typing import Any, Mapping, Sequence
 
-from rovsim.errors import BadInput
-from rovsim.files import read_text, write_text
 from rovsim.hidden.case import SEEDS
 
-BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
 KIND_COLUMNS = {
     "cases": "cases", "verdict": "verdict right", "first": "first name right",
     "exact_strict": "exact", "exact": "exact, lenient", "false_names": "a false name",
@@ -57,21 +53,3 @@ def shown(key: str, value: Any) -> str:
     if key in PERCENT:
         return f"{100 * value:.0f} %" if value >= 0.1 or value == 0 else f"{100 * value:.1f} %"
     return f"{value:.3g}"
-
-
-def replace_tables(path: Path, text: str) -> None:
-    """Put the tables between the marks of a page.
-
-    Raises:
-        BadInput: the page has no such marks.
-    """
-    page = read_text(path)
-    if page.count(BEGIN) != 1 or page.count(END) != 1:
-        raise BadInput(
-            "the marks of the tables are not there once each",
-            where=path,
-            expected=f"one line '{BEGIN}' and one line '{END}'",
-            remedy="Restore them.",
-        )
-    before, rest = page.split(BEGIN)
-    write_text(path, f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}")

@@ -8,8 +8,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.errors import BadInput
-from rovsim.residual.features import BLOCKS, FeatureSettings, blocks_code, feature_names
-from rovsim.residual.predictor import (
+from rovsim.residual.features import FeatureSettings, blocks_code, feature_names
+from rovsim.residual.layout import (
+    BLOCKS,
     COUNT,
     DISTANCE,
     EXPANSION,
@@ -18,15 +19,23 @@ from rovsim.residual.predictor import (
     KIND,
     LANES,
     MOST_NEIGHBOURS,
+    MOST_POINTS,
     NEIGHBOURS,
     OUTPUTS,
+    PASS,
     POINTS,
+    RANK,
+    SURE,
     UNIFORM,
     VERSION,
     WEIGHTING,
     WIDTH,
+    filled,
+    tree_levels,
 )
 from rovsim.residual.scaling import Scaling
+from rovsim.residual.spectrum import Known
+from rovsim.residual.tree import packed_tree, side_by_side
 
 AXES = 6  # outputs: surge, sway, heave, roll, pitch, yaw
 
@@ -36,52 +45,90 @@ class Kernel:
     """sum_i weights_i exp(-|(z - points_i) / lengthscale|^2 / 2) of scaled features z.
 
     `points` (n, d) in scaled features, `lengthscale` (d,), `weights` (n, outputs of this kernel).
+    `prior` (outputs of this kernel,) is the variance before anything was seen and `known` what
+    reduces it; without `known` the variance is the prior's and nothing fades.
     """
 
     points: Array
     lengthscale: Array
     weights: Array
+    prior: Array | None = None
+    known: Known | None = None
 
 
 def export_neighbours(
     features: FeatureSettings, scaling: Scaling, Z: Array, Y: Array, k: int, weights: str
 ) -> Array:
-    """Mean of the targets Y (n, 6) of the k nearest of the scaled points Z (n, d).
+    """Mean of the targets Y (n, m) of the k nearest of the scaled points Z (n, d).
 
     `weights`: `uniform`, or `distance` (inverse). At equal distance the earlier row counts.
     """
-    header = _header(NEIGHBOURS, features, len(Z), k)
+    header = _header(NEIGHBOURS, features, len(Z), Y.shape[1], k)
     header[WEIGHTING] = DISTANCE if weights == "distance" else UNIFORM
-    return np.concatenate([header, scaling.shift, scaling.scale, _blocked(Z), Y.ravel()])
+    tree = packed_tree(Z)
+    rows = _row(tree.order, filled(len(Z), LANES))
+    parts = [header, scaling.shift, scaling.scale, tree.boxes, side_by_side(Z[tree.order]), rows]
+    return np.concatenate([part.ravel() for part in (*parts, Y[tree.order])])
 
 
 def export_expansion(
-    features: FeatureSettings, scaling: Scaling, mean: Array, kernels: Sequence[Kernel]
+    features: FeatureSettings,
+    scaling: Scaling,
+    mean: Array,
+    kernels: Sequence[Kernel],
+    fades: bool = False,
 ) -> Array:
-    """Mean (6,) plus one shared RBF kernel with six outputs, or six kernels with one each."""
-    parts = [_header(EXPANSION, features, len(kernels[0].points), len(kernels)), mean]
-    for kernel in kernels:
-        length = sqrt(2.0) * kernel.lengthscale
-        filled = np.zeros((-(-len(kernel.points) // LANES) * LANES, kernel.weights.shape[1]))
-        filled[: len(kernel.points)] = kernel.weights
-        parts += [scaling.shift, scaling.scale * length]
-        parts += [_blocked(kernel.points / length), filled.ravel()]
-    return np.concatenate(parts)
+    """Mean (m,) plus one shared RBF kernel with m outputs, or m kernels with one each.
+
+    Raises:
+        BadInput: more points than the kernels have room for.
+    """
+    points = len(kernels[0].points)
+    if points > MOST_POINTS:
+        raise BadInput(
+            f"{points} points",
+            where="kernel expansion of a residual",
+            expected=f"at most {MOST_POINTS}",
+            remedy="Set residual.max_points, or use svgp.",
+        )
+    known = [kernel.known for kernel in kernels if kernel.known]
+    header = _header(EXPANSION, features, points, len(mean), len(kernels))
+    header[RANK] = max((len(k.spectrum) for k in known), default=0)
+    header[SURE] = max((k.sure for k in known), default=0) if fades else 0
+    parts = [_part(kernel, scaling, int(header[RANK])) for kernel in kernels]
+    return np.concatenate([header, mean, *parts])
 
 
-def _header(kind: float, features: FeatureSettings, points: int, count: int) -> Array:
+def _part(kernel: Kernel, scaling: Scaling, rank: int) -> Array:
+    """One kernel, as `layout` orders it."""
+    n, share = kernel.weights.shape
+    known = kernel.known or Known(0.0, np.zeros(0), np.zeros((0, n)), 0)
+    length, wide = sqrt(2.0) * kernel.lengthscale, filled(n, LANES)
+    prior = np.zeros(share) if kernel.prior is None else kernel.prior
+    pieces = [
+        np.array([known.identity, known.limit]), prior, scaling.shift, scaling.scale * length,
+        side_by_side(kernel.points / length), _row(known.spectrum, filled(rank, PASS)),
+        _sheet(kernel.weights.T, filled(share, PASS), wide),
+        _sheet(known.vectors, filled(rank, PASS), wide),
+    ]  # fmt: skip
+    return np.concatenate([piece.ravel() for piece in pieces])
+
+
+def _row(values: Array, length: int) -> Array:
+    """Values filled up with zeros to a length."""
+    return np.pad(values.astype(np.float64), (0, length - len(values)))
+
+
+def _sheet(matrix: Array, rows: int, columns: int) -> Array:
+    """A matrix filled up with zeros to a size."""
+    return np.pad(matrix, ((0, rows - matrix.shape[0]), (0, columns - matrix.shape[1])))
+
+
+def _header(kind: float, features: FeatureSettings, points: int, outputs: int, count: int) -> Array:
     header = np.zeros(HEADER)
     header[[FORMAT, KIND, BLOCKS]] = VERSION, kind, blocks_code(features)
-    header[[WIDTH, POINTS, OUTPUTS, COUNT]] = len(feature_names(features)), points, AXES, count
+    header[[WIDTH, POINTS, OUTPUTS, COUNT]] = len(feature_names(features)), points, outputs, count
     return header
-
-
-def _blocked(points: Array) -> Array:
-    """Points (n, d) as (blocks, d, LANES), flat, the last block filled up with zeros."""
-    n, d = points.shape
-    filled = np.zeros((-(-n // LANES) * LANES, d))
-    filled[:n] = points
-    return filled.reshape(-1, LANES, d).transpose(0, 2, 1).ravel()
 
 
 def check_exported(data: Any, features: FeatureSettings, where: object) -> Array:
@@ -119,9 +166,13 @@ def _fault(data: Any, features: FeatureSettings) -> str | None:
 def _size(*header: float) -> int:
     """Length of an exported array with this header; 0 where no such array can exist."""
     d, n, m, count = (int(header[slot]) for slot in (WIDTH, POINTS, OUTPUTS, COUNT))
-    filled = -(-n // LANES) * LANES
+    length, wide, rank = filled(n, LANES), filled(d, PASS), filled(int(header[RANK]), PASS)
     if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MOST_NEIGHBOURS):
-        return HEADER + 2 * d + filled * d + n * m
-    if header[KIND] == EXPANSION and count in (1, m) and n >= 1:
-        return HEADER + m + count * (2 * d + filled * d + filled * (m // count))
+        boxes = sum(tree_levels(n)[1:]) * 2 * wide * LANES
+        return HEADER + 2 * d + boxes + length * (wide + 1) + n * m
+    sure = header[SURE] <= header[RANK] <= n <= MOST_POINTS
+    if header[KIND] == EXPANSION and count in (1, m) and n >= 1 and sure:
+        share = m // count
+        sheet = (filled(share, PASS) + rank + wide) * length
+        return HEADER + m + count * (2 + share + 2 * d + rank + sheet)
     return 0

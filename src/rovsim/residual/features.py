@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from pydantic import field_validator
 
 from rovsim.frames import unrotate
+from rovsim.residual.layout import BLOCKS
 from rovsim.strict import Section
 
 Block = Literal["velocity", "wrench", "acceleration", "gravity"]
@@ -23,7 +24,6 @@ FEATURES = sum(len(columns) for columns in COLUMNS.values())  # the longest feat
 
 VELOCITY, WRENCH, ACCELERATION, GRAVITY = 1, 2, 4, 8
 CODES = dict(zip(COLUMNS, (VELOCITY, WRENCH, ACCELERATION, GRAVITY), strict=True))
-BLOCKS = 2  # where an exported residual keeps the sum of its blocks' codes
 
 
 class FeatureSettings(Section):

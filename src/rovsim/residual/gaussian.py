@@ -5,16 +5,27 @@ mean_j + s_j^2 sum_i w_ij exp(-|(z - z_i) / l_j|^2 / 2): an RBF kernel with one 
 feature (Rasmussen & Williams 2006, eqs. 2.25 and 5.1).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy import ndarray as Array
+from pydantic import Field
 
 from rovsim.residual.export import AXES, Kernel, export_expansion
-from rovsim.residual.features import FeatureSettings
-from rovsim.residual.learner import Predict, Progress
+from rovsim.residual.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
 from rovsim.residual.scaling import CONSTANT, Scaling, fit_scaling
+from rovsim.residual.spectrum import Known, rbf
+
+SHOWN = 2000  # training rows that show how sure a process is where it was taught
+
+
+class GaussianSettings(LearnerSettings):
+    """What both processes have."""
+
+    # Share of the training rows at which the correction counts fully; beyond what these show it
+    # fades, to nothing where nothing was seen. null: it never fades (docs/benchmark_speed.md).
+    trusted: float | None = Field(default=1.0, gt=0, le=1)
 
 
 def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:
@@ -128,15 +139,66 @@ def library_predictor(model: Any, arrays: Mapping[str, Array]) -> Predict:
     return predict
 
 
+def library_posterior(model: Any, arrays: Mapping[str, Array], fast: bool = False) -> Posterior:
+    """GPyTorch's own mean and variance; `fast`: its LOVE approximation (Pleiss et al. 2018).
+
+    Variances are those of the process, without noise.
+    """
+    import torch
+    from gpytorch import settings
+
+    features = _features(arrays)
+    model.eval()
+
+    def predict(X: Array) -> tuple[Array, Array]:
+        Z = torch.as_tensor(features.apply(X))
+        # its path for small kernels does not take one kernel for six outputs
+        lazy = settings.max_eager_kernel_size(1)
+        with torch.no_grad(), settings.debug(False), settings.fast_pred_var(fast), lazy:
+            found = model(Z)
+            mean, variance = found.mean.numpy().T, found.variance.numpy().T
+        scale = arrays["target_scale"]
+        return mean * scale + arrays["target_shift"], variance * scale**2
+
+    predict(arrays["shift"][None])
+    return predict
+
+
 def export(
-    features: FeatureSettings, arrays: Mapping[str, Array], Z: Array, weights: Array
+    settings: GaussianSettings,
+    arrays: Mapping[str, Array],
+    Z: Array,
+    weights: Array,
+    known: Sequence[Known],
 ) -> Array:
     """Kernel expansion around scaled points Z (n, d) with weights (6, n) in scaled units."""
     mean = arrays["target_shift"] + arrays["target_scale"] * arrays["mean"]
     scale = arrays["target_scale"] * arrays["outputscale"]
-    columns = np.split((weights * scale[:, None]).T, len(arrays["lengthscale"]), axis=1)
+    prior = arrays["target_scale"] * scale
+    parts = len(arrays["lengthscale"])
+    columns = np.split((weights * scale[:, None]).T, parts, axis=1)
     kernels = [
-        Kernel(Z, lengthscale, column)
-        for lengthscale, column in zip(arrays["lengthscale"], columns, strict=True)
+        Kernel(Z, *of_one)
+        for of_one in zip(
+            arrays["lengthscale"], columns, np.split(prior, parts), known, strict=True
+        )
     ]
-    return export_expansion(features, _features(arrays), mean, kernels)
+    fades = settings.trusted is not None
+    return export_expansion(settings.features, _features(arrays), mean, kernels, fades)
+
+
+def trusting(
+    known: Sequence[Known],
+    arrays: Mapping[str, Array],
+    points: Array,
+    X: Array,
+    settings: GaussianSettings,
+) -> list[Known]:
+    """The same, fading beyond what the training features X (n, d) show."""
+    if settings.trusted is None:
+        return list(known)
+    some = _features(arrays).apply(X[spread_rows(len(X), SHOWN, seed=0)])
+    return [
+        one.fully_at(rbf(some, points, lengthscale), settings.trusted)
+        for one, lengthscale in zip(known, arrays["lengthscale"], strict=True)
+    ]

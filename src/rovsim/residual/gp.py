@@ -9,24 +9,28 @@ from pydantic import Field
 from rovsim.residual import gaussian
 from rovsim.residual.determinism import seeded_torch
 from rovsim.residual.export import AXES
+from rovsim.residual.layout import MOST_POINTS
 from rovsim.residual.learner import (
     Learner,
-    LearnerSettings,
+    Posterior,
     Predict,
     Progress,
     Trained,
     spread_rows,
 )
+from rovsim.residual.spectrum import Known, of_exact, rbf
 
 
-class GpSettings(LearnerSettings):
+class GpSettings(gaussian.GaussianSettings):
     """Exact multi-output Gaussian process."""
 
     kind: Literal["gp"] = "gp"
     # independent: each axis has its own lengthscales and noise. shared: one kernel for all six,
     # six times cheaper to evaluate
     kernel: Literal["independent", "shared"] = "independent"
-    max_points: int | None = Field(default=1500, ge=1)  # cost: n^3 to condition, n to evaluate
+    max_points: int | None = Field(
+        default=1500, ge=1, le=MOST_POINTS
+    )  # cost: n^3 to condition, n to evaluate
     # rows on which hyperparameters are found: a few numbers need fewer rows than the posterior
     tuning_points: int = Field(default=500, ge=1)
     iterations: int = Field(default=60, ge=1)  # the likelihood is flat after about 50
@@ -47,7 +51,8 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
         _condition(model, Z, T)
         library = gaussian.library_predictor(model, arrays)
         weights = model.prediction_strategy.mean_cache.numpy()
-    data = gaussian.export(settings.features, arrays, Z, weights)
+    known = gaussian.trusting(_known(arrays), arrays, Z, X, settings)
+    data = gaussian.export(settings, arrays, Z, weights, known)
     info = {"points": len(rows), "tuning_points": len(some), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
     info["seconds"] = round(perf_counter() - start, 3)
@@ -60,6 +65,25 @@ def library_from(arrays: Mapping[str, Array], settings: GpSettings) -> Predict:
         model = _model(arrays["points"], arrays["targets"], settings)
         gaussian.set_hyperparameters(model, arrays)
         return gaussian.library_predictor(model, arrays)
+
+
+def posterior_from(
+    arrays: Mapping[str, Array], settings: GpSettings, fast: bool = False
+) -> Posterior:
+    """GPyTorch's own mean and variance; `fast`: by LOVE."""
+    with seeded_torch(0):
+        model = _model(arrays["points"], arrays["targets"], settings)
+        gaussian.set_hyperparameters(model, arrays)
+        return gaussian.library_posterior(model, arrays, fast)
+
+
+def _known(arrays: Mapping[str, Array]) -> list[Known]:
+    """What each kernel's process knows."""
+    Z, noise = arrays["points"], arrays["noise"] / arrays["outputscale"]
+    return [
+        of_exact(rbf(Z, Z, lengthscale), float(ratio))
+        for lengthscale, ratio in zip(arrays["lengthscale"], noise, strict=True)
+    ]
 
 
 def _model(Z: Array, T: Array, settings: GpSettings) -> Any:
@@ -110,4 +134,4 @@ def _condition(model: Any, Z: Array, T: Array) -> None:
     model.set_train_data(torch.as_tensor(Z), torch.as_tensor(T), strict=False)
 
 
-LEARNER = Learner(GpSettings, fit, library_from)
+LEARNER = Learner(GpSettings, fit, library_from, posterior_from)

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from rovsim.errors import BadInput
 from rovsim.residual.export import export_neighbours
+from rovsim.residual.layout import MOST_NEIGHBOURS
 from rovsim.residual.learner import (
     Learner,
     LearnerSettings,
@@ -17,7 +18,6 @@ from rovsim.residual.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.residual.predictor import MOST_NEIGHBOURS
 from rovsim.residual.scaling import Scaling, fit_scaling
 
 

@@ -13,10 +13,12 @@ import rovsim.residual
 from rovsim.errors import BadInput, nearest
 from rovsim.residual.export import AXES
 from rovsim.residual.features import FeatureSettings, feature_names
-from rovsim.residual.predictor import evaluate_many
+from rovsim.residual.layout import EXPANSION, KIND
+from rovsim.residual.predictor import evaluate_many, posterior_many
 from rovsim.strict import Section, checked
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
+Posterior = Callable[[Array], tuple[Array, Array]]  # the same -> mean and variance, (n, 6) each
 Progress = Callable[[int, int], None]  # rounds done, rounds in all
 
 
@@ -57,6 +59,10 @@ class Trained:
         """Residual acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
         return evaluate_many(self.data, checked_rows(X, self.features))
 
+    def posterior(self, X: Array) -> tuple[Array, Array]:
+        """Mean and variance of a process. See `posterior`."""
+        return posterior(self.data, X, self.features)
+
 
 @dataclass(frozen=True)
 class Learner:
@@ -64,12 +70,14 @@ class Learner:
 
     `fit(X, Y, settings, seed, progress)` trains on features X (n, d) and residual accelerations
     Y (n, 6). `library_from(arrays, settings)` rebuilds the library's own prediction from
-    `Trained.arrays`, without pickle.
+    `Trained.arrays`, without pickle; `posterior_from(arrays, settings, fast)` its mean and
+    variance, where it has one.
     """
 
     settings: type[LearnerSettings]
     fit: Callable[..., Trained]
     library_from: Callable[[Mapping[str, Array], Any], Predict]
+    posterior_from: Callable[..., Posterior] | None = None
 
 
 def learners() -> dict[str, Learner]:
@@ -135,6 +143,24 @@ def train(
             remedy="Train on usable samples only.",
         )
     return learner(settings.kind).fit(X, Y, settings, seed, progress)
+
+
+def posterior(data: Array, X: Array, features: FeatureSettings) -> tuple[Array, Array]:
+    """Mean and variance (n, 6) of an exported process at unscaled features X (n, d); none fades.
+
+    In m/s2 and rad/s2, and their squares; the variance is the process' own, without noise.
+
+    Raises:
+        BadInput: the residual is no process, or X has other columns.
+    """
+    if data[KIND] == EXPANSION:
+        return posterior_many(data, checked_rows(X, features))
+    raise BadInput(
+        "nearest neighbours have no variance",
+        where="posterior of a residual",
+        expected="a residual of kind gp or svgp",
+        remedy="Train one, or use predict.",
+    )
 
 
 def checked_rows(X: Array, features: FeatureSettings, finite: bool = False) -> Array:

@@ -13,6 +13,7 @@ from rovsim.errors import BadInput
 from rovsim.files import plain, read_arrays, write_arrays
 from rovsim.residual.export import check_exported
 from rovsim.residual.features import Block, FeatureSettings
+from rovsim.residual.layout import POINTS
 from rovsim.residual.learner import (
     LearnerSettings,
     Predict,
@@ -20,8 +21,9 @@ from rovsim.residual.learner import (
     checked_rows,
     learner,
     learner_settings,
+    posterior,
 )
-from rovsim.residual.predictor import POINTS, evaluate_many
+from rovsim.residual.predictor import evaluate_many
 from rovsim.strict import Section, checked
 
 Control = Literal["3dof", "6dof"]
@@ -72,6 +74,10 @@ class Residual:
     def predict(self, X: Array) -> Array:
         """Residual acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
         return evaluate_many(self.data, checked_rows(X, self.features))
+
+    def posterior(self, X: Array) -> tuple[Array, Array]:
+        """Mean and variance of a process. See `rovsim.residual.learner.posterior`."""
+        return posterior(self.data, X, self.features)
 
     def library(self) -> Predict:
         """The library's own prediction, rebuilt from the stored arrays."""

@@ -10,21 +10,25 @@ from pydantic import Field
 from rovsim.residual import gaussian
 from rovsim.residual.determinism import seeded_torch
 from rovsim.residual.export import AXES
+from rovsim.residual.layout import MOST_POINTS
 from rovsim.residual.learner import (
     Learner,
-    LearnerSettings,
+    Posterior,
     Predict,
     Progress,
     Trained,
     spread_rows,
 )
+from rovsim.residual.spectrum import Known, of_quadratic
 
 
-class SvgpSettings(LearnerSettings):
+class SvgpSettings(gaussian.GaussianSettings):
     """Sparse variational Gaussian process, one per axis, around common inducing points."""
 
     kind: Literal["svgp"] = "svgp"
-    inducing: int = Field(default=100, ge=1)  # points it thinks with; cost grows with their cube
+    inducing: int = Field(
+        default=100, ge=1, le=MOST_POINTS
+    )  # points it thinks with; cost grows with their cube
     batch: int = Field(default=512, ge=1)  # rows per step
     iterations: int = Field(default=250, ge=1)  # 12 passes over 11,000 rows
     learning_rate: float = Field(default=0.1, gt=0)  # Adam; whitened parameters of order 1
@@ -41,8 +45,9 @@ def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progres
         loss = _train(model, Z, T, settings, progress)
         arrays |= gaussian.hyperparameters(model) | _variational(model)
         library = gaussian.library_predictor(model, arrays)
-        weights = _weights(model)
-    data = gaussian.export(settings.features, arrays, arrays["inducing"], weights)
+        weights, known = _weights(model), _known(model, arrays)
+    known = gaussian.trusting(known, arrays, arrays["inducing"], X, settings)
+    data = gaussian.export(settings, arrays, arrays["inducing"], weights, known)
     info = {"points": len(arrays["inducing"]), "rows": len(rows), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
     info["seconds"] = round(perf_counter() - start, 3)
@@ -51,17 +56,29 @@ def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progres
 
 def library_from(arrays: Mapping[str, Array], settings: SvgpSettings) -> Predict:
     """GPyTorch's own model, with its hyperparameters and variational distribution."""
+    with seeded_torch(0):
+        return gaussian.library_predictor(_rebuilt(arrays), arrays)
+
+
+def posterior_from(
+    arrays: Mapping[str, Array], settings: SvgpSettings, fast: bool = False
+) -> Posterior:
+    """GPyTorch's own mean and variance."""
+    with seeded_torch(0):
+        return gaussian.library_posterior(_rebuilt(arrays), arrays, fast)
+
+
+def _rebuilt(arrays: Mapping[str, Array]) -> Any:
     import torch
 
-    with seeded_torch(0):
-        model = _model(arrays["inducing"])
-        gaussian.set_hyperparameters(model, arrays)
-        strategy = model.variational_strategy
-        distribution = strategy._variational_distribution
-        distribution.variational_mean.data = torch.as_tensor(arrays["variational_mean"])
-        distribution.chol_variational_covar.data = torch.as_tensor(arrays["variational_root"])
-        strategy.variational_params_initialized.fill_(1)  # else the first call would reset them
-        return gaussian.library_predictor(model, arrays)
+    model = _model(arrays["inducing"])
+    gaussian.set_hyperparameters(model, arrays)
+    strategy = model.variational_strategy
+    distribution = strategy._variational_distribution
+    distribution.variational_mean.data = torch.as_tensor(arrays["variational_mean"])
+    distribution.chol_variational_covar.data = torch.as_tensor(arrays["variational_root"])
+    strategy.variational_params_initialized.fill_(1)  # else the first call would reset them
+    return model
 
 
 def _centres(Z: Array, number: int, seed: int) -> Array:
@@ -135,10 +152,34 @@ def _weights(model: Any) -> Array:
 
     strategy = model.variational_strategy
     with torch.no_grad():
-        K = model.covar(strategy.inducing_points).add_jitter(strategy.jitter_val).to_dense()
         m = strategy._variational_distribution.variational_mean[..., None]
-        w = torch.linalg.solve_triangular(torch.linalg.cholesky(K).mT, m, upper=True)
+        w = torch.linalg.solve_triangular(_root(model).mT, m, upper=True)
     return w[..., 0].numpy()
 
 
-LEARNER = Learner(SvgpSettings, fit, library_from)
+def _root(model: Any) -> Any:
+    """Cholesky factor L (6, n, n) of K_ZZ, as GPyTorch computes it."""
+    import torch
+
+    strategy = model.variational_strategy
+    K = model.covar(strategy.inducing_points).add_jitter(strategy.jitter_val).to_dense()
+    return torch.linalg.cholesky(K)
+
+
+def _known(model: Any, arrays: Mapping[str, Array]) -> list[Known]:
+    """What each axis' process knows: A = L^-T (I - S) L^-1 with whitened covariance S."""
+    import torch
+
+    with torch.no_grad():
+        L = _root(model)
+        one = torch.eye(L.shape[-1])
+        inverse = torch.linalg.solve_triangular(L, one, upper=False)
+        root = torch.as_tensor(np.tril(arrays["variational_root"]))
+        A = (inverse.mT @ (one - root @ root.mT) @ inverse).numpy()
+    return [
+        of_quadratic(quadratic * scale)
+        for quadratic, scale in zip(A, arrays["outputscale"], strict=True)
+    ]
+
+
+LEARNER = Learner(SvgpSettings, fit, library_from, posterior_from)

@@ -105,7 +105,7 @@ class _Vehicle:
         force, self.lag = path.respond(static, self.h, self.lag)
         demand = held if self.kind == "demand" else np.full((len(out), 6), np.nan)
         inputs = Inputs(
-            (force @ self.model.body.B.T)[None], force[None], demand, np.zeros(1, np.int64),
+            self.model.actuated(force, demand)[None], force[None], demand, np.zeros(1, np.int64),
             np.full(len(out), self.duration),
         )  # fmt: skip
         self.heun(

@@ -1,23 +1,19 @@
-"""How fast replay and inference are here: each figure from one honest run, machines differ."""
+"""Steps per second: one trajectory, many side by side, with a residual in the loop."""
 
-import platform
 from dataclasses import replace
 from time import perf_counter
-from typing import Any, Callable
+from typing import Any, Callable, Mapping
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import body as bodies
 from rovsim.engine.at import Inputs, Jobs, Place
-from rovsim.latency import latency
 from rovsim.model import Model
-from rovsim.residual.learner import learner_settings, train
-from rovsim.residual.predictor import evaluate_many
 from rovsim.residual.storage import Residual
 
 STEP = 0.01  # s
-REPEATS = 5  # the best of so many: what the machine can do when nothing else runs
+REPEATS = 15  # the best of so many: what the machine can do when nothing else runs
 
 
 def steps_per_second(model: Model, jobs: int, steps: int, parallel: bool) -> float:
@@ -41,7 +37,7 @@ def steps_per_second(model: Model, jobs: int, steps: int, parallel: bool) -> flo
 
 
 def best(call: Callable[[], Any]) -> float:
-    """Shortest time in s of a few calls, after one that may compile."""
+    """Shortest time in s of some calls, after one that may compile."""
     call()
     took = []
     for _ in range(REPEATS):
@@ -91,60 +87,16 @@ def numpy_steps_per_second(model: Model, steps: int = 300) -> float:
     return steps / best(drive)
 
 
-def fitted(kind: str, X: Array, Y: Array, **more: Any) -> tuple[Residual, Any]:
-    """A residual of that kind, and the library's own prediction."""
-    trained = train(X, Y, learner_settings({"kind": kind, **more}), seed=0)
-    residual = Residual("6dof", trained.settings, trained.data, trained.arrays, trained.info)
-    return residual, trained.library_predict
-
-
-def replay_speeds(model: Model, X: Array, Y: Array) -> dict[str, float]:
-    """Replay speed of the nominal model and with residuals in the loop."""
-    knn, _ = fitted("knn", X[:2235], Y[:2235])
-    gp, _ = fitted("gp", X[:2000], Y[:2000], kernel="shared", max_points=2000, iterations=5)
+def replay_speeds(model: Model, residuals: Mapping[str, Residual]) -> dict[str, float]:
+    """Steps per second of the nominal model, and by name with a residual in the loop."""
     return {
         "single_steps_per_s": steps_per_second(model, 1, 200_000, False),
         "batch_steps_per_s": steps_per_second(model, 400, 2_000, True),
-        "knn_in_loop_steps_per_s": steps_per_second(replace(model, residual=knn), 1, 5_000, False),
-        "gp_in_loop_steps_per_s": steps_per_second(replace(model, residual=gp), 1, 5_000, False),
+        **{
+            f"{name}_in_loop_steps_per_s": steps_per_second(
+                replace(model, residual=residual), 1, 5_000, False
+            )
+            for name, residual in residuals.items()
+        },
         "numpy_steps_per_s": numpy_steps_per_second(model),
     }
-
-
-# Name of our path and of the library's, the learner, its settings, and the training sizes.
-CASES: tuple[tuple[str, str, str, dict[str, Any], tuple[int, ...]], ...] = (
-    ("knn", "sklearn_knn", "knn", {}, (2_000, 10_000)),
-    ("gp_mean", "gpytorch_mean", "gp", {"kernel": "shared", "iterations": 5}, (500, 2_000)),
-    ("svgp", "gpytorch_svgp", "svgp", {"iterations": 20}, (2_000,)),
-)
-
-
-def inference(X: Array, Y: Array, queries: Array, calls: int, seconds: float) -> dict[str, Any]:
-    """Latency of each predictor and of its library, one call at a time, by size."""
-    found: dict[str, Any] = {}
-    for ours, library, kind, more, sizes in CASES:
-        for size in sizes:
-            settings = more | ({"max_points": size} if kind == "gp" else {})
-            residual, theirs = fitted(kind, X[:size], Y[:size], **settings)
-            data, points = residual.data, residual.points
-            ways = {ours: lambda x, data=data: evaluate_many(data, x), library: theirs}
-            for name, call in ways.items():
-                found[f"{name}@{size}"] = latency(
-                    call, queries, calls, 200, points=points, seconds=seconds
-                )
-            gap = np.abs(residual.predict(queries[:500]) - theirs(queries[:500])).max()
-            found[f"{ours}@{size}"]["largest_difference"] = float(gap)
-    return found
-
-
-def machine() -> str:
-    """Processor, cores and Python."""
-    import os
-
-    name = platform.processor() or platform.machine()
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as info:
-            name = next(line.split(":")[1].strip() for line in info if "model name" in line)
-    except (OSError, StopIteration):
-        pass
-    return f"{name}, {os.cpu_count()} cores, Python {platform.python_version()}"

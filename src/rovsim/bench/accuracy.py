@@ -1,0 +1,60 @@
+"""Error against cost: what a correction leaves, where it was taught and where it was not.
+
+Taught on 3-DoF runs, asked on 3-DoF test runs (seen) and on 6-DoF test runs (unseen: heave, roll
+and pitch hardly move in the former).
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from rovsim.bench.data import Pairs, fitted, unfading
+from rovsim.bench.inference import ours
+from rovsim.latency import latency
+from rovsim.residual.storage import Residual
+
+SEEN, UNSEEN = "3dof", "6dof"
+CALLS = 2_000
+
+
+def accuracy(pairs: Pairs) -> list[dict[str, Any]]:
+    """One row for each way to learn: cost in us, and the share of the residual that is left."""
+    taught = pairs.of(SEEN)
+    return [
+        {
+            "name": name,
+            "points": residual.points,
+            "fades": fades,
+            "median_us": latency(ours(residual), pairs.queries, CALLS, 200, points=residual.points)[
+                "median_us"
+            ],
+            "seen": _left(residual, pairs, SEEN),
+            "unseen": _left(residual, pairs, UNSEEN),
+        }
+        for name, fades, residual in _ways(taught)
+    ]
+
+
+def _ways(taught: Pairs) -> Iterator[tuple[str, bool, Residual]]:
+    for points in (500, 2_000, 5_000, 20_000):
+        yield "knn", False, fitted("knn", taught, max_points=points)
+    for name, residual in _processes(taught):
+        yield name, False, unfading(residual)
+        yield name, True, residual
+
+
+def _processes(taught: Pairs) -> Iterator[tuple[str, Residual]]:
+    for points in (125, 250, 500, 1_000, 2_000):
+        yield "gp", fitted("gp", taught, kernel="shared", max_points=points)
+    yield "gp_six_kernels", fitted("gp", taught, max_points=1_000)
+    for inducing in (50, 100, 200):
+        yield "svgp", fitted("svgp", taught, inducing=inducing)
+
+
+def _left(residual: Residual, pairs: Pairs, control: str) -> dict[str, float]:
+    """Root mean square of what is left over that of the residual: all axes, and the worst."""
+    asked = pairs.query_control == control
+    error = residual.predict(pairs.queries[asked]) - pairs.answers[asked]
+    share = np.sqrt((error**2).mean(0) / (pairs.answers[asked] ** 2).mean(0))
+    return {"mean": float(share.mean()), "worst": float(share.max())}

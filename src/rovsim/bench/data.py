@@ -1,0 +1,69 @@
+"""What is learnt and asked in the benchmark: residual features of the default campaign."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.residual.export import Kernel, export_expansion, export_neighbours
+from rovsim.residual.features import FeatureSettings
+from rovsim.residual.layout import SURE
+from rovsim.residual.learner import learner_settings, train
+from rovsim.residual.scaling import fit_scaling
+from rovsim.residual.storage import Residual
+
+SEED = 5  # of the rows that are drawn
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Features X (n, 12) and residual accelerations Y (n, 6) of train runs, queries of test runs.
+
+    `control` (n,) and `query_control` (q,) say which rows are of which kind of run; `answers`
+    (q, 6) what was true at the queries.
+    """
+
+    X: Array
+    Y: Array
+    control: Array
+    queries: Array
+    answers: Array
+    query_control: Array
+
+    def drawn(self) -> "Pairs":
+        """The train rows in a drawn order."""
+        order = np.random.default_rng(SEED).permutation(len(self.X))
+        return replace(self, X=self.X[order], Y=self.Y[order], control=self.control[order])
+
+    def first(self, rows: int) -> "Pairs":
+        """The first train rows."""
+        return replace(self, X=self.X[:rows], Y=self.Y[:rows], control=self.control[:rows])
+
+    def of(self, control: str) -> "Pairs":
+        """The train rows of one kind of run."""
+        kept = self.control == control
+        return replace(self, X=self.X[kept], Y=self.Y[kept], control=self.control[kept])
+
+    def exported(self, kind: str, rows: int, outputs: int) -> Array:
+        """A predictor for only the first so many outputs; a process with some hyperparameters."""
+        X, Y, features = self.X[:rows], self.Y[:rows, :outputs], FeatureSettings()
+        scaling = fit_scaling("standard", X)
+        Z = scaling.apply(X)
+        if kind == "knn":
+            return export_neighbours(features, scaling, Z, Y, 5, "distance")
+        kernel = Kernel(Z, np.full(Z.shape[1], 5.0), Y)
+        return export_expansion(features, scaling, np.zeros(outputs), [kernel])
+
+
+def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
+    """A residual of that kind."""
+    trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **more}), seed=0)
+    return Residual("6dof", trained.settings, trained.data, trained.arrays, trained.info)
+
+
+def unfading(residual: Residual) -> Residual:
+    """The same residual, as `trusted=null` would train it."""
+    data = residual.data.copy()
+    data[SURE] = 0.0
+    return replace(residual, data=data)

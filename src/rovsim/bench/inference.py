@@ -1,0 +1,143 @@
+"""Latency of every way to predict, ours and the libraries', one call at a time."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.bench import libraries
+from rovsim.bench.data import Pairs, fitted, unfading
+from rovsim.bench.machine import as_a_control_loop
+from rovsim.latency import latency
+from rovsim.residual.layout import POINTS
+from rovsim.residual.predictor import evaluate_many, posterior_many
+from rovsim.residual.storage import Residual
+
+CHECKED = 500  # queries whose predictions are compared
+GP = {"kernel": "shared"}  # the settings of `conf/residual/gp.yaml` but for this
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How many calls of ours, and how long a library's own calls may take in s."""
+
+    calls: int
+    warmup: int
+    seconds: float
+
+
+class Clock:
+    """Times ways to predict and keeps what it found."""
+
+    def __init__(self, pairs: Pairs, effort: Effort) -> None:
+        self.pairs, self.effort, self.found = pairs, effort, {}  # type: ignore[var-annotated]
+        self.scheduling = ""
+
+    def time(self, name: str, call: Callable, points: int, seconds: float) -> dict[str, Any]:
+        """Time one way under the name@points."""
+        effort = self.effort
+        with as_a_control_loop() as self.scheduling:
+            stats = latency(
+                call, self.pairs.queries, effort.calls, effort.warmup, points=points,
+                seconds=seconds,
+            )  # fmt: skip
+        self.found[f"{name}@{points}"] = stats
+        return stats
+
+    def beside(
+        self, name: str, own: Callable, points: int, theirs: dict[str, Callable], seconds: float
+    ) -> None:
+        """Time our way and the libraries', with the largest difference of their predictions."""
+        stats = self.time(name, own, points, 60.0)
+        queries = self.pairs.queries[:: max(1, len(self.pairs.queries) // CHECKED)]
+        few = queries[:3]  # a library may take seconds a call
+        stats["largest_difference"] = {}
+        for other, call in theirs.items():
+            timed = self.time(other, call, points, seconds)
+            some = few if timed["median_us"] > 1e5 else queries
+            stats["largest_difference"][other] = _difference(own, call, some)
+            stats.setdefault("times_faster", {})[other] = timed["median_us"] / stats["median_us"]
+
+
+def _difference(own: Callable, call: Callable, queries: Array) -> float:
+    """Largest difference of two ways over the queries, one at a time."""
+    gaps = [np.abs(np.asarray(own(q[None])) - np.asarray(call(q[None]))).max() for q in queries]
+    return float(max(gaps))
+
+
+def ours(residual: Residual | Array) -> Callable:
+    """Our prediction, as the compiled loop makes it."""
+    data = residual.data if isinstance(residual, Residual) else residual
+    return lambda x: evaluate_many(data, x)
+
+
+def both(residual: Residual) -> Callable:
+    """Our mean and variance."""
+    return lambda x: posterior_many(residual.data, x)
+
+
+def inference(pairs: Pairs, effort: Effort, sweep: float) -> tuple[dict[str, Any], str]:
+    """The named sizes beside the libraries, then sweeps, in which a library gets `sweep` s."""
+    clock = Clock(pairs, effort)
+    for points in (2_000, 20_000):
+        _neighbours(clock, points, effort.seconds)
+    _processes(clock, 2_000, effort.seconds)
+    _six_kernels(clock, 2_000, sweep)
+    _inducing(clock, effort.seconds)
+    for points in (500, 5_000, 50_000):
+        _neighbours(clock, points, sweep)
+    for points in (500, 1_000, 4_000):
+        _processes(clock, points, sweep)
+    for name, own, points in _variants(pairs):
+        clock.beside(name, own, points, {}, sweep)
+    return clock.found, clock.scheduling
+
+
+def _neighbours(clock: Clock, points: int, seconds: float) -> None:
+    knn = fitted("knn", clock.pairs.first(points))
+    clock.beside("knn", ours(knn), points, libraries.neighbours(knn), seconds)
+
+
+def _processes(clock: Clock, points: int, seconds: float) -> None:
+    """One kernel for six outputs: mean, mean and variance, and the faded correction."""
+    pairs = clock.pairs.first(points)
+    gp = fitted("gp", pairs, max_points=points, **GP)
+    never = unfading(gp)
+    clock.beside("gp_mean", ours(never), points, libraries.means(never), seconds)
+    clock.beside("gp_faded", ours(gp), points, {}, seconds)
+    theirs = libraries.variances(gp) if points <= 2_000 else {}
+    clock.beside("gp_variance", both(gp), points, theirs, seconds)
+
+
+def _six_kernels(clock: Clock, points: int, seconds: float) -> None:
+    pairs = clock.pairs.first(points)
+    gp = fitted("gp", pairs, max_points=points)
+    never = unfading(gp)
+    ways: tuple[tuple[str, Callable, dict[str, Any]], ...] = (
+        ("gp_mean", ours(never), libraries.means(never)),
+        ("gp_faded", ours(gp), {}),
+        ("gp_variance", both(gp), libraries.variances(gp)),
+    )
+    for name, own, found in ways:
+        theirs = {f"{other}_six_kernels": call for other, call in found.items()}
+        clock.beside(f"{name}_six_kernels", own, points, theirs, seconds)
+
+
+def _inducing(clock: Clock, seconds: float) -> None:
+    svgp = unfading(fitted("svgp", clock.pairs.first(2_000)))
+    points = svgp.points
+    clock.beside("svgp", ours(svgp), points, {"gpytorch_svgp": svgp.library()}, seconds)
+    theirs = {"gpytorch_svgp_variance": libraries.variances(svgp)["gpytorch_variance"]}
+    clock.beside("svgp_variance", both(svgp), points, theirs, seconds)
+
+
+def _variants(pairs: Pairs) -> Iterator[tuple[str, Callable, int]]:
+    """Ours by number of neighbours and of outputs."""
+    for k in (1, 10, 20):
+        yield f"knn_k{k}", ours(fitted("knn", pairs.first(20_000), k=k)), 20_000
+    for outputs in range(1, 6):
+        for kind, points in (("knn", 20_000), ("gp", 2_000)):
+            data = pairs.exported(kind, points, outputs)
+            yield f"{kind}_{outputs}_outputs", ours(data), int(data[POINTS])

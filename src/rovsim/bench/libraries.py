@@ -1,0 +1,97 @@
+"""The libraries' own calls: features (1, d) in, residual accelerations out, scaled as ours."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.residual.learner import Predict, learner
+from rovsim.residual.scaling import Scaling
+from rovsim.residual.storage import Residual
+
+Ways = dict[str, Predict]
+
+
+def neighbours(residual: Residual) -> Ways:
+    """scikit-learn, and the trees of SciPy and pykdtree with the same inverse-distance mean."""
+    from pykdtree.kdtree import KDTree
+    from scipy.spatial import cKDTree
+
+    points, targets, scaling = _known(residual)
+    k = residual.settings.k  # type: ignore[attr-defined]
+    with_tree: dict[str, Any] = {"scipy_knn": cKDTree(points), "pykdtree_knn": KDTree(points)}
+    return {
+        "sklearn_knn": residual.library(),
+        **{name: _mean_of(tree.query, targets, scaling, k) for name, tree in with_tree.items()},
+    }
+
+
+def _known(residual: Residual) -> tuple[Array, Array, Scaling]:
+    a = residual.arrays
+    return a["points"], a["targets"], Scaling(a["shift"], a["scale"])
+
+
+def _mean_of(query: Callable[..., Any], targets: Array, scaling: Scaling, k: int) -> Predict:
+    def predict(X: Array) -> Array:
+        distance, rows = query(scaling.apply(X), k=k)
+        distance, rows = distance.reshape(-1, k), rows.reshape(-1, k)
+        with np.errstate(divide="ignore"):
+            weight = 1.0 / distance
+        hit = np.isinf(weight).any(axis=1)
+        weight[hit] = np.isinf(weight[hit])
+        return (weight[..., None] * targets[rows]).sum(1) / weight.sum(1)[:, None]
+
+    return predict
+
+
+def means(residual: Residual) -> Ways:
+    """GPyTorch, scikit-learn and NumPy with stored weights; all with the same hyperparameters."""
+    found = {"gpytorch_mean": residual.library()}
+    if len(residual.arrays["lengthscale"]) == 1:
+        found |= {"sklearn_gp_mean": _sklearn(residual), "numpy_gp_mean": _numpy(residual)}
+    return found
+
+
+def variances(residual: Residual) -> dict[str, Callable[[Array], tuple[Array, Array]]]:
+    """GPyTorch's exact mean and variance, and by LOVE."""
+    make = learner(residual.kind).posterior_from
+    assert make is not None
+    return {
+        "gpytorch_variance": make(residual.arrays, residual.settings),
+        "gpytorch_love": make(residual.arrays, residual.settings, fast=True),
+    }
+
+
+def _sklearn(residual: Residual) -> Predict:
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import RBF, ConstantKernel
+
+    a, (points, targets, scaling) = residual.arrays, _known(residual)
+    kernel = ConstantKernel(a["outputscale"][0]) * RBF(a["lengthscale"][0])
+    process = GaussianProcessRegressor(kernel, alpha=float(a["noise"][0]), optimizer=None)
+    process.fit(points, targets.T - a["mean"])
+
+    def predict(X: Array) -> Array:
+        mean = process.predict(scaling.apply(X)) + a["mean"]
+        return mean * a["target_scale"] + a["target_shift"]
+
+    return predict
+
+
+def _numpy(residual: Residual) -> Predict:
+    a, (points, targets, scaling) = residual.arrays, _known(residual)
+    length, unit = a["lengthscale"][0], a["outputscale"][0]
+    Z = points / length
+    squares = (Z**2).sum(1)
+    gram = unit * np.exp(-0.5 * np.maximum(squares[:, None] + squares - 2.0 * Z @ Z.T, 0.0))
+    gram[np.diag_indices(len(Z))] = unit + a["noise"][0]
+    weights = unit * np.linalg.solve(gram, targets.T - a["mean"]) * a["target_scale"]
+    mean = a["mean"] * a["target_scale"] + a["target_shift"]
+
+    def predict(X: Array) -> Array:
+        z = scaling.apply(X) / length
+        k = np.exp(-0.5 * ((z[:, None] - Z) ** 2).sum(2))
+        return mean + k @ weights
+
+    return predict

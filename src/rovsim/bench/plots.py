@@ -1,0 +1,77 @@
+"""The plots of the speed benchmark."""
+
+from typing import Any, Mapping
+
+from matplotlib.figure import Figure
+
+from rovsim.figures.marks import legend
+from rovsim.figures.style import sheet, styled
+
+# One colour for us, the Okabe-Ito colours for the libraries
+SIZES = {
+    "neighbours, k = 5": {
+        "knn": "#0072B2", "pykdtree_knn": "#009E73", "scipy_knn": "#E69F00",
+        "sklearn_knn": "#D55E00",
+    },
+    "Gaussian process, one kernel": {
+        "gp_mean": "#0072B2", "gp_faded": "#56B4E9", "gp_variance": "#000000",
+        "numpy_gp_mean": "#009E73", "sklearn_gp_mean": "#E69F00", "gpytorch_mean": "#CC79A7",
+        "gpytorch_love": "#F0E442", "gpytorch_variance": "#D55E00",
+    },
+}  # fmt: skip
+COLORS = {"knn": "#D55E00", "gp": "#0072B2", "gp_six_kernels": "#009E73", "svgp": "#CC79A7"}
+
+
+@styled()
+def draw_sizes(content: Mapping[str, Any]) -> Figure:
+    """Median (line) and p99.9 (thin, above it) against points, one panel a family."""
+    figure = sheet(85)
+    for axes, (title, names) in zip(figure.subplots(1, 2), SIZES.items(), strict=True):
+        for name, color in names.items():
+            sizes = _sizes(content["inference"], name)
+            for statistic, style in (("median_us", "o-"), ("p999_us", ":")):
+                label = name.replace("_", " ") if style == "o-" else None
+                axes.plot(
+                    list(sizes), [s[statistic] for s in sizes.values()], style, color=color,
+                    markersize=3, label=label,
+                )  # fmt: skip
+        axes.axhline(1000.0, color="#444444", linestyle="--", linewidth=0.8)
+        axes.set(xscale="log", yscale="log", xlabel="points", ylabel="one prediction (µs)")
+        axes.set_title(title)
+        axes.legend(fontsize=6.5)
+    return figure
+
+
+def _sizes(inference: Mapping[str, Any], name: str) -> dict[int, Mapping[str, Any]]:
+    found = {
+        int(key.split("@")[1]): stats
+        for key, stats in inference.items()
+        if key.split("@")[0] == name
+    }
+    return dict(sorted(found.items()))
+
+
+@styled()
+def draw_accuracy(content: Mapping[str, Any]) -> Figure:
+    """Share of the residual that is left against cost; 1 is no correction at all."""
+    figure = sheet(75)
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, where in zip(panels, ("seen", "unseen"), strict=True):
+        for (name, fades), rows in _by_way(content["accuracy"]).items():
+            axes.plot(
+                [row["median_us"] for row in rows], [row[where]["mean"] for row in rows],
+                "o-" if fades else "x--", color=COLORS[name], markersize=4,
+                label=f"{name.replace('_', ' ')}{', fades' if fades else ''}",
+            )  # fmt: skip
+        axes.axhline(1.0, color="#444444", linewidth=0.8, linestyle=":")
+        axes.set(xscale="log", xlabel="one prediction (µs)", title=where)
+    panels[0].set_ylabel("share of the residual left")
+    legend(figure, panels[0].get_legend_handles_labels()[0])
+    return figure
+
+
+def _by_way(rows: list[Mapping[str, Any]]) -> dict[tuple[str, bool], list[Mapping[str, Any]]]:
+    found: dict[tuple[str, bool], list[Mapping[str, Any]]] = {}
+    for row in rows:
+        found.setdefault((row["name"], row["fades"]), []).append(row)
+    return found

@@ -1,0 +1,97 @@
+"""The simulator as a Gymnasium environment: fly to a place and stay there.
+
+    import gymnasium
+    env = gymnasium.make("rovsim.environment:rovsim/Vehicle-v0", model="model.yaml")
+
+Needs the extra `rovsim[gym]`. For a task of your own, override `reward` and `_goal`.
+"""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Box
+from numpy import ndarray as Array
+
+from rovsim.frames import from_euler
+from rovsim.model import Model, load_model
+from rovsim.stepping import Stepper
+from rovsim.vehicle import load_vehicle
+
+ID = "rovsim/Vehicle-v0"
+
+
+class VehicleEnv(gymnasium.Env):
+    """A vehicle that starts at rest and level near the origin.
+
+    An action (n,) is one command in [-1, 1] per thruster, of what the vehicle allows. An
+    observation (16,) is the state (13,) of `rovsim.stepping` and the goal (3,), m in NED. The
+    reward is minus the distance to the goal in m, minus the mean square of the action. An episode
+    is cut off after `seconds`, and ends where the vehicle is more than three times `reach` from
+    the origin on some axis.
+
+    Args:
+        model: a built-in model, the path of a model file (with residual and all), or a model.
+        vehicle: of a built-in model; a name in conf/vehicle/.
+        dt: s between two actions.
+        seconds: of an episode.
+        reach: m, goals lie within a cube of this half width.
+
+    Raises:
+        BadInput: no such model or vehicle, or a model that cannot be stepped.
+    """
+
+    metadata = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own declaration
+
+    def __init__(
+        self,
+        model: str | Model = "nominal",
+        vehicle: str = "bluerov2_heavy",
+        dt: float = 0.05,
+        seconds: float = 30.0,
+        reach: float = 2.0,
+    ) -> None:
+        known = model if isinstance(model, Model) else load_model(model, load_vehicle(vehicle))
+        self.stepper = Stepper(known, duration=seconds)
+        self.dt, self.seconds, self.reach = dt, seconds, reach
+        self.limit = known.vehicle.thrusters.command_limit
+        self.action_space = Box(-1.0, 1.0, (self.stepper.columns,), np.float64)
+        edge = np.concatenate([np.full(3, np.inf), np.full(4, 1.01), np.full(6, np.inf)])
+        edge = np.concatenate([edge, np.full(3, reach)])
+        self.observation_space = Box(-edge, edge, dtype=np.float64)
+        self.state, self.goal = np.zeros(13), np.zeros(3)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """A new heading and a new goal; `options` may give `state` (13,) and `goal` (3,)."""
+        super().reset(seed=seed)
+        options = options or {}
+        self.stepper.reset()
+        heading = from_euler(0.0, 0.0, self.np_random.uniform(-np.pi, np.pi))
+        start = np.concatenate([np.zeros(3), heading, np.zeros(6)])
+        self.goal = np.array(options.get("goal", self._goal()), dtype=np.float64)
+        self.state = np.array(options.get("state", start), dtype=np.float64)
+        return self._seen(), {}
+
+    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+        """Hold an action for dt; actions beyond [-1, 1] count as -1 or 1."""
+        action = np.clip(action, -1.0, 1.0)
+        self.state = self.stepper.step(self.state, self.limit * action, self.dt)
+        lost = bool(np.abs(self.state[:3]).max() > 3.0 * self.reach)
+        late = self.stepper.time >= self.seconds - 1e-9
+        return self._seen(), self.reward(action), lost, late, {}
+
+    def reward(self, action: Array) -> float:
+        """What an action that led to the present state is worth."""
+        distance = float(np.linalg.norm(self.state[:3] - self.goal))
+        return -distance - float(np.mean(action**2))
+
+    def _goal(self) -> Array:
+        return self.np_random.uniform(-self.reach, self.reach, 3)
+
+    def _seen(self) -> Array:
+        return np.concatenate([self.state, self.goal])
+
+
+gymnasium.register(ID, entry_point=VehicleEnv)

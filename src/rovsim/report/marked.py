@@ -1,0 +1,26 @@
+"""Pages of docs/ with results in them: tables between two marks, the words around them by hand."""
+
+from pathlib import Path
+
+from rovsim.errors import BadInput
+from rovsim.files import read_text, write_text
+
+BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
+
+
+def replace_tables(path: Path, text: str) -> None:
+    """Put the tables between the marks of a page.
+
+    Raises:
+        BadInput: the page has no such marks.
+    """
+    page = read_text(path)
+    if page.count(BEGIN) != 1 or page.count(END) != 1:
+        raise BadInput(
+            "the marks of the tables are not there once each",
+            where=path,
+            expected=f"one line '{BEGIN}' and one line '{END}'",
+            remedy="Restore them.",
+        )
+    before, rest = page.split(BEGIN)
+    write_text(path, f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}")

@@ -1,0 +1,36 @@
+"""Where things stand in an exported residual: one flat float64 array, read by compiled kernels.
+
+    header     FORMAT, KIND, BLOCKS, WIDTH d, POINTS n, OUTPUTS m, COUNT, WEIGHTING, RANK, SURE
+    neighbours (COUNT = k): scaling, boxes (b, 2, d', LANES), points, rows (n'), targets (n, m)
+    expansion  (COUNT = p): mean (m), then p parts:
+               identity, limit, prior (m / p), scaling, points, spectrum (r'), weights (w', n'),
+               vectors (r', n')
+
+scaling = shift (d), scale (d); points = (n' / LANES, d', LANES). n' is n filled up to whole blocks
+of LANES; d', r' (of RANK) and w' (of m / p) are filled up to multiples of PASS; all with zeros.
+"""
+
+FORMAT, KIND, BLOCKS, WIDTH, POINTS, OUTPUTS, COUNT, WEIGHTING, RANK, SURE = range(10)
+HEADER = 10
+VERSION = 2.0
+NEIGHBOURS, EXPANSION = 0.0, 1.0
+UNIFORM, DISTANCE = 0.0, 1.0
+
+LANES = 32  # points side by side: four AVX-512 or eight AVX2 registers of float64
+PASS = 4  # features, or rows of a matrix, a pass: fewer, and loads outweigh arithmetic
+MOST_NEIGHBOURS = 64  # bounds the scratch; more neighbours than this would only be an average
+MOST_POINTS = 8192  # of an expansion, bounds the scratch: 64 KiB on the stack
+MOST_LEVELS = 8  # of a tree: 32^9 points
+
+
+def filled(count: int, unit: int) -> int:
+    """The next multiple of `unit`."""
+    return -(-count // unit) * unit
+
+
+def tree_levels(points: int) -> list[int]:
+    """Blocks on each level of a tree of so many points: leaves first, one root last."""
+    counts = [-(-points // LANES)]
+    while len(counts) == 1 or counts[-1] > 1:
+        counts.append(-(-counts[-1] // LANES))
+    return counts
