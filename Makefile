@@ -5,11 +5,13 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study test check bench benchmark-hidden catalogue clean lock
+.PHONY: help setup study test test-ui ui screenshots check bench bench-ui benchmark-hidden catalogue clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
+	@echo "make ui      the workbench in the browser (CAMPAIGN=DIR opens one)"
 	@echo "make test    every test"
+	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
 	@echo "make check   formatting, lint, types, layers"
 	@echo "make bench   replay and inference speed, into results/bench.json"
 	@echo "make benchmark-hidden   known physics hidden in the tank: is it found? SUITE=quick|standard|full"
@@ -31,11 +33,29 @@ study: setup
 test: setup
 	$(BIN)/python -m pytest -n $(CORES)
 
+ui: setup
+	$(BIN)/rovsim ui $(if $(CAMPAIGN),campaign=$(CAMPAIGN))
+
+test-ui: setup chromium
+	$(BIN)/python -m pytest tests/browser
+
+# The pictures of the docs, taken by the tests on the practice campaign.
+screenshots: setup chromium
+	ROVSIM_SCREENSHOTS=$(CURDIR)/docs/images/workbench $(BIN)/python -m pytest tests/browser
+
+.PHONY: chromium
+chromium: setup
+	for name in chromium chromium-browser google-chrome google-chrome-stable chrome; do \
+	  command -v $$name >/dev/null && exit 0; done; $(BIN)/playwright install chromium
+
 check: setup
 	$(BIN)/ruff format --check src tests workflow
 	$(BIN)/ruff check src tests workflow
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+bench-ui: setup chromium
+	PYTHONPATH=tests $(BIN)/python tests/browser/speed.py
 
 bench: setup
 	$(BIN)/rovsim bench

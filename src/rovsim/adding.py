@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Mapping, Sequence
 
 from rovsim.diagnosis.content import SCHEMA
 from rovsim.errors import BadInput, nearest
@@ -50,10 +50,23 @@ def added(
             )
     vehicle = model_of(diagnosis["base"], source).vehicle
     base = load_model(to, vehicle)
-    entries = [
-        checked(EffectEntry, {k: fitted[name][k] for k in ("effect", "parameters")}, source)
-        for name in names
+    return extended(base, entries_of([fitted[name] for name in names], source)), names
+
+
+def entries_of(fitted: Sequence[Mapping[str, Any]], source: Path) -> list[EffectEntry]:
+    """Fitted effects of a diagnosis as entries of a model file."""
+    return [
+        checked(EffectEntry, {k: one[k] for k in ("effect", "parameters")}, source)
+        for one in fitted
     ]
+
+
+def extended(base: Model, entries: Sequence[EffectEntry]) -> Model:
+    """The base with further effects, called new.
+
+    Raises:
+        BadInput: values no model can have.
+    """
     model = replace(base, name="new", entries=(*base.entries, *entries))
     _ = model.body.M, model.effects  # refuse a model that cannot move
-    return model, names
+    return model

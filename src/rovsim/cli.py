@@ -3,6 +3,7 @@
 import importlib
 import pkgutil
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, Sequence
 
@@ -10,6 +11,7 @@ from rovsim.errors import BadInput, RovsimError, nearest
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to")
+FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
 COMMANDS = Path(__file__).with_name("commands")
 
 
@@ -45,22 +47,26 @@ def _main(words: list[str]) -> None:
         print(_doc(command))
         return
     sweep = bool({"-m", "--multirun"} & set(rest))
-    overrides = [override(word) for word in rest if word not in ("-m", "--multirun")]
+    words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
+    overrides = [override(word) for word in words]
     if sweep:
         _sweep([f"command={command}", *overrides])
     else:
         from rovsim.config import compose
         from rovsim.effects import use_effect_files
+        from rovsim.progress import heard_by
 
         settings = compose([f"command={command}", *overrides])
         use_effect_files(settings.effect_files)
-        _command(command).run(settings)
+        with heard_by() if settings.output == "quiet" else nullcontext():
+            _command(command).run(settings)
 
 
 def _help(names: Sequence[str]) -> str:
     lines = ["rovsim COMMAND key=value …", ""]
     lines += [f"  {name:<9} {_doc(name).splitlines()[0]}" for name in names]
     lines += ["", "rovsim COMMAND --help tells more; keys and their values stand in conf/."]
+    lines += ["--quiet prints nothing but errors, --json the result as JSON."]
     return "\n".join(lines)
 
 

@@ -5,8 +5,7 @@ from typing import Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt
 
-from rovsim.diagnosing import DiagnosisSettings
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.errors import BadInput, nearest
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import LearnerSettings, learner_settings
@@ -69,6 +68,9 @@ class Settings(Section):
     model: str | list[str]
     out: str | None
     effects_file: str | list[str] | None = None
+    output: Literal["text", "json", "quiet"] = "text"
+    port: int = Field(8501, ge=1, le=65535)
+    open: bool = True
     control: Literal["3dof", "6dof"]
     seed: int = Field(ge=0)
     signals: SignalSettings

@@ -4,30 +4,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Mapping, Sequence
 
-from pydantic import Field
-
 from rovsim.diagnosis.content import content
 from rovsim.diagnosis.diagnose import Diagnosis, diagnose
 from rovsim.diagnosis.floor import noise_floor
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.watch import Watch, watch
 from rovsim.ladder import floor_step, ladder, step
 from rovsim.model import Model
-from rovsim.replay import ReplaySettings, replay
-from rovsim.signals.chain import SignalSettings, Stage, read_stage
+from rovsim.replay import replay
+from rovsim.signals.chain import Stage, read_stage
 from rovsim.signals.motion import Motion
-from rovsim.strict import Section
 from rovsim.where import content as where_content
 from rovsim.where import judged
 
-
-class DiagnosisSettings(Section):
-    """All that a diagnosis depends on but the runs and the model."""
-
-    search: SearchSettings = SearchSettings()
-    signals: SignalSettings = SignalSettings()
-    replay: ReplaySettings = ReplaySettings()
-    seed: int = Field(0, ge=0)
+# Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
+STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
 
 
 @dataclass(frozen=True, eq=False)

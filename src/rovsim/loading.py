@@ -10,6 +10,7 @@ from rovsim.config import Settings
 from rovsim.diagnosing import Runs
 from rovsim.errors import BadInput
 from rovsim.model import Model, load_model
+from rovsim.progress import counted
 from rovsim.quality import quality_of
 from rovsim.recording import read_run, usable_reason
 from rovsim.signals.chain import Stage, differentiated, filtered, resampled
@@ -57,7 +58,7 @@ def measured(settings: Settings, even_unusable: bool = False) -> Measured:
     """
     campaign = given_campaign(settings)
     motions, quality, stages = {}, {}, {}
-    for run in campaign.runs:
+    for run in counted(campaign.runs, "reading"):
         recording, anomalies = read_run(campaign, run.id)
         quality[run.id] = quality_of(recording, anomalies, settings.signals.outliers)
         if usable_reason(recording) is None:

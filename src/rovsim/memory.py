@@ -1,8 +1,8 @@
 """What the water remembers of a measured motion, where a model has a fluid memory."""
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 
 from rovsim.engine.at import NO_MEMORY
 from rovsim.frames import unrotate
@@ -40,4 +40,4 @@ def lag_of_lines(values: Array, step: float) -> Array:
     kept = np.exp(-step)
     mean = (1.0 - kept) / step
     end, begin = 1.0 - mean, mean - kept
-    return lfilter([end, begin], [1.0, -kept], values, zi=[-end * values[0]])[0]
+    return scipy.signal.lfilter([end, begin], [1.0, -kept], values, zi=[-end * values[0]])[0]

@@ -11,6 +11,7 @@ import rovsim
 from rovsim.strict import Section
 
 SOURCE = Path(rovsim.__file__).parent
+UNRELATED = ("command", "tracking", "timing", "hidden", "bench", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch")
 
 
@@ -62,10 +63,10 @@ def _file(module: str) -> Path:
 
 
 def provenance(settings: Section) -> dict[str, Any]:
-    """Settings, code and versions behind a result."""
+    """Settings, code and versions behind a result; settings without influence are left out."""
     packages = {name: version(name) for name in PACKAGES}
     versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
-    chosen = settings.model_dump(mode="json", exclude={"command", "tracking", "timing", "hidden"})
+    chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
     code = digest("rovsim", effects=getattr(settings, "effect_files", ()))
     return {"settings": chosen, "code": code, "versions": versions}
 

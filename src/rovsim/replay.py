@@ -37,7 +37,7 @@ class ReplaySettings(Section):
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """What a model predicts at motion.time: NaN where it predicts nothing, infinite once it diverged.
+    """What a model predicts at motion.time: NaN where nothing, infinite once it diverged.
 
     `eta` (n, 7) pose, `nu` (n, 6) velocity, `nu_dot` (n, 6) acceleration, after the filter.
     """
@@ -174,14 +174,16 @@ def residual_data(model: Model) -> Array:
 
 
 def replay(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> Replay:
-    """Replay one run open loop and in windows; an unusable run predicts nothing.
+    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings,
+    open_loop: bool = True,
+) -> Replay:  # fmt: skip
+    """Replay one run open loop, unless that is not wanted, and in windows.
 
-    What comes back is what the motion capture would report of the model's motion.
+    What comes back is what the motion capture would report of the model's motion. An unusable run
+    predicts nothing.
     """
     true = as_true(model, motion)
-    spans = {OPEN_LOOP: _whole(motion)}
+    spans = {OPEN_LOOP: _whole(motion)} if open_loop else {}
     for seconds in settings.horizons:
         spans[f"{seconds:g}"] = list(windows(motion, seconds))
     predict = _predict_bins if motion.binned else _predict_samples
@@ -245,7 +247,8 @@ def _predict_samples(model, motion, spans, signals, settings) -> Prediction:
     if not spans:
         return found
     stride, period = clock(motion, settings.step).stride, float(motion.time[1] - motion.time[0])
-    starts = [(a * stride, b - a, motion.state[a]) for a, b in spans]
+    state = motion.state
+    starts = [(a * stride, b - a, state[a]) for a, b in spans]
     paths = model.view.states(np.stack(trajectories(model, motion, starts, settings)))
     nu, nu_dot = np.full((2, *paths.shape[:-1], 6), np.inf)
     stayed = np.isfinite(paths).all(axis=(1, 2))

@@ -131,7 +131,9 @@ def growth(
     rows = np.array([rms(error[bins == b]) for b in kept]).reshape(-1, 6)
     return {
         "horizon_s": [float(edges[b]) for b in kept],
-        "velocity_rmse": {axis: [number(x) for x in row] for axis, row in zip(AXES, rows.T, strict=True)},
+        "velocity_rmse": {
+            axis: [number(x) for x in row] for axis, row in zip(AXES, rows.T, strict=True)
+        },
     }
 
 

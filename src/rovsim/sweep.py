@@ -2,11 +2,13 @@
 
 import importlib
 import sys
+from contextlib import nullcontext
 from typing import Any
 
 from rovsim.config import settings_of
 from rovsim.effects import use_effect_files
 from rovsim.errors import RovsimError
+from rovsim.progress import heard_by
 
 
 def job(composed: Any) -> None:
@@ -18,7 +20,8 @@ def job(composed: Any) -> None:
         settings = settings.model_copy(update={"out": HydraConfig.get().runtime.output_dir})
     try:
         use_effect_files(settings.effect_files)
-        importlib.import_module(f"rovsim.commands.{settings.command}").run(settings)
+        with heard_by() if settings.output == "quiet" else nullcontext():
+            importlib.import_module(f"rovsim.commands.{settings.command}").run(settings)
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)
         sys.exit(2)

@@ -113,11 +113,11 @@ def test_an_unknown_model_names_the_nearest(capsys, campaign, tmp_path):
     assert "Did you mean 'nominal'" in text
 
 
-def test_compare_writes_the_contract(campaign, tmp_path):
-    main(
-        ["compare", f"campaign={campaign}", "model=[nominal,zero_acceleration]", f"out={tmp_path}"]
-    )
+def test_compare_writes_the_contract(campaign, tmp_path, capsys):
+    words = [f"campaign={campaign}", "model=[nominal,zero_acceleration]", f"out={tmp_path}"]
+    main(["compare", *words, "--json"])
     found = json.loads((tmp_path / "comparison.json").read_text())
+    assert json.loads(capsys.readouterr().out) == found
     assert found["schema"] == "rovsim.comparison/1"
     assert set(found["models"]) == {"nominal", "zero_acceleration"}
     run = found["models"]["nominal"]["runs"]["6dof-2"]

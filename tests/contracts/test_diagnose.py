@@ -4,8 +4,10 @@ import pytest
 
 from rovsim.adding import added
 from rovsim.cli import main
+from rovsim.config import compose
 from rovsim.files import read_json, read_yaml
 from rovsim.ladder import floor_step, step, with_diagnosis
+from rovsim.ui import tasks
 
 
 @pytest.fixture(scope="module")
@@ -128,3 +130,9 @@ def test_a_step_without_runs_has_every_key_and_no_number():
     assert empty["windows_2s"] is None
     assert set(empty) == set(floor_step(0.1))
     assert set(empty["velocity_mae"].values()) == {None}
+
+
+def test_the_workbench_finds_what_the_command_finds(campaign, diagnosed, tmp_path):
+    found = tasks.find(compose([f"campaign='{campaign}'"]), tmp_path / "diagnosis.json")
+    assert found == read_json(tmp_path / "diagnosis.json")
+    assert found == read_json(diagnosed / "found" / "diagnosis.json")

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from rovsim.campaign import load_campaign
-from rovsim.diagnosing import DiagnosisSettings, Runs, diagnosed
+from rovsim.diagnosing import Runs, diagnosed
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.files import write_json
 from rovsim.jobs import job
 from rovsim.model import nominal

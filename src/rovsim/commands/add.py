@@ -12,6 +12,7 @@ from rovsim.adding import added, read_diagnosis
 from rovsim.config import Settings
 from rovsim.errors import BadInput
 from rovsim.provenance import provenance
+from rovsim.saying import say
 
 
 def run(settings: Settings) -> None:
@@ -33,7 +34,7 @@ def run(settings: Settings) -> None:
     story = {"diagnosis": str(source), "base": settings.to}
     story |= {key: known[key] for key in ("code", "versions")}
     model.write(Path(settings.model), provenance=story)
-    if names:
-        print(f"{settings.model}: {settings.to} + {' + '.join(names)}")
-    else:
-        print(f"{settings.model}: {settings.to} as it is, for the diagnosis selected no effect")
+    text = f"{settings.to} + {' + '.join(names)}"
+    if not names:
+        text = f"{settings.to} as it is, for the diagnosis selected no effect"
+    say(settings, f"{settings.model}: {text}", {"model": settings.model, "effects": names})

@@ -23,6 +23,7 @@ from rovsim.files import write_json
 from rovsim.loading import measured
 from rovsim.model import Model, nominal
 from rovsim.residual.features import FeatureSettings
+from rovsim.saying import say
 from rovsim.tank.campaign import make_campaign
 from rovsim.training import samples
 
@@ -46,7 +47,7 @@ def run(settings: Settings) -> None:
     path = Path(settings.out or "results") / "bench.json"
     write_json(path, content)
     write_page(Path(how.page), content)
-    print(path)
+    say(settings, str(path), content)
 
 
 def _samples(settings: Settings) -> tuple[Model, dict[str, list]]:

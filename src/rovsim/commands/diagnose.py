@@ -9,16 +9,16 @@ is then written by `rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 
 from pathlib import Path
 
+from rovsim.answering import diagnose
 from rovsim.config import Settings
-from rovsim.diagnosing import Diagnosed, diagnosed
-from rovsim.errors import BadInput
+from rovsim.diagnosing import Diagnosed
 from rovsim.evidence import Evidence
 from rovsim.files import write_json
 from rovsim.loading import Measured, measured, models, results_folder
-from rovsim.model import Model
-from rovsim.progress import staged
+from rovsim.progress import reported
 from rovsim.provenance import provenance
 from rovsim.report import terminal
+from rovsim.saying import say
 from rovsim.tracking import track_diagnosis
 
 FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
@@ -27,29 +27,18 @@ FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
 def run(settings: Settings) -> None:
     """Diagnose one model, write what was found, and say it."""
     data = measured(settings, even_unusable=True)
-    base = _base(models(settings, data.vehicle))
+    chosen = models(settings, data.vehicle)
     out = results_folder(settings.out or f"results/{data.campaign.name}/diagnosis")
-    with staged("diagnosing") as stage:
-        found = diagnosed(data.runs, base, settings.diagnosing, stage)
+    found = diagnose(data, chosen, settings)
     shown = _present(out, data, found, settings)
     write_json(out / "diagnosis.json", found.content)
-    print(terminal.diagnosed(found.content))
-    print(f"\n{out / 'diagnosis.json'} and {out / 'report.html'}")
-    track_diagnosis(
-        settings.tracking, data.campaign.name, base.name, found.content,
-        settings.diagnosing.model_dump(mode="json"), [out / "diagnosis.json", *shown],
-    )  # fmt: skip
-
-
-def _base(chosen: list[Model]) -> Model:
-    if len(chosen) == 1 and chosen[0].residual is None and not chosen[0].inert:
-        return chosen[0]
-    raise BadInput(
-        f"cannot diagnose {', '.join(m.name for m in chosen)}",
-        where="model",
-        expected="one model of physics, without a trained residual",
-        remedy="Give model=nominal, or one model file without a residual.",
-    )
+    files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
+    say(settings, f"{terminal.diagnosed(found.content)}\n\n{files}", found.content)
+    with reported("logging to MLflow"):
+        track_diagnosis(
+            settings.tracking, data.campaign.name, chosen[0].name, found.content,
+            settings.diagnosing.model_dump(mode="json"), [out / "diagnosis.json", *shown],
+        )  # fmt: skip
 
 
 def _present(out: Path, data: Measured, found: Diagnosed, settings: Settings) -> list[Path]:

@@ -20,6 +20,7 @@ from rovsim.hidden.suites import suite
 from rovsim.hidden.summary import judged, summary
 from rovsim.progress import reported
 from rovsim.report.marked import replace_tables
+from rovsim.saying import say
 
 SCHEMA = "rovsim.hidden.summary/1"
 
@@ -39,5 +40,4 @@ def run(settings: Settings) -> None:
     text = tables(results)
     if asked.seeds == "reporting":
         replace_tables(Path(asked.page), text)
-    print(text)
-    print(out / "summary.json")
+    say(settings, f"{text}\n{out / 'summary.json'}", results)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rovsim.config import Settings
 from rovsim.progress import reported
+from rovsim.saying import say
 from rovsim.tank.campaign import make_campaign
 
 
@@ -18,4 +19,4 @@ def run(settings: Settings) -> None:
     out = Path(settings.out or f"results/{settings.tank.name}/raw")
     with reported("flying") as progress:
         make_campaign(settings.tank, out, progress)
-    print(out)
+    say(settings, str(out), {"campaign": str(out)})

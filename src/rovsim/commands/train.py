@@ -6,18 +6,14 @@ Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comp
 an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof.
 """
 
+from rovsim.answering import replayed, scored, train
 from rovsim.config import Settings
 from rovsim.errors import BadInput
 from rovsim.files import write_json
 from rovsim.loading import measured, models, results_folder
-from rovsim.model import read_model
 from rovsim.progress import reported
-from rovsim.provenance import provenance
-from rovsim.replay import replay
-from rovsim.residual.storage import write_residual
-from rovsim.scores import comparison, score
+from rovsim.saying import say
 from rovsim.tracking import track
-from rovsim.training import train_residual, training_runs
 
 
 def run(settings: Settings) -> None:
@@ -31,33 +27,25 @@ def run(settings: Settings) -> None:
             expected="one model to train on",
             remedy="Name one, or sweep over them with -m.",
         )
-    base, motions = chosen[0], list(data.motions.values())
+    base = chosen[0]
     name = f"{settings.learner.kind}_{settings.control}"
     out = results_folder(settings.out or f"results/{data.campaign.name}/trained/{name}")
-    used = training_runs(motions, settings.control)
-    with reported("training") as progress:
-        trained = train_residual(
-            base, used, settings.control, settings.learner, settings.signals, settings.replay,
-            settings.seed, progress,
-        )  # fmt: skip
-    description = write_residual(out, trained, settings.control)
-    story = provenance(settings) | {"train_runs": [m.run.id for m in used], "base": base.name}
-    base.write(out / "model.yaml", description, story)
-    corrected = read_model(out / "model.yaml")
-    replays = [
-        replay(model, m, settings.signals, settings.replay)
-        for model in (base, corrected)
-        for m in motions
-    ]
-    found = comparison(score(m, r) for m, r in zip(motions * 2, replays, strict=True))
+    corrected = train(data, base, settings, out)
+    replays = replayed(data, [base, corrected], settings)
+    found = scored(list(data.motions.values()), replays)
     write_json(out / "comparison.json", found)
-    track(
-        settings.tracking,
-        experiment=data.campaign.name,
-        name=name,
-        tags={"model": base.name, "residual": trained.kind, "control": settings.control},
-        params=settings.residual | {"seed": settings.seed},
-        scores=found["models"]["model"]["runs"],
-        files=sorted(p for p in out.iterdir() if p.is_file()),
-    )
-    print(out / "model.yaml")
+    with reported("logging to MLflow"):
+        track(
+            settings.tracking,
+            experiment=data.campaign.name,
+            name=name,
+            tags={
+                "model": base.name,
+                "residual": settings.learner.kind,
+                "control": settings.control,
+            },
+            params=settings.residual | {"seed": settings.seed},
+            scores=found["models"]["model"]["runs"],
+            files=sorted(p for p in out.iterdir() if p.is_file()),
+        )
+    say(settings, str(out / "model.yaml"), {"model": str(out / "model.yaml")})

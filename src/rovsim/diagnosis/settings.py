@@ -4,6 +4,8 @@ from typing import Annotated
 
 from pydantic import Field, PositiveInt
 
+from rovsim.replay import ReplaySettings
+from rovsim.signals.chain import SignalSettings
 from rovsim.strict import Section
 
 
@@ -20,3 +22,12 @@ class SearchSettings(Section):
     trials: PositiveInt = 3
     most_effects: PositiveInt = 6
     relevant: Annotated[float, Field(ge=0)] = 0.02
+
+
+class DiagnosisSettings(Section):
+    """All that a diagnosis depends on but the runs and the model."""
+
+    search: SearchSettings = SearchSettings()
+    signals: SignalSettings = SignalSettings()
+    replay: ReplaySettings = ReplaySettings()
+    seed: int = Field(0, ge=0)

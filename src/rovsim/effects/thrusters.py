@@ -1,8 +1,8 @@
 """What happens between a command that has arrived and a thruster's force."""
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 
 from rovsim.body import Body
 from rovsim.effects.base import Coefficients, Parameter, Response, Shaping, Strength
@@ -128,7 +128,9 @@ class ThrusterLag(Response):
         if T == 0.0:
             return force, force[-1]
         decay = np.exp(-h / T)
-        ends, _ = lfilter([1.0 - decay], [1.0, -decay], force, axis=0, zi=decay * start[None])
+        ends, _ = scipy.signal.lfilter(
+            [1.0 - decay], [1.0, -decay], force, axis=0, zi=decay * start[None]
+        )
         begins = np.vstack([start[None], ends[:-1]])
         return force + (begins - force) * (T / h) * (1.0 - decay), ends[-1]
 

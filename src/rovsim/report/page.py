@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from latex2mathml.converter import convert
+from markupsafe import Markup
 
 from rovsim.errors import BadInput
 from rovsim.figures import SECTIONS, kind
@@ -94,6 +96,7 @@ def render(inputs: ReportInputs) -> str:
         lstrip_blocks=True,
     )
     environment.filters["significant"] = lambda value: significant(number(value))
+    environment.filters["mathml"] = lambda latex: Markup(convert(latex))
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
     return environment.get_template("report.html").render(
         campaign=inputs.campaign,

@@ -19,7 +19,11 @@ def compared(errors: Mapping[str, float | None], where: Mapping[str, Any]) -> st
     ]
     lines += ["in units of the measured velocity's spread, mean over the excited axes", ""]
     width = max((len(short(name)) for name in errors), default=0)
-    lines += [f"  {short(n):<{width}}  {significant(number(e))}" for n, e in errors.items()]
+    most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
+    lines += [
+        f"  {short(n):<{width}}  {_bar((e or 0.0) / most)} {significant(number(e))}"
+        for n, e in errors.items()
+    ]
     return "\n".join([*lines, *_findings(where)])
 
 
@@ -46,7 +50,8 @@ def diagnosed(found: Mapping[str, Any]) -> str:
     for one, words in zip(found["selected"], said.missing, strict=True):
         lines += _effect(one["error_reduction"] or 0.0, words)
     lines += _ranking(found["ranking"])
-    for remark in said.remarks:
+    following = [f"Next: {said.next}"] if said.next else []
+    for remark in (*said.remarks, *following):
         lines += ["", *textwrap.wrap(remark, WIDTH)]
     return "\n".join(lines)
 

@@ -20,22 +20,28 @@ MANY = 1e6  # odds that need no number
 
 @dataclass(frozen=True)
 class Missing:
-    """A selected effect: its id, what it is, its parameters as text, and how sure it is."""
+    """A selected effect: its id, what it is, its parameters as text, and how sure it is.
+
+    `equation` in LaTeX and `cause` are empty where the effect is not in the catalogue any more.
+    """
 
     effect: str
     meaning: str
     parameters: tuple[str, ...]
     worth: str
+    equation: str
+    cause: str
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """A diagnosis in words: one sentence, the effects that are missing, and what else to know."""
+    """A diagnosis in words: a sentence, the missing effects, what else to know, what to record."""
 
     name: str
     sentence: str
     missing: tuple[Missing, ...]
     remarks: tuple[str, ...]
+    next: str
 
 
 def verdict(found: Mapping[str, Any]) -> Verdict:
@@ -45,20 +51,20 @@ def verdict(found: Mapping[str, Any]) -> Verdict:
         *apart_sentences(found),
         *unexplained_sentences(found),
         *still_sentences(found.get("not_excited", [])),
-        f"Next: {found['next_experiment']}" if found["next_experiment"] else "",
     ]
     return Verdict(
         found["verdict"], VERDICTS[found["verdict"]], tuple(map(_missing, found["selected"])),
-        tuple(remark for remark in remarks if remark),
+        tuple(remarks), found["next_experiment"] or "",
     )  # fmt: skip
 
 
 def _missing(one: Mapping[str, Any]) -> Missing:
     known = catalogue().get(one["effect"])
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
+    equation, cause = (known.equation, known.cause) if known else ("", "")
     values = tuple(f"{name} {interval(v)}" for name, v in one["parameters"].items())
     worth = f"removes {percent(one['error_reduction'])} of the error, {_sure(one['probability'])}"
-    return Missing(one["effect"], meaning, values, worth)
+    return Missing(one["effect"], meaning, values, worth, equation, cause)
 
 
 def interval(value: Mapping[str, Any]) -> str:

@@ -5,8 +5,8 @@ Contract, section 3: nothing is filtered; the model is averaged over each bin; a
 """
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.interpolate import CubicSpline
 
 from rovsim import frames
 from rovsim.errors import BadInput
@@ -61,7 +61,7 @@ def edge_values(edges: Array, means: Array) -> Array:
     """
     length = np.diff(edges)[:, None]
     integral = np.concatenate([np.zeros((1, means.shape[1])), np.cumsum(means * length, axis=0)])
-    return np.asarray(CubicSpline(edges, integral)(edges[:-1], 1))
+    return np.asarray(scipy.interpolate.CubicSpline(edges, integral)(edges[:-1], 1))
 
 
 def bin_means(time: Array, nu: Array, edges: Array) -> Array:

@@ -3,10 +3,9 @@
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
 from pydantic import Field
-from scipy.interpolate import CubicSpline
-from scipy.signal import savgol_filter
 
 from rovsim import frames
 from rovsim.signals.filter import odd_window
@@ -27,7 +26,7 @@ class Spline(_Margin):
 
     def derivatives(self, x: Array, dt: float) -> tuple[Array, Array]:
         """First and second time derivative of `x` (..., time, channels)."""
-        spline = CubicSpline(dt * np.arange(x.shape[-2]), x, axis=-2)
+        spline = scipy.interpolate.CubicSpline(dt * np.arange(x.shape[-2]), x, axis=-2)
         first, second = spline.derivative(1), spline.derivative(2)
         return first(spline.x), second(spline.x)
 
@@ -59,7 +58,7 @@ class SavitzkyGolay(_Margin):
         width = odd_window(self.window, dt, x.shape[-2])
         degree = min(self.degree, width - 1)
         first, second = (
-            savgol_filter(x, width, degree, deriv=d, delta=dt, axis=-2, mode="interp")
+            scipy.signal.savgol_filter(x, width, degree, deriv=d, delta=dt, axis=-2, mode="interp")
             for d in (1, 2)
         )
         return first, second

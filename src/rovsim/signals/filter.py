@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
 from pydantic import Field
-from scipy.signal import butter, savgol_filter, sosfilt, sosfilt_zi
 
 from rovsim import frames
 from rovsim.errors import BadInput
@@ -50,7 +50,7 @@ class Butterworth(Section):
         period = 1.0 / (self.cutoff * dt)
         pad = round(EXTENSION * period)
         extended = _continued(x, pad, max(round(FIT * period), 5))
-        sos = butter(self.order, self.cutoff, fs=1.0 / dt, output="sos")
+        sos = scipy.signal.butter(self.order, self.cutoff, fs=1.0 / dt, output="sos")
         there = _one_way(sos, extended)
         back = _one_way(sos, there[..., ::-1, :])[..., ::-1, :]
         return back[..., pad : pad + x.shape[-2], :]
@@ -72,7 +72,7 @@ class SavitzkyGolay(Section):
         width = odd_window(self.window, dt, x.shape[-2])
         if width <= self.degree:
             return x
-        return savgol_filter(x, width, self.degree, axis=-2, mode="interp")
+        return scipy.signal.savgol_filter(x, width, self.degree, axis=-2, mode="interp")
 
 
 class Unfiltered(Section):
@@ -122,10 +122,10 @@ def odd_window(seconds: float, dt: float, available: int) -> int:
 
 def _one_way(sos: Array, x: Array) -> Array:
     """Filter (..., time, channels) along time from the state that a constant x[0] leaves."""
-    zi = sosfilt_zi(sos)  # (sections, 2)
+    zi = scipy.signal.sosfilt_zi(sos)  # (sections, 2)
     x = np.moveaxis(x, -2, -1)
     state = zi.reshape(len(sos), *[1] * (x.ndim - 1), 2) * x[..., :1]
-    return np.moveaxis(sosfilt(sos, x, axis=-1, zi=state)[0], -1, -2)
+    return np.moveaxis(scipy.signal.sosfilt(sos, x, axis=-1, zi=state)[0], -1, -2)
 
 
 def _continued(x: Array, pad: int, fit: int) -> Array:

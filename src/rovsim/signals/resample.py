@@ -3,9 +3,9 @@
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
 from pydantic import Field
-from scipy.interpolate import PchipInterpolator
 
 from rovsim import frames
 from rovsim.recording.recording import Recording
@@ -53,7 +53,7 @@ class Pchip(_Clock):
 
     def between(self, time: Array, eta: Array, wanted: Array) -> Array:
         """Poses at the times `wanted` (m,) inside `time` (n,); `eta` (n, 7)."""
-        return np.asarray(PchipInterpolator(time, eta)(wanted))
+        return np.asarray(scipy.interpolate.PchipInterpolator(time, eta)(wanted))
 
 
 Resampling: TypeAlias = Annotated[Linear | Pchip, Field(discriminator="kind")]

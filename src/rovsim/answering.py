@@ -1,0 +1,99 @@
+"""The work behind `compare`, `diagnose` and `train`: for the commands and for the workbench."""
+
+from pathlib import Path
+from typing import Any, Sequence
+
+from rovsim.budget import Budget, budget
+from rovsim.config import Settings
+from rovsim.diagnosing import STAGES, Diagnosed, diagnosed
+from rovsim.errors import BadInput
+from rovsim.evidence import Evidence
+from rovsim.loading import Measured
+from rovsim.model import Model, read_model
+from rovsim.progress import counted, reported, staged
+from rovsim.provenance import provenance
+from rovsim.replay import Replay, replay
+from rovsim.residual.storage import write_residual
+from rovsim.scores import comparison, growth, score
+from rovsim.signals.motion import Motion
+from rovsim.training import samples, train_residual, training_runs
+from rovsim.where import content, judged
+
+
+def compare(data: Measured, chosen: Sequence[Model], settings: Settings) -> Evidence:
+    """Replays, scores, findings and budgets of all models."""
+    replays = replayed(data, chosen, settings)
+    motions = list(data.motions.values())
+    curves = {name: growth(motions, list(runs.values())) for name, runs in replays.items()}
+    searched = counted([m for m in chosen if not m.inert], "searching")
+    where = content([judged(m, motions, settings.signals, settings.replay) for m in searched])
+    return Evidence(
+        data.motions, replays, scored(motions, replays), {"models": curves}, quality=data.quality,
+        where=where, budgets=_budgets(data, chosen[-1], settings),
+    )  # fmt: skip
+
+
+def replayed(
+    data: Measured, chosen: Sequence[Model], settings: Settings
+) -> dict[str, dict[str, Replay]]:
+    """Every run replayed with every model."""
+    replays: dict[str, dict[str, Replay]] = {model.name: {} for model in chosen}
+    jobs = [(model, motion) for model in chosen for motion in data.motions.values()]
+    for model, motion in counted(jobs, "replaying"):
+        replays[model.name][motion.run.id] = replay(
+            model, motion, settings.signals, settings.replay
+        )
+    return replays
+
+
+def scored(motions: Sequence[Motion], replays: dict[str, dict[str, Replay]]) -> dict[str, Any]:
+    """`comparison.json` of replays by model and run."""
+    return comparison(score(m, runs[m.run.id]) for runs in replays.values() for m in motions)
+
+
+def _budgets(data: Measured, model: Model, settings: Settings) -> dict[str, Budget]:
+    """Budget of the last model, by run."""
+    return {
+        run: budget(
+            model, motion, samples(model, motion, settings.signals, settings.replay),
+            settings.replay,
+        )
+        for run, motion in counted(list(data.motions.items()), "balancing forces")
+    }  # fmt: skip
+
+
+def diagnose(data: Measured, chosen: Sequence[Model], settings: Settings) -> Diagnosed:
+    """Diagnose one model of physics on the campaign.
+
+    Raises:
+        BadInput: not exactly one model, or one that is no model of physics alone.
+    """
+    base = _base(chosen)
+    with staged("diagnosing", STAGES) as stage:
+        return diagnosed(data.runs, base, settings.diagnosing, stage)
+
+
+def _base(chosen: Sequence[Model]) -> Model:
+    if len(chosen) == 1 and chosen[0].residual is None and not chosen[0].inert:
+        return chosen[0]
+    raise BadInput(
+        f"cannot diagnose {', '.join(m.name for m in chosen)}",
+        where="model",
+        expected="one model of physics, without a trained residual",
+        remedy="Give model=nominal, or one model file without a residual.",
+    )
+
+
+def train(data: Measured, base: Model, settings: Settings, out: Path, name: str = "model") -> Model:
+    """Train a residual on top of a model; writes `out`/`name`.yaml and returns it as read back."""
+    used = training_runs(list(data.motions.values()), settings.control)
+    with reported(f"training {settings.learner.kind}") as progress:
+        trained = train_residual(
+            base, used, settings.control, settings.learner, settings.signals, settings.replay,
+            settings.seed, progress,
+        )  # fmt: skip
+    description = write_residual(out, trained, settings.control)
+    story = provenance(settings) | {"train_runs": [m.run.id for m in used], "base": base.name}
+    path = out / f"{name}.yaml"
+    base.write(path, description, story)
+    return read_model(path)

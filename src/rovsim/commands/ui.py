@@ -1,0 +1,39 @@
+"""Open the workbench: the four questions in the browser.
+
+rovsim ui [campaign=DIR] [model=[nominal,FILE,…]] [diagnosis=OUT/diagnosis.json] [port=8501]
+          [open=true]
+
+Served on this machine only, without the internet, until Ctrl+C. Without a campaign it offers those
+near here, and one to practise on. What it computes lies in `out` (results/CAMPAIGN/ui).
+"""
+
+import socket
+
+from rovsim.config import Settings
+from rovsim.errors import BadInput
+from rovsim.saying import say
+from rovsim.ui import HOST
+
+
+def run(settings: Settings) -> None:
+    """Serve until interrupted."""
+    _free(settings.port)
+    from rovsim.ui.app import serve
+
+    address = f"http://{HOST}:{settings.port}"
+    say(settings, f"The workbench is at {address} (Ctrl+C ends it)", {"address": address})
+    serve(settings)
+
+
+def _free(port: int) -> None:
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((HOST, port))
+        except OSError as error:
+            raise BadInput(
+                f"port {port} cannot be used ({error.strerror})",
+                where="port",
+                expected="a free port of this machine",
+                remedy=f"Give another one, for example port={port + 1}.",
+            ) from None

@@ -1,0 +1,214 @@
+"""Add: tick effects, move their values, see the replay move; save the model as a file."""
+
+from pathlib import Path
+from typing import Any
+
+from nicegui import ui
+
+from rovsim import AXES
+from rovsim.effects import catalogue
+from rovsim.errors import RovsimError
+from rovsim.figures.marks import significant
+from rovsim.gallery.page import unit
+from rovsim.model import Model
+from rovsim.ui.draft import reach
+from rovsim.ui.parts import computed, heading, onward, section, text, tile, tile_html
+from rovsim.ui.traces import Traces, excited, panels
+from rovsim.ui.workbench import Workbench
+
+TITLE, QUESTION = "Add", "How much better is it once that is added?"
+STEPS = 400  # of a slider
+HORIZON = 2.0  # s, that of the error shown
+
+
+class Add:
+    """The screen."""
+
+    def __init__(self, bench: Workbench) -> None:
+        self.bench, self.draft = bench, bench.draft
+        train = [r for r, m in bench.data.motions.items() if m.run.split == "train"]
+        self.runs = train or list(bench.data.motions)
+        self.run = bench.choices.get("add run", self.runs[0])
+        self.wanted = self.drawing = False
+        self.traces: Traces | None = None
+
+    async def show(self) -> None:
+        """Build the screen."""
+        heading(TITLE, QUESTION)
+        text(
+            "Tick an effect to add it, move a slider to change it: the replay follows at once. "
+            "Here you see a train run; the test runs are opened when you save.", "soft",
+        )  # fmt: skip
+        with ui.row().classes("halves"):
+            with ui.column().classes("half left"):
+                self.list = ui.column().classes("area")
+                self._effects()
+                self._save()
+            with ui.column().classes("half right"):
+                choice = ui.select(self.runs, label="Run", value=self.run).classes("control")
+                choice.props("outlined dense").on_value_change(lambda e: self._other(e.value))
+                with ui.row().classes("tiles"):
+                    self.before = tile("This run, before", None, "run/before")
+                    self.after = tile("This run, now", None, "run/now")
+                self.area = ui.column().classes("area")
+        await self.draw()
+
+    def _effects(self) -> None:
+        """Ticks and sliders: what the diagnosis found, then whatever else was ticked."""
+        self.list.clear()
+        offered = list(dict.fromkeys([*self.draft.fitted, *self.draft.ticked]))
+        with self.list:
+            for name in offered[:5] + [n for n in offered[5:] if n in self.draft.ticked]:
+                self._effect(name)
+            rest = [name for name in catalogue() if name not in offered[:5]]
+            more = ui.select(rest, label="Another effect", with_input=True).classes("control wide")
+            more.props("outlined dense")
+            more.on_value_change(lambda e: self._another(e.value))
+
+    def _effect(self, name: str) -> None:
+        with ui.column().classes("card"):
+            ticked = name in self.draft.ticked
+            box = ui.checkbox(name, value=ticked)
+            box.on_value_change(lambda e: self._tick(name, e.value))
+            known = catalogue()[name]
+            if not ticked:
+                text((known.__doc__ or "").split("\n")[0], "soft")
+                return
+            units = {p.name: p for p in known.parameters}
+            for parameter, value in self.draft.entry(name).parameters.items():
+                self._slider(name, units[parameter], value.value)
+
+    def _slider(self, effect: str, parameter: Any, value: float) -> None:
+        low, high = reach(parameter, value)
+        shown = unit(parameter.unit)
+        with ui.row().classes("slider"):
+            ui.label(parameter.name).classes("name")
+            slider = ui.slider(min=low, max=high, step=(high - low) / STEPS, value=value)
+            slider.props(f'aria-label="{effect}, {parameter.name}"')
+            label = ui.label(f"{significant(value)} {shown}").classes("value")
+
+        async def moved(event: Any) -> None:
+            label.text = f"{significant(event.args)} {shown}"
+            self.draft.move(effect, parameter.name, float(event.args))
+            await self.update()
+
+        slider.on("update:model-value", moved, throttle=0.05)
+
+    async def _tick(self, name: str, yes: bool) -> None:
+        self.draft.tick(name, yes)
+        self._effects()
+        await self.draw()
+
+    async def _another(self, name: str | None) -> None:
+        if name:
+            await self._tick(name, True)
+
+    async def _other(self, run: str) -> None:
+        self.run = self.bench.choices["add run"] = run
+        await self.draw()
+
+    def _model(self) -> Model | None:
+        """The draft as a model; None, with a message, if no such model can be."""
+        try:
+            model = self.draft.model()
+            motion = self.bench.data.motions[self.run]
+            model.check(motion.site, motion.commands.kind)
+            return model
+        except RovsimError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+            return None
+
+    def _replayed(self, model: Model) -> tuple[Any, float | None]:
+        """Prediction and error of the run shown."""
+        found = self.bench.prediction(model, self.run, HORIZON)
+        return found, self.bench.run_error(model, self.run)
+
+    async def draw(self) -> None:
+        """The chart and the two errors, anew."""
+        model = self._model()
+        if model is None:
+            return
+        self.area.clear()
+        with self.area:
+            waiting = ui.spinner()  # the first replay with a new force compiles it
+        base, before = await computed(self._replayed, self.bench.base)
+        new, now = await computed(self._replayed, model)
+        waiting.delete()
+        motion = self.bench.data.motions[self.run]
+        self.axes = [a for a in AXES if a in excited(self.bench, self.run)]
+        self.base = base
+        with self.area:
+            shown = panels(motion, {self.bench.base.name: base, "new": new}, self.axes)
+            self.traces = Traces(motion.time, shown, f"Run {self.run}, before and with the effects")
+        note = "2 s windows, " + motion.run.split + " run"
+        self.before.content = tile_html("This run, before", before, "run/before", note)
+        self.after.content = tile_html("This run, now", now, "run/now", note)
+
+    async def update(self) -> None:
+        """Follow a slider; values that come while one is replayed are taken together."""
+        self.wanted = True
+        if self.drawing:
+            return
+        self.drawing = True
+        try:
+            while self.wanted:
+                self.wanted = False
+                model = self._model()
+                if model is not None and self.traces is not None:
+                    new, now = await computed(self._replayed, model)
+                    motion = self.bench.data.motions[self.run]
+                    self.traces.redraw(panels(motion, {"new": new}, self.axes))
+                    note = "2 s windows, " + motion.run.split + " run"
+                    self.after.content = tile_html("This run, now", now, "run/now", note)
+        finally:
+            self.drawing = False
+
+    def _save(self) -> None:
+        section("Save it")
+        name = f"results/{self.bench.data.campaign.name}/models/with_effects.yaml"
+        self.path = ui.input("Model file", value=name).classes("control wide")
+        self.path.props("outlined dense")
+        ui.button("Save, and open the test runs", icon="save", on_click=self._saved).props(
+            "unelevated no-caps"
+        ).classes("onward")
+        self.result = ui.column().classes("area")
+
+    async def _saved(self) -> None:
+        """Write the model file, and show what it does on the test runs."""
+        path = Path(self.path.value.strip())
+        try:
+            saved = await computed(self.bench.save, path)
+        except RovsimError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+            return
+        before = (await computed(self.bench.step, self.bench.base))["windows_2s"]
+        after = (await computed(self.bench.step, saved))["windows_2s"]
+        self._tell(path, before, after)
+
+    def _tell(self, path: Path, before: float | None, after: float | None) -> None:
+        floor = (self.bench.diagnosis or {}).get("error", {}).get("noise_floor")
+        self.result.clear()
+        with self.result:
+            with ui.row().classes("tiles"):
+                tile("Error before", before, "saved/before", "test runs")
+                tile("Error now", after, "saved/after", "test runs")
+                if floor is not None:
+                    tile("Noise floor", floor, "saved/noise_floor", "of a perfect model, about")
+            text(_sentence(before, after))
+            ui.label("The same in a terminal").classes("soft")
+            campaign = self.bench.settings.campaign
+            ui.code(f"rovsim compare campaign={campaign} model=[nominal,{path}]", language="bash")
+            onward("See the whole ladder", "/ladder")
+
+
+def _sentence(before: float | None, after: float | None) -> str:
+    if before is None or after is None:
+        return "Saved. There is no test run to measure it on."
+    if after < before:
+        return f"Saved. On the test runs the error fell by {100 * (1 - after / before):.0f} %."
+    return "Saved. On the test runs the error did not fall."
+
+
+async def show(bench: Workbench) -> None:
+    """Show the screen."""
+    await Add(bench).show()

@@ -1,0 +1,233 @@
+"""The page: header, navigation, progress of long work; the screens fill the rest."""
+
+import asyncio
+import gc
+from functools import partial
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Callable
+
+from fastapi.responses import FileResponse
+from nicegui import app as server
+from nicegui import ui
+from starlette.middleware.trustedhost import TrustedHostMiddleware
+
+from rovsim.config import Settings, compose
+from rovsim.errors import RovsimError
+from rovsim.ui import HOST
+
+SCREENS = ("compare", "where", "why", "add", "ladder", "data")
+STYLE = Path(__file__).with_name("style.css")
+ICON = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><path fill="none" '
+    'stroke="#0072B2" stroke-width="4" d="M2 21c5-14 9-14 14 0s9 14 14 0"/></svg>'
+)
+PRACTICE = Path("results/practice/raw")
+LOOK = 0.25  # s between two looks at long work
+
+
+class App:
+    """What all pages share: the settings, the open campaign, long work that belongs to none."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings, self.problem = settings, ""
+        self.said = ""  # of the work that ended last
+        self.bench: Any = None
+        self.work: Any = None
+        self.version = 0  # changes when the screens must be drawn again
+        self.opening = asyncio.Lock()
+
+    def choose(self, folder: str) -> None:
+        """Open another campaign."""
+        self.settings = self.settings.model_copy(update={"campaign": folder, "diagnosis": None})
+        self.bench, self.problem, self.said = None, "", ""
+        self.version += 1
+
+    def practise(self) -> None:
+        """Make the practice campaign, unless it is there, and open it."""
+        from rovsim.ui import tasks
+        from rovsim.ui.work import Work
+
+        if (PRACTICE / "campaign.yaml").exists():
+            self.choose(str(PRACTICE))
+            return
+        given = compose(["tank=practice"])
+        self.work = Work.start(
+            "Making a campaign",
+            lambda path: self.choose(str(path)),
+            tasks.practise,
+            given,
+            PRACTICE,
+        )
+
+    async def opened(self) -> Any:
+        """The open campaign, read now if need be; None when there is none, or it cannot be read."""
+        async with self.opening:
+            if self.bench is None and self.settings.campaign and not self.problem:
+                from rovsim.ui.parts import computed
+                from rovsim.ui.workbench import Workbench
+
+                try:
+                    self.bench = await computed(Workbench.opened, self.settings)
+                    gc.freeze()  # what is loaded stays: looking through it again costs 0.2 s
+                except RovsimError as error:
+                    self.problem = str(error)
+        return self.bench
+
+    def working(self) -> Any:
+        """The long work that is going on or has just ended."""
+        return self.work or getattr(self.bench, "work", None)
+
+    def settle(self) -> None:
+        """Look after long work: take in what came of it."""
+        work = self.working()
+        if work is None or work.look() == "running":
+            return
+        self.work = None
+        if self.bench is not None:
+            self.bench.work = None
+        if work.state == "done":
+            work.after(work.said)
+        self.version += 1
+        self.said = {
+            "done": f"{work.title}: done in {work.elapsed:.0f} s.",
+            "failed": f"{work.title}: {work.said}",
+            "cancelled": f"{work.title}: cancelled, nothing was changed.",
+        }[work.state]
+
+
+class Page:
+    """One browser tab."""
+
+    def __init__(self, shared: App) -> None:
+        self.shared, self.seen = shared, shared.version
+        self.name = ""  # of the screen shown; none: choosing a campaign
+        self.links: dict[str, ui.link] = {}
+
+    def build(self) -> None:
+        """Header, progress, screen."""
+        ui.add_head_html(f"<style>{STYLE.read_text(encoding='utf-8')}</style>")
+        ui.colors(primary="#0072B2")
+        ui.query("html").props('lang="en"')
+        with ui.element("header"):
+            with ui.row().classes("brand"):
+                ui.link("rovsim", "/open").classes("logo").props('title="Open another campaign"')
+                self.campaign = ui.label(self._name()).classes("campaign")
+            with ui.element("nav").props('aria-label="Screens"'):
+                for k, name in enumerate((*SCREENS, "gallery"), 1):
+                    title = "Effects" if name == "gallery" else name.capitalize()
+                    link = ui.link(title, f"/{name}").props(f'accesskey="{k}" title="key {k}"')
+                    self.links[name] = link
+        self._progress()
+        with ui.element("div").classes("screen"):
+            routes: dict[str, Callable] = {f"/{n}": partial(self._screen, n) for n in self.links}
+            routes |= {"/": partial(self._screen, "compare"), "/open": self._open}
+            routes["/gallery/{effect}"] = self._effect
+            self.pages = ui.sub_pages(routes)
+        ui.keyboard(on_key=self._key)
+        ui.timer(LOOK, self._look)
+
+    def _name(self) -> str:
+        folder = self.shared.settings.campaign
+        bench = self.shared.bench
+        return bench.data.campaign.name if bench else Path(folder).name if folder else ""
+
+    def _progress(self) -> None:
+        with ui.row().classes("progress").props('role="status" aria-live="polite"') as self.strip:
+            self.what = ui.label()
+            self.bar = ui.linear_progress(show_value=False).props('aria-label="Progress"')
+            self.left = ui.label().classes("soft")
+            ui.button("Cancel", on_click=self._cancel).props("flat dense no-caps")
+        self.strip.visible = False
+
+    def _cancel(self) -> None:
+        if work := self.shared.working():
+            work.cancel()
+
+    def _look(self) -> None:
+        """Show how far long work is; draw the screen again when something has changed."""
+        self.shared.settle()
+        work = self.shared.working()
+        self.strip.visible = work is not None
+        if work is not None:
+            self.what.text = f"{work.title}: {work.what.partition(': ')[2] or work.what}"
+            self.bar.value = work.share or 0.0
+            left = "" if work.left is None else f", about {work.left:.0f} s left"
+            self.left.text = f"{work.elapsed:.0f} s{left}"
+        if self.seen != self.shared.version:
+            self.seen = self.shared.version
+            self.campaign.text = self._name()
+            if self.shared.said:
+                ui.notify(self.shared.said, color="dark", position="bottom-right", multi_line=True)
+            if self.name:
+                self.pages.refresh()
+            else:
+                ui.navigate.to("/compare")
+
+    def _key(self, event: Any) -> None:
+        """Digits change the screen."""
+        names = list(self.links)
+        at = event.key.number or 0
+        if event.action.keydown and not event.modifiers.alt and 1 <= at <= len(names):
+            ui.navigate.to(f"/{names[at - 1]}")
+
+    def _active(self, name: str) -> None:
+        self.name = name
+        for key, link in self.links.items():
+            link.classes(add="active") if key == name else link.classes(remove="active")
+
+    async def _screen(self, name: str) -> None:
+        """One of the screens, once the campaign is read."""
+        self._active(name)
+        waiting = None
+        if self.shared.bench is None and self.shared.settings.campaign:
+            waiting = ui.label(f"Reading the recordings of {self._name()} …").classes("waiting")
+            await ui.context.client.connected()
+        bench = await self.shared.opened()
+        if waiting:
+            waiting.delete()
+        self.campaign.text = self._name()
+        if bench is None:
+            self._choose()
+            return
+        try:
+            await _module(name).show(bench)
+        except RovsimError as error:
+            ui.label(str(error)).classes("warning")
+
+    async def _effect(self, effect: str) -> None:
+        self._active("gallery")
+        if (bench := await self.shared.opened()) is not None:
+            await _module("gallery").entry(bench, effect)
+
+    def _open(self) -> None:
+        self._active("")
+        self._choose()
+
+    def _choose(self) -> None:
+        from rovsim.ui import campaigns
+
+        campaigns.show(self.shared.choose, self.shared.practise, self.shared.problem)
+
+
+def _module(name: str) -> ModuleType:
+    """A screen; imported when first shown, so that the page itself is there at once."""
+    import importlib
+
+    return importlib.import_module(f"rovsim.ui.{name}")
+
+
+def serve(settings: Settings) -> None:
+    """Serve the workbench on loopback until interrupted."""
+    shared = App(settings)
+    server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
+
+    @server.get("/report")
+    def report() -> FileResponse:
+        return FileResponse(shared.bench.choices["report"], media_type="text/html")
+
+    ui.run(
+        lambda: Page(shared).build(), host=HOST, port=settings.port, show=settings.open,
+        reload=False, title="rovsim", favicon=ICON, tailwind=False, show_welcome_message=False,
+        reconnect_timeout=10.0,
+    )  # fmt: skip

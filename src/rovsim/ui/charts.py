@@ -1,0 +1,149 @@
+"""ECharts options: time series over linked axes, bars, paths. Plain dictionaries, testable."""
+
+from dataclasses import dataclass
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.figures.palette import Look, looks
+
+POINTS = 1000  # a curve shows at most; a screen is not wider
+INK, SOFT, LINE, MARK = "#1a1a1a", "#555555", "#d9d9d9", "#D55E00"
+TALL, SHORT, GAP, TOP = 104, 56, 36, 40  # px: panels, what lies between, legend
+WEIGHT = 2.2  # px of a line on screen for one of width 1 on paper
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """Curves {name: values (n,)} over one time axis; a short panel shows what another left."""
+
+    title: str
+    unit: str
+    curves: Mapping[str, Array]
+    short: bool = False
+
+
+def styles(names: Sequence[str]) -> dict[str, Look]:
+    """One look per name; the first of all is the measurement."""
+    return looks(names)
+
+
+def points(time: Array, values: Array) -> list[list[float]]:
+    """Pairs for ECharts, thinned to what a screen can show; NaN (in JSON: null) leaves a gap."""
+    every = max(1, len(time) // POINTS)
+    return np.stack([np.round(time[::every], 3), np.round(values[::every], 5)], axis=1).tolist()
+
+
+def line_style(look: Look) -> dict[str, Any]:
+    """Colour, width and dashes of a line."""
+    dash = "solid" if isinstance(look.dash, str) else [2 * d for d in look.dash[1]]
+    return {"color": look.color, "width": WEIGHT * look.width, "type": dash}
+
+
+def height(panels: Sequence[Panel]) -> int:
+    """Height in px of a chart of panels."""
+    return TOP + sum((SHORT if p.short else TALL) + GAP for p in panels) + 24
+
+
+def series_data(time: Array, panels: Sequence[Panel], but: str = "") -> list[dict[str, Any]]:
+    """The points of every curve, by id; `but` one that has not changed."""
+    return [
+        {"id": f"{k}/{name}", "data": points(time, values)}
+        for k, panel in enumerate(panels)
+        for name, values in panel.curves.items()
+        if name not in but
+    ]
+
+
+def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> dict[str, Any]:
+    """Panels one above the other; zoom and pointer move all of them together."""
+    every = list(range(len(panels)))
+    found: dict[str, Any] = {
+        "legend": {"type": "scroll", "top": 4, "left": 56, "right": 70, "itemWidth": 34,
+                   "itemStyle": {"opacity": 0}},
+        "toolbox": {
+            "right": 8,
+            "feature": {
+                "dataZoom": {"yAxisIndex": "none", "title": {"zoom": "zoom", "back": "back"}}
+            },
+        },
+        "axisPointer": {"link": [{"xAxisIndex": "all"}]},
+        "tooltip": {
+            "trigger": "axis",
+            "confine": True,
+            ":valueFormatter": "v => v == null ? '–' : Number(v).toPrecision(3)",
+        },
+        "dataZoom": [
+            {
+                "type": "inside", "xAxisIndex": every, "filterMode": "none",
+                "zoomOnMouseWheel": "ctrl", "moveOnMouseMove": "shift",
+                "preventDefaultMouseMove": False,
+            }
+        ],
+        "grid": _grids(panels),
+        "xAxis": [_time_axis(k, time, k == every[-1]) for k in every],
+        "yAxis": [_value_axis(k, panel) for k, panel in enumerate(panels)],
+        "series": [],
+    }  # fmt: skip
+    ready = {one["id"]: one["data"] for one in series_data(time, panels)}
+    for k, panel in enumerate(panels):
+        for name in panel.curves:
+            found["series"].append(
+                {
+                    "id": f"{k}/{name}", "name": name, "type": "line", "symbol": "none",
+                    "xAxisIndex": k, "yAxisIndex": k, "lineStyle": line_style(look[name]),
+                    "itemStyle": {"color": look[name].color}, "data": ready[f"{k}/{name}"],
+                    "z": 3 if name == "measured" else 2,
+                }
+            )  # fmt: skip
+        found["series"].append(cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k})
+    return found
+
+
+def cursor(panel: int, time: float | None) -> dict[str, Any]:
+    """A series that is nothing but a line at an instant."""
+    at = [] if time is None else [{"xAxis": time}]
+    look = {"color": MARK, "width": 1.5, "type": "solid"}
+    return {
+        "id": f"{panel}/cursor", "type": "line", "data": [], "silent": True,
+        "markLine": {"symbol": "none", "label": {"show": False}, "data": at, "lineStyle": look,
+                     "animation": False},
+    }  # fmt: skip
+
+
+def _grids(panels: Sequence[Panel]) -> list[dict[str, Any]]:
+    top, grids = TOP + GAP // 2, []
+    for panel in panels:
+        size = SHORT if panel.short else TALL
+        grids.append({"left": 60, "right": 16, "top": top, "height": size})
+        top += size + GAP
+    return grids
+
+
+def _time_axis(k: int, time: Array, last: bool) -> dict[str, Any]:
+    return {
+        "type": "value", "gridIndex": k, "min": float(time[0]), "max": float(time[-1]),
+        "axisLabel": {"show": last, "color": SOFT, "hideOverlap": True, "showMinLabel": False,
+                      "showMaxLabel": False},
+        "axisTick": {"show": last},
+        "axisLine": {"onZero": False, "lineStyle": {"color": LINE}}, "splitLine": {"show": False},
+        "axisPointer": {"label": {":formatter": "p => Number(p.value).toFixed(2) + ' s'"}},
+        **({"name": "time (s)", "nameLocation": "middle", "nameGap": 22,
+            "nameTextStyle": {"color": SOFT}} if last else {}),
+    }  # fmt: skip
+
+
+def _value_axis(k: int, panel: Panel) -> dict[str, Any]:
+    return {
+        "type": "value", "gridIndex": k, "scale": True, "splitNumber": 2 if panel.short else 3,
+        "name": f"{panel.title} ({panel.unit})", "nameGap": 10,
+        "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -52]},
+        "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}},
+    }  # fmt: skip
+
+
+def extent(*curves: Array) -> tuple[float, float]:
+    """Lowest and highest known value."""
+    known = np.concatenate([c[np.isfinite(c)] for c in curves] or [np.zeros(1)])
+    return (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)

@@ -1,0 +1,118 @@
+"""Data: what was recorded, what is wrong with it, and what it can tell."""
+
+from typing import Any
+
+from rovsim import AXES
+from rovsim.figures.marks import VELOCITY_UNITS
+from rovsim.ui.charts import INK, LINE, MARK, SOFT
+from rovsim.ui.parts import cell, chart, heading, section, table, text, words
+from rovsim.ui.workbench import Workbench
+
+TITLE, QUESTION = "Data", "Can these recordings be trusted?"
+
+
+async def show(bench: Workbench) -> None:
+    """Show the screen."""
+    heading(TITLE, QUESTION)
+    quality = bench.data.quality
+    for run, report in quality.items():
+        if report["unusable"]:
+            text(f"Run {run} is not used: {report['unusable']}.", "warning")
+    _recordings(quality)
+    _gaps(quality)
+    _excitation(quality)
+    section("Remarks")
+    for run, report in quality.items():
+        for remark in report["remarks"]:
+            text(f"{run}: {remark}")
+    if not any(report["remarks"] for report in quality.values()):
+        text("Nothing to remark on.", "soft")
+
+
+def _recordings(quality: dict[str, dict[str, Any]]) -> None:
+    rows = []
+    for run, q in quality.items():
+        noise, repairs = q["noise"], q["repairs"]
+        rows.append(
+            (
+                run,
+                [
+                    words(q["split"]), words(q["control"]),
+                    cell(q["rate_hz"]["median"], f"{run}/rate_hz"),
+                    cell(q["duration_s"], f"{run}/duration_s"),
+                    cell(q["not_found"], f"{run}/not_found"),
+                    cell(len(q["gaps"]), f"{run}/gaps"),
+                    cell(q["longest_gap_s"], f"{run}/longest_gap_s"),
+                    cell(q["outliers"], f"{run}/outliers"),
+                    cell(repairs["duplicates"], f"{run}/duplicates"),
+                    cell(_times(noise["position_m"], 1e3), f"{run}/noise_mm"),
+                    cell(_times(noise["attitude_rad"], 1e3), f"{run}/noise_mrad"),
+                ],
+            )
+        )  # fmt: skip
+    heads = [
+        "run", "split", "control", "rate (Hz)", "length (s)", "frames without pose", "gaps",
+        "longest (s)", "outliers", "duplicates", "noise (mm)", "noise (mrad)",
+    ]  # fmt: skip
+    table("Recordings: noise is per sample of the raw poses", heads, rows)
+
+
+def _times(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value
+
+
+def _gaps(quality: dict[str, dict[str, Any]]) -> None:
+    """Each run as a line, its gaps as marks."""
+    section("Gaps")
+    runs = list(reversed(quality))
+    data = [
+        [g["start_s"], k, g["start_s"] + g["duration_s"]]
+        for k, run in enumerate(runs)
+        for g in quality[run]["gaps"]
+    ]
+    if not data:
+        text("The body was seen throughout.", "soft")
+        return
+    text("Where the motion capture lost the body. Nothing is invented across a long gap.", "soft")
+    longest = max(quality[run]["duration_s"] for run in runs)
+    chart(
+        {
+            "grid": {"left": 8, "right": 24, "top": 8, "bottom": 34, "containLabel": True},
+            "tooltip": {":formatter": "p => p.value[0].toFixed(2) + ' s to '"
+                                      " + p.value[2].toFixed(2) + ' s'"},
+            "xAxis": {"type": "value", "min": 0, "max": longest, "name": "time in the run (s)",
+                      "nameLocation": "middle", "nameGap": 22, "nameTextStyle": {"color": SOFT},
+                      "axisLabel": {"color": SOFT, "showMaxLabel": False},
+                      "splitLine": {"show": False}},
+            "yAxis": {"type": "category", "data": runs, "axisLabel": {"color": INK},
+                      "axisTick": {"show": False}, "splitLine": {"show": True,
+                      "lineStyle": {"color": LINE}}},
+            "series": [{"type": "custom", "data": data, ":renderItem": GAP_SHAPE,
+                        "encode": {"x": [0, 2], "y": 1}, "itemStyle": {"color": MARK}}],
+        },
+        "Gaps in each run over time",
+        60 + 30 * len(runs),
+    )  # fmt: skip
+
+
+GAP_SHAPE = (
+    "(p, api) => { const a = api.coord([api.value(0), api.value(1)]),"
+    " b = api.coord([api.value(2), api.value(1)]);"
+    " return {type: 'rect', shape: {x: a[0], y: a[1] - 9, width: Math.max(2, b[0] - a[0]),"
+    " height: 18}, style: {fill: '#D55E00'}}; }"
+)
+
+
+def _excitation(quality: dict[str, dict[str, Any]]) -> None:
+    section("Excitation")
+    text("An axis in parentheses hardly moves: nothing can be judged there.", "soft")
+    heads = ["run", *(f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True))]
+    rows = []
+    for run, report in quality.items():
+        cells = []
+        for axis in AXES:
+            one = report["excitation"][axis]
+            shown = cell(one["std"], f"{run}/excitation/{axis}")
+            cells.append(shown if one["excited"] else shown.replace("number", "number quiet"))
+        rows.append((run, cells))
+    table("Standard deviation of the body velocity", heads, rows)

@@ -1,0 +1,77 @@
+"""A model being put together: effects ticked, their values moved."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Mapping
+
+import numpy as np
+
+from rovsim.adding import entries_of, extended
+from rovsim.effects import catalogue
+from rovsim.effects.parameters import Parameter
+from rovsim.model import EffectEntry, Model, Value
+
+SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
+
+
+@dataclass(eq=False)
+class Draft:
+    """A base, the diagnosis whose fitted effects are offered, and what was changed.
+
+    `ticked` ids in order; `values` by effect and parameter where the user moved them.
+    """
+
+    base: Model
+    diagnosis: Mapping[str, Any]
+    ticked: list[str] = field(default_factory=list)
+    values: dict[str, dict[str, float]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.ticked = [one["effect"] for one in self.diagnosis.get("selected", [])]
+
+    @property
+    def fitted(self) -> dict[str, Mapping[str, Any]]:
+        """What the diagnosis has values for, the selected effects first."""
+        found = {one["effect"]: one for one in self.diagnosis.get("selected", [])}
+        ranked = {one["effect"]: one for one in self.diagnosis.get("ranking", [])}
+        return {**found, **{name: one for name, one in ranked.items() if name not in found}}
+
+    def tick(self, effect: str, yes: bool) -> None:
+        """Add or leave out an effect."""
+        self.ticked = [*(t for t in self.ticked if t != effect), *([effect] if yes else [])]
+
+    def move(self, effect: str, parameter: str, value: float) -> None:
+        """Change a value."""
+        self.values.setdefault(effect, {})[parameter] = value
+
+    def entry(self, effect: str) -> EffectEntry:
+        """An effect with its fitted values, those moved in their place.
+
+        An effect without fitted values begins where a fit of it would.
+        """
+        if effect in self.fitted:
+            (entry,) = entries_of([self.fitted[effect]], Path("diagnosis.json"))
+        else:
+            cls = catalogue()[effect]
+            known = {
+                p.name: p.default for p in cls.parameters if p.fitted and p.default == p.default
+            }
+            start = {**known, **cls.starts[0]}
+            entry = EffectEntry.model_validate({"effect": effect, "parameters": start})
+        moved = {k: Value(value=v) for k, v in self.values.get(effect, {}).items()}
+        return entry.model_copy(update={"parameters": {**entry.parameters, **moved}})
+
+    def model(self) -> Model:
+        """The base and the ticked effects.
+
+        Raises:
+            BadInput: values no model can have.
+        """
+        return extended(self.base, [self.entry(name) for name in self.ticked])
+
+
+def reach(parameter: Parameter, value: float) -> tuple[float, float]:
+    """Lowest and highest value of a slider that begins at `value`."""
+    span = max(SPAN * parameter.scale, abs(value))
+    low, high = max(parameter.low, value - span), min(parameter.high, value + span)
+    return (float(low), float(high)) if np.isfinite([low, high]).all() else (-1.0, 1.0)

@@ -1,0 +1,82 @@
+"""The gallery: what every effect looks like, what causes it, what data settles it."""
+
+from base64 import b64encode
+from html import escape
+from pathlib import Path
+
+from nicegui import ui
+
+from rovsim.effects import catalogue
+from rovsim.effects.base import Effect
+from rovsim.effects.parameters import Signature
+from rovsim.gallery.page import PICTURES, chaptered, unit
+from rovsim.ui.parts import computed, formula, heading, section, table, text, words
+from rovsim.ui.workbench import Workbench
+
+TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look like?"
+DRAWN = Path(__file__).parents[3] / "docs" / PICTURES  # by `make catalogue`
+
+
+async def show(bench: Workbench) -> None:
+    """Show all effects, by where they act."""
+    heading(TITLE, QUESTION)
+    for chapter, effects in chaptered(catalogue()).items():
+        section(chapter)
+        with ui.column().classes("effects"):
+            for cls in effects:
+                ui.link(cls.id, f"/gallery/{cls.id}")
+                text((cls.__doc__ or "").split("\n")[0], "soft")
+
+
+async def entry(bench: Workbench, effect: str) -> None:
+    """Show one effect."""
+    cls = catalogue().get(effect)
+    if cls is None:
+        heading("No such effect", f"The catalogue does not know '{effect}'.")
+        ui.link("All effects", "/gallery")
+        return
+    heading(cls.id, (cls.__doc__ or "").split("\n")[0])
+    formula(cls.equation)
+    await picture(bench, cls)
+    if cls.signature is not None:
+        hidden = ", ".join(f"{k} = {v:g}" for k, v in cls.signature.values.items())
+        text(
+            f"Hidden in a calm tank: {hidden}. Left: {_about(cls.signature)}; right: over time. "
+            "Black is what the nominal model misses, orange what the true effect adds.", "soft",
+        )  # fmt: skip
+    for title, said in (("Cause", cls.cause), ("What settles it", cls.revealed_by)):
+        ui.html(f"<p><strong>{title}.</strong> {escape(said)}</p>", sanitize=False).classes("text")
+    text(f"Neglects {cls.neglects}. Source: {cls.source}.", "soft")
+    rows = [(p.name, [words(unit(p.unit) or "–"), words(f"{p.scale:g}")]) for p in cls.parameters]
+    table("Parameters", ["name", "unit", "a change worth looking for"], rows)
+    ui.link("All effects", "/gallery")
+
+
+async def picture(bench: Workbench, cls: type[Effect]) -> None:
+    """The drawn picture; of an effect of the user's own, drawn now."""
+    if cls.signature is None:
+        return
+    path = DRAWN / f"{cls.id}.png"
+    if not path.exists():
+        path = bench.out / "pictures" / path.name
+    if not path.exists():
+        waiting = ui.spinner()
+        await computed(_draw, cls, path)
+        waiting.delete()
+    about = f"{cls.id}: {_about(cls.signature)}"
+    png = b64encode(path.read_bytes()).decode()
+    ui.html(
+        f'<img src="data:image/png;base64,{png}" alt="{escape(about)}">', sanitize=False
+    ).classes("picture")
+
+
+def _about(signature: Signature) -> str:
+    return f"{signature.axis} error over {signature.condition}"
+
+
+def _draw(cls: type[Effect], path: Path) -> None:
+    from rovsim.figures.signature import signature, write
+    from rovsim.gallery.flight import seen, settings
+
+    assert cls.signature is not None
+    write(signature(seen(cls.signature, settings(cls, cls.signature))), path)

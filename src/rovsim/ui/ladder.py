@@ -1,0 +1,107 @@
+"""Ladder: the error falling step by step, down to the noise floor."""
+
+from typing import Any
+
+from nicegui import ui
+
+from rovsim import AXES
+from rovsim.figures.marks import VELOCITY_UNITS, number, short, significant
+from rovsim.figures.palette import looks
+from rovsim.ladder import FLOOR
+from rovsim.ui.charts import INK, SOFT
+from rovsim.ui.parts import cell, chart, computed, heading, section, table, text
+from rovsim.ui.workbench import Workbench
+
+TITLE, QUESTION = "Ladder", "How far down does the error go?"
+KINDS = {"knn": "nearest neighbours (KNN)", "gp": "Gaussian process (GP)"}
+
+
+async def show(bench: Workbench) -> None:
+    """Show the screen."""
+    heading(TITLE, QUESTION)
+    text(
+        "Each step on the test runs, which nothing was fitted to: velocity error after being set "
+        "to the measured state every 2 s, in units of the measured velocity's spread."
+    )
+    steps = (await computed(bench.ladder))["steps"]
+    about = "Error of each step, the noise floor as a line"
+    chart(chart_of(steps), about, 60 + 36 * len(steps))
+    rows = [
+        (
+            s["model"],
+            [
+                cell(s["windows_2s"], f"{s['model']}/windows_2s"),
+                *(
+                    cell(s["velocity_mae"][a], f"{s['model']}/velocity_mae/{a}")
+                    for a in AXES
+                ),
+            ],
+        )
+        for s in steps
+    ]  # fmt: skip
+    heads = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
+    table("The steps, and their mean absolute velocity errors in 2 s windows",
+          ["step", "error", *heads], rows)  # fmt: skip
+    _train(bench)
+    _report(bench)
+
+
+def _train(bench: Workbench) -> None:
+    section("What physics cannot take, a learned residual may")
+    text("Trained on the train runs, on top of any model, and shown here on the test runs.", "soft")
+    physical = [n for n, m in bench.models.items() if m.residual is None and not m.inert]
+    with ui.row().classes("controls"):
+        on = ui.select(physical, label="On top of", value=physical[-1]).classes("control")
+        on.props("outlined dense")
+        for kind, name in KINDS.items():
+            ui.button(f"Train {name}", on_click=lambda _, k=kind: bench.train(k, on.value)).props(
+                "outline no-caps"
+            ).bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
+
+
+def _report(bench: Workbench) -> None:
+    section("A report to send")
+    text(
+        "One file with everything: the verdict in plain words, figures, tables, data quality.",
+        "soft",
+    )
+    with ui.row().classes("controls"):
+        ui.button("Write the report", icon="description", on_click=bench.report).props(
+            "outline no-caps"
+        ).bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
+        if "report" in bench.choices:
+            path = bench.choices["report"]
+            ui.button("Open it", on_click=lambda: ui.navigate.to("/report", new_tab=True)).props(
+                "flat no-caps"
+            )
+            ui.label(str(path)).classes("soft")
+
+
+def chart_of(steps: list[dict[str, Any]]) -> dict[str, Any]:
+    """Bars from the first step down; the noise floor is a line, for it is a bound and no model."""
+    floor = next((number(s["windows_2s"]) for s in steps if s["model"] == FLOOR), float("nan"))
+    shown = [s for s in steps if s["model"] != FLOOR and s["windows_2s"] is not None]
+    style = looks([s["model"] for s in shown])
+    bars = [
+        {"value": s["windows_2s"], "itemStyle": {"color": style[s["model"]].color}} for s in shown
+    ]
+    line = {
+        "symbol": "none", "silent": True, "data": [{"xAxis": floor}],
+        "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
+        "label": {
+            "formatter": f"noise floor {significant(floor)}", "position": "start", "color": INK
+        },
+    }  # fmt: skip
+    return {
+        "grid": {"left": 8, "right": 56, "top": 30, "bottom": 8, "containLabel": True},
+        "xAxis": {"type": "value", "min": 0, "axisLabel": {"color": SOFT},
+                  "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
+        "yAxis": {"type": "category", "inverse": True, "axisTick": {"show": False},
+                  "data": [short(s["model"], 28) for s in shown], "axisLabel": {"color": INK}},
+        "series": [{
+            "type": "bar", "data": bars, "barMaxWidth": 22,
+            "label": {"show": True, "position": "right", "color": INK,
+                      ":formatter": "p => Number(p.value).toPrecision(3)"},
+            **({"markLine": line} if floor == floor else {}),
+        }],
+    }  # fmt: skip

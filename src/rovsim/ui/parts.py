@@ -1,0 +1,117 @@
+"""Pieces that several screens share."""
+
+import asyncio
+from concurrent.futures import ThreadPoolExecutor
+from html import escape
+from typing import Any, Callable, Sequence
+
+from nicegui import ui
+
+from rovsim.figures.marks import number, significant
+
+FONT = "Roboto, system-ui, sans-serif"
+
+# One thread computes: Numba's parallel loops must not run twice at once in a process.
+_thread = ThreadPoolExecutor(1)
+
+
+async def computed(function: Callable, *given: Any) -> Any:
+    """`function(*given)` in the computing thread, while the page stays alive."""
+    return await asyncio.get_running_loop().run_in_executor(_thread, function, *given)
+
+
+def heading(title: str, question: str) -> None:
+    """Title of a screen, and the question it answers."""
+    with ui.column().classes("heading"):
+        ui.html(f"<h1>{escape(title)}</h1>", sanitize=False)
+        ui.label(question).classes("question")
+
+
+def text(words: str, classes: str = "") -> None:
+    """A paragraph."""
+    ui.html(f"<p>{escape(words)}</p>", sanitize=False).classes(f"text {classes}")
+
+
+def section(title: str) -> None:
+    """A heading inside a screen."""
+    ui.html(f"<h2>{escape(title)}</h2>", sanitize=False)
+
+
+def cell(value: float | None, name: str = "") -> str:
+    """A number in a table, its full value in `data-value`, its name in `data-name`."""
+    known = "" if value is None else f' data-value="{value!r}"'
+    shown = str(value) if isinstance(value, int) else significant(number(value))
+    return f'<td class="number" data-name="{escape(name)}"{known}>{shown}</td>'
+
+
+def words(value: Any) -> str:
+    """Text in a table."""
+    return f"<td>{escape(str(value))}</td>"
+
+
+def table(caption: str, heads: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> None:
+    """A table of rows with a name and cells; it scrolls sideways where it is too wide."""
+    numeric = [
+        "",
+        *(c.startswith('<td class="number') and "number" for c in (rows or [("", ())])[0][1]),
+    ]
+    top = "".join(
+        f'<th scope="col" class="{kind or ""}">{escape(h)}</th>'
+        for h, kind in zip(heads, numeric, strict=False)
+    )
+    body = "".join(
+        f'<tr><th scope="row">{escape(name)}</th>{"".join(cells)}</tr>' for name, cells in rows
+    )
+    ui.html(
+        f'<div class="scroll" role="region" tabindex="0" aria-label="{escape(caption)}"><table>'
+        f"<caption>{escape(caption)}</caption><thead><tr>{top}</tr></thead>"
+        f"<tbody>{body}</tbody></table></div>",
+        sanitize=False,
+    )
+
+
+def tile(title: str, value: float | None, name: str, note: str = "") -> ui.html:
+    """A number that matters."""
+    return ui.html(tile_html(title, value, name, note), sanitize=False).classes("tile")
+
+
+def tile_html(title: str, value: float | None, name: str, note: str = "") -> str:
+    """The content of a tile, to be replaced when the number changes."""
+    known = "" if value is None else f' data-value="{value!r}"'
+    return (
+        f"<span>{escape(title)}</span><strong data-name='{escape(name)}'{known}>"
+        f"{significant(number(value))}</strong><small>{escape(note)}</small>"
+    )
+
+
+def chart(
+    options: dict[str, Any], about: str, height: int = 0, on_point_click: Callable | None = None
+) -> ui.echart:
+    """An ECharts chart that says what it shows to those who do not see it."""
+    common = {"animation": False, "textStyle": {"fontFamily": FONT}}
+    found = ui.echart({**common, **options}, on_point_click)
+    found.props.update({"role": "img", "aria-label": about})
+    return found.classes("chart").style(f"height:{height}px" if height else "")
+
+
+def bar(share: float, name: str = "") -> str:
+    """A share of one as a bar in a table, its number beside it."""
+    width = 100.0 * max(0.0, min(1.0, share))
+    return (
+        f'<td class="bar" data-name="{escape(name)}" data-value="{share!r}">'
+        f'<div><i style="width:{width:.1f}%"></i></div><b>{100 * share:.0f} %</b></td>'
+    )
+
+
+def onward(label: str, path: str) -> None:
+    """The way to the next question."""
+    ui.button(label, icon="arrow_forward", on_click=lambda: ui.navigate.to(path)).props(
+        "unelevated no-caps"
+    ).classes("onward")
+
+
+def formula(latex: str) -> None:
+    """An equation, as MathML: every browser shows it, nothing is fetched."""
+    from latex2mathml.converter import convert
+
+    ui.html(convert(latex), sanitize=False).classes("formula")

@@ -1,0 +1,62 @@
+"""What the workbench leaves to another process: the same work as the commands do."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from rovsim.answering import compare, diagnose, train
+from rovsim.config import Settings
+from rovsim.effects import use_effect_files
+from rovsim.evidence import PER_RUN
+from rovsim.files import write_json
+from rovsim.loading import measured, models
+from rovsim.progress import reported
+from rovsim.provenance import provenance
+from rovsim.tank.campaign import make_campaign
+
+ONCE = (
+    "ranking", "ladder", "where", "where_map", "error_by_axis", "error_growth", "excitation"
+)  # fmt: skip
+
+
+def find(settings: Settings, path: Path) -> dict[str, Any]:
+    """Diagnose settings.model; writes diagnosis.json to `path` and returns it."""
+    use_effect_files(settings.effect_files)
+    data = measured(settings, even_unusable=True)
+    content = diagnose(data, models(settings, data.vehicle), settings).content
+    write_json(path, content)
+    return content
+
+
+def learn(settings: Settings, path: Path) -> Path:
+    """Train a residual on top of settings.model; returns the model file, `path`."""
+    use_effect_files(settings.effect_files)
+    data = measured(settings)
+    train(data, models(settings, data.vehicle)[0], settings, path.parent, path.stem)
+    return path
+
+
+def tell(settings: Settings, known: dict[str, Any], out: Path) -> Path:
+    """Write comparison.json, where.json, what is `known` by name, and report.html; returns it."""
+    from rovsim.report.folder import present
+
+    use_effect_files(settings.effect_files)
+    data = measured(settings)
+    chosen = models(settings, data.vehicle)
+    evidence = replace(compare(data, chosen, settings), **known)
+    wanted = [(figure, "") for figure in ONCE if figure != "ranking" or "diagnosis" in known]
+    tests = [run for run, motion in data.motions.items() if motion.run.split == "test"]
+    wanted += [(figure, run) for run in tests for figure in PER_RUN]
+    present(out, data.campaign.name, evidence, wanted, provenance(settings))
+    contents = {"comparison": evidence.comparison, "where": evidence.where, **known}
+    for name, content in contents.items():
+        write_json(out / f"{name}.json", content)
+    return out / "report.html"
+
+
+def practise(settings: Settings, out: Path) -> Path:
+    """Fly a synthetic campaign; returns its folder."""
+    use_effect_files(settings.effect_files)
+    with reported("flying the practice campaign") as progress:
+        make_campaign(settings.tank, out, progress)
+    return out

@@ -1,0 +1,240 @@
+"""Where: the error by condition; a bin shows its samples in time."""
+
+from contextlib import nullcontext
+from typing import Any
+
+import numpy as np
+from nicegui import ui
+
+from rovsim import AXES
+from rovsim.figures.marks import ACCELERATION_UNITS
+from rovsim.ui.charts import INK, LINE, MARK, SOFT
+from rovsim.ui.parts import chart, computed, heading, onward, section, text
+from rovsim.ui.workbench import Workbench
+from rovsim.where import Judged, content
+from rovsim.where.bins import Table
+
+TITLE, QUESTION = "Where", "Under which conditions does it fail?"
+BLUE, GREY = "#0072B2", "#bdbdbd"
+SHADES = ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"]  # one hue: also without colours
+MOST = 12  # conditions of the map
+FIRST = 4  # sentences that are not folded away
+
+
+class Where:
+    """The screen, with what was chosen on it."""
+
+    def __init__(self, bench: Workbench) -> None:
+        self.bench = bench
+        self.chosen: dict[str, Any] = bench.choices.setdefault("where", {"model": bench.base.name})
+
+    async def show(self) -> None:
+        """Build the screen."""
+        heading(TITLE, QUESTION)
+        physical = [n for n, m in self.bench.models.items() if not m.inert]
+        choice = ui.select(physical, label="Model", value=self.chosen["model"]).classes("control")
+        choice.props("outlined dense")
+        self.area = ui.row().classes("halves")
+
+        async def changed() -> None:
+            self.chosen.clear()
+            self.chosen["model"] = choice.value
+            await self.draw()
+
+        choice.on_value_change(changed)
+        await self.draw()
+
+    async def draw(self) -> None:
+        """Findings, map and bins of one model."""
+        model = self.bench.models[self.chosen["model"]]
+        self.judged: Judged = await computed(self.bench.judged, model)
+        self.told = content([self.judged])["models"][model.name]
+        findings = self.told["findings"]
+        self.area.clear()
+        with self.area:
+            with ui.column().classes("half equal"):
+                self._findings(findings)
+                self._map()
+            with ui.column().classes("half equal side"):
+                self.bins = ui.column().classes("area")
+                onward("Why does it fail?", "/why")
+        at = self.chosen.get("at") or self._largest()
+        if at:
+            self.choose(*at)
+
+    def _largest(self) -> tuple[str, str] | None:
+        """Axis and condition of the first finding, else of the largest share."""
+        if self.told["findings"]:
+            first = self.told["findings"][0]
+            return first["axis"], first["condition"]
+        shares = {
+            (axis, condition): one["share_of_error"]
+            for axis, tables in self.told["axes"].items()
+            for condition, one in tables.items()
+        }
+        return max(shares, key=lambda at: shares[at]) if shares else None
+
+    def _findings(self, findings: list[dict[str, Any]]) -> None:
+        """What was found, in sentences; the first ones, and the rest folded away."""
+        runs = f"{self.judged.split} runs {', '.join(self.judged.runs)}"
+        text(f"Acceleration error in means over half a second, on the {runs}.", "soft")
+        for k, sentence in enumerate(self.told["sentences"]):
+            if k == FIRST:
+                folded = ui.expansion(f"{len(findings) - FIRST} more").classes("more")
+            with folded if k >= FIRST else nullcontext(), ui.row().classes("finding"):
+                ui.label(sentence)
+                if k < len(findings):
+                    at = (findings[k]["axis"], findings[k]["condition"])
+                    ui.button("show", on_click=lambda _, a=at: self.choose(*a)).props(
+                        f'flat dense no-caps aria-label="Show {at[0]} over {at[1]}"'
+                    )
+
+    def _map(self) -> None:
+        """Share of each axis' error that varies with each condition."""
+        section("What the error varies with")
+        text("Darker: more of that axis' squared error. Click a field to see its bins.", "soft")
+        axes = [a for a in AXES if self.told["axes"].get(a)]
+        if not axes:
+            return
+        tables = self.told["axes"]
+        best = {c: max(tables[a][c]["share_of_error"] for a in axes) for c in tables[axes[0]]}
+        self.conditions = sorted(best, key=lambda c: -best[c])[:MOST]
+        data = [
+            [k, j, tables[a][c]["share_of_error"]]
+            for j, c in enumerate(reversed(self.conditions))
+            for k, a in enumerate(axes)
+        ]
+        chart(
+            {
+                "grid": {"left": 158, "right": 4, "top": 28, "bottom": 8},
+                "tooltip": {":formatter": "p => (100 * p.value[2]).toFixed(0) + ' % of the error'"},
+                "xAxis": {"type": "category", "data": axes, "position": "top",
+                          "axisLabel": {"color": INK, "interval": 0},
+                          "axisLine": {"show": False}, "axisTick": {"show": False}},
+                "yAxis": {"type": "category", "data": list(reversed(self.conditions)),
+                          "axisLabel": {"color": INK, "interval": 0, "width": 150,
+                                        "overflow": "truncate"},
+                          "axisLine": {"show": False}, "axisTick": {"show": False}},
+                "visualMap": {"show": False, "min": 0, "max": 1, "inRange": {"color": SHADES}},
+                "series": [{"type": "heatmap", "data": data,
+                            "itemStyle": {"borderColor": "#ffffff", "borderWidth": 2},
+                            "label": {"show": True, "fontSize": 11,
+                                      ":formatter": "p => p.value[2] < 0.03 ? '' :"
+                                                    " (100 * p.value[2]).toFixed(0)"}}],
+            },
+            "Share of the error by axis and condition, percent",
+            44 + 30 * len(self.conditions),
+            on_point_click=lambda e: self.choose(
+                axes[e.data[0]], list(reversed(self.conditions))[e.data[1]]
+            ),
+        )  # fmt: skip
+
+    def choose(self, axis: str, condition: str) -> None:
+        """Show the bins of one condition."""
+        self.chosen["at"] = (axis, condition)
+        found: Table = self.judged.where.tables[axis][condition]
+        unit = ACCELERATION_UNITS[AXES.index(axis)]
+        self.bins.clear()
+        with self.bins:
+            section(f"{axis.capitalize()} error over {condition}")
+            text(
+                "Mean error of each bin, measured minus model, with two standard errors. "
+                "Click a bin, or choose it below, to see its samples in time.", "soft",
+            )  # fmt: skip
+            chart(
+                bins_chart(self.told["axes"][axis][condition], condition, axis, unit),
+                f"Mean {axis} error by bins of {condition}",
+                200,
+                on_point_click=lambda e: self._samples(axis, found, e.data_index),
+            )
+            names = {k: _span(found, k) for k in range(len(found.binning.count))}
+            toggle = ui.toggle(names, on_change=lambda e: self._samples(axis, found, e.value))
+            toggle.props('no-caps dense flat toggle-color=primary aria-label="Bin"').classes("bins")
+            self.series = ui.column().classes("area")
+
+    def _samples(self, axis: str, found: Table, chosen: int) -> None:
+        """The blocks of a bin among all others, over time, run by run."""
+        blocks = self.judged.where.blocks
+        assert blocks is not None  # a table was made of them
+        error, inside = blocks.error[:, AXES.index(axis)], found.binning.bin == chosen
+        self.series.clear()
+        with self.series:
+            ui.label(f"{int(inside.sum())} samples, {_span(found, chosen)}").classes("soft")
+            for k, run in enumerate(self.judged.runs):
+                mine = blocks.run == k
+                if (mine & inside).any():
+                    options = samples_chart(blocks.time[mine], error[mine], inside[mine], run, axis)
+                    chart(options, f"Samples of run {run} over time", 170)
+
+
+def _span(found: Table, k: int) -> str:
+    edges, unit = found.binning.edges, found.binning.condition.unit
+    low, high = (np.degrees(edges[k : k + 2]) if unit == "rad" else edges[k : k + 2]).tolist()
+    if len(edges) == 2:
+        return "throughout"
+    return f"{low:.2g} to {high:.2g} {'°' if unit == 'rad' else unit}".replace("-", "−")
+
+
+def bins_chart(found: dict[str, Any], condition: str, axis: str, unit: str) -> dict[str, Any]:
+    """Means of the bins with two standard errors, from where.json; grey: seen too rarely."""
+    colors = [BLUE if yes else GREY for yes in found["judged"]]
+    centers = [f"{c:.2g}".replace("-", "−") for c in found["center"]]
+    whiskers = [
+        [k, m - 2 * e, m + 2 * e]
+        for k, (m, e) in enumerate(zip(found["mean"], found["std_error"], strict=True))
+    ]
+    return {
+        "grid": {"left": 64, "right": 16, "top": 30, "bottom": 44},
+        "tooltip": {"trigger": "item"},
+        "xAxis": {"type": "category", "data": centers, "nameLocation": "middle", "nameGap": 26,
+                  "name": f"{condition} ({found['unit']})" if found["unit"] else condition,
+                  "nameTextStyle": {"color": SOFT},
+                  "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
+                  "axisLabel": {"color": SOFT}},
+        "yAxis": {"type": "value", "name": f"{axis} error ({unit})",
+                  "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
+                  "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
+        "series": [
+            {"type": "bar", "name": "mean error", "barMaxWidth": 64,
+             "data": [{"value": m, "itemStyle": {"color": c}}
+                      for m, c in zip(found["mean"], colors, strict=True)]},
+            {"type": "custom", "silent": True, "data": whiskers, ":renderItem": WHISKER, "z": 4,
+             "encode": {"x": 0, "y": [1, 2]}},
+        ],
+    }  # fmt: skip
+
+
+WHISKER = (
+    "(p, api) => { const a = api.coord([api.value(0), api.value(1)]),"
+    " b = api.coord([api.value(0), api.value(2)]);"
+    " return {type: 'line', shape: {x1: a[0], y1: a[1], x2: b[0], y2: b[1]},"
+    " style: {stroke: '#1a1a1a', lineWidth: 1.5}}; }"
+)
+
+
+def samples_chart(time, error, inside, run: str, axis: str) -> dict[str, Any]:
+    """Errors of one run over time, those inside the bin as large orange dots."""
+    pairs = np.round(np.stack([time, error], axis=1), 5)
+    return {
+        "grid": {"left": 64, "right": 16, "top": 28, "bottom": 36},
+        "tooltip": {"trigger": "item"},
+        "xAxis": {"type": "value", "name": "time in the run (s)", "nameLocation": "middle",
+                  "nameGap": 22, "nameTextStyle": {"color": SOFT}, "splitLine": {"show": False},
+                  "axisLabel": {"color": SOFT},
+                  "axisLine": {"onZero": False, "lineStyle": {"color": LINE}}},
+        "yAxis": {"type": "value", "name": f"run {run}, {axis} error", "splitNumber": 3,
+                  "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
+                  "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
+        "series": [
+            {"type": "scatter", "name": "other", "symbolSize": 4, "itemStyle": {"color": GREY},
+             "data": pairs[~inside].tolist()},
+            {"type": "scatter", "name": "in the bin", "symbolSize": 9,
+             "itemStyle": {"color": MARK, "borderColor": "#ffffff"},
+             "data": pairs[inside].tolist()},
+        ],
+    }  # fmt: skip
+
+
+async def show(bench: Workbench) -> None:
+    """Show the screen."""
+    await Where(bench).show()

@@ -1,0 +1,112 @@
+"""Why: which effects are missing, how sure that is, and what to record next."""
+
+from html import escape
+from typing import Any
+
+from nicegui import ui
+
+from rovsim.effects import catalogue
+from rovsim.report.verdict import Missing, percent, verdict
+from rovsim.ui.gallery import picture
+from rovsim.ui.parts import bar, cell, formula, heading, onward, section, table, text, tile, words
+from rovsim.ui.workbench import Workbench
+
+TITLE, QUESTION = "Why", "Which physics is missing?"
+SHOWN = 8  # effects of the ranking
+
+
+async def show(bench: Workbench) -> None:
+    """Show the screen."""
+    heading(TITLE, QUESTION)
+    if bench.diagnosis is None:
+        _ask(bench)
+        return
+    found = bench.diagnosis
+    said = verdict(found)
+    ui.html(
+        f"<p><strong>{escape(said.sentence)}</strong> <span>({escape(said.name)})</span></p>",
+        sanitize=False,
+    ).classes("verdict")
+    _errors(found["error"])
+    for missing in said.missing:
+        await _effect(bench, missing)
+    if found["selected"]:
+        onward("Add what is missing", "/add")
+    if said.next:
+        section("What to record next")
+        text(said.next, "next")
+    section("What else to know")
+    for remark in said.remarks:
+        text(remark)
+    _ranking(found)
+    ui.button("Diagnose again", on_click=bench.diagnose).props("flat no-caps").classes("onward")
+
+
+def _ask(bench: Workbench) -> None:
+    text(
+        "Every effect of the catalogue is fitted to the train runs, alone and together, and has "
+        "to prove itself on stretches it was not fitted to. The test runs stay closed until the "
+        "end. This takes from ten seconds to some minutes."
+    )
+    button = ui.button("Find what is missing", icon="search", on_click=bench.diagnose)
+    button.props("unelevated no-caps").classes("onward").bind_enabled_from(
+        bench, "busy", backward=lambda busy: not busy
+    )
+
+
+def _errors(error: dict[str, Any]) -> None:
+    with ui.row().classes("tiles"):
+        tile("Error of the model", error["nominal"], "error/nominal", "test runs")
+        tile("With the effects", error["with_effects"], "error/with_effects", "test runs")
+        tile("Noise floor", error["noise_floor"], "error/noise_floor", "of a perfect model, about")
+    text(
+        "Velocity error after being set to the measured state every 2 s, in units of the measured "
+        "velocity's spread.", "soft",
+    )  # fmt: skip
+
+
+async def _effect(bench: Workbench, missing: Missing) -> None:
+    """A card: what it is, its values, its equation, what makes it happen, its picture."""
+    with ui.row().classes("card effect"):
+        with ui.column().classes("words"):
+            ui.html(f"<h3>{escape(missing.effect)}</h3>", sanitize=False)
+            text(missing.meaning)
+            with ui.row().classes("values"):
+                for value in missing.parameters:
+                    ui.label(value).classes("value")
+            text(f"It {missing.worth}. ± is a 95 % interval.")
+            if missing.equation:
+                formula(missing.equation)
+                text(f"Usual cause: {missing.cause}")
+                ui.link("What it looks like, and how to be sure", f"/gallery/{missing.effect}")
+        if known := catalogue().get(missing.effect):
+            with ui.column().classes("seen"):
+                await picture(bench, known)
+                ui.label("From the gallery: what it looks like in a calm tank, not your data.")
+
+
+def _ranking(found: dict[str, Any]) -> None:
+    ranking = [r for r in found["ranking"] if (r["error_reduction"] or 0.0) > 0.0][:SHOWN]
+    if ranking:
+        section("Each effect alone")
+        rows = [
+            (
+                r["effect"],
+                [
+                    bar(r["error_reduction"], f"ranking/{r['effect']}/error_reduction"),
+                    cell(r["probability"], f"ranking/{r['effect']}/probability"),
+                ],
+            )
+            for r in ranking
+        ]
+        table(
+            "Error that each effect removes by itself, at its first estimate",
+            ["effect", "error removed", "probability that it alone is missing"], rows,
+        )  # fmt: skip
+    if found["where"]:
+        section("Where the model fails")
+        rows = [
+            (w["axis"], [words(w["condition"]), words(percent(w["share_of_error"]))])
+            for w in found["where"]
+        ]
+        table("Conditions the error varies with", ["axis", "condition", "share of error"], rows)

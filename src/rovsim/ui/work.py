@@ -1,0 +1,83 @@
+"""Long work in a process of its own: it tells how far it is, and can be cancelled."""
+
+import multiprocessing
+import time
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection
+from typing import Any, Callable
+
+from rovsim.errors import RovsimError
+from rovsim.progress import heard_by
+
+FEWEST = 0.1  # share that must be done before anybody can tell how long the rest takes
+
+
+@dataclass(eq=False)
+class Work:
+    """A function at work in another process.
+
+    `state`: running, done, failed, cancelled. `what` it does now; `share` done, None if unknown;
+    `said`: its result, or why it failed; `after` is called with the result by whoever looks.
+    """
+
+    title: str
+    after: Callable[[Any], None]
+    process: Any
+    pipe: Connection
+    begun: float = field(default_factory=time.monotonic)
+    state: str = "running"
+    what: str = "starting"
+    share: float | None = None
+    said: Any = None
+
+    @staticmethod
+    def start(title: str, after: Callable[[Any], None], function: Callable, *given: Any) -> "Work":
+        """Start `function(*given)`; everything given must be able to travel between processes."""
+        context = multiprocessing.get_context("spawn")  # threads and forks do not mix
+        ours, theirs = context.Pipe(duplex=False)
+        process = context.Process(target=_run, args=(theirs, function, given), daemon=True)
+        process.start()
+        theirs.close()
+        return Work(title, after, process, ours)
+
+    def look(self) -> str:
+        """Take in what the process said since; returns the state."""
+        while self.state == "running" and self.pipe.poll():
+            try:
+                kind, *rest = self.pipe.recv()
+            except EOFError:
+                kind, rest = "failed", [f"it ended unexpectedly (code {self.process.exitcode})"]
+            if kind == "progress":
+                self.what, self.share = rest
+            else:
+                self.state, self.said = kind, rest[0]
+        return self.state
+
+    def cancel(self) -> None:
+        """End the process; files appear whole or not at all, so nothing half-done is left."""
+        if self.state == "running":
+            self.state = "cancelled"
+            self.process.terminate()
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the start."""
+        return time.monotonic() - self.begun
+
+    @property
+    def left(self) -> float | None:
+        """Seconds that are probably left, None as long as nobody can tell."""
+        known = self.share is not None and self.share >= FEWEST
+        return self.elapsed * (1.0 / self.share - 1.0) if known and self.share else None
+
+
+def _run(pipe: Connection, function: Callable, given: tuple) -> None:
+    """In the other process."""
+    with heard_by(lambda what, share: pipe.send(("progress", what, share))):
+        try:
+            result = ("done", function(*given))
+        except RovsimError as error:
+            result = ("failed", str(error))
+        except Exception as error:  # a bug: say so in the browser, with the kind of it
+            result = ("failed", f"an error of the program: {type(error).__name__}: {error}")
+    pipe.send(result)

@@ -1,0 +1,237 @@
+"""An open campaign and what was computed of it: the same functions as the commands call."""
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Mapping
+
+from rovsim.adding import read_diagnosis
+from rovsim.config import Settings, compose
+from rovsim.errors import BadInput, RovsimError
+from rovsim.files import read_json
+from rovsim.ladder import EFFECTS, ladder, step, with_diagnosis
+from rovsim.loading import Measured, measured, models
+from rovsim.model import BUILT_IN, Model, read_model, zero_acceleration
+from rovsim.provenance import digest, provenance
+from rovsim.replay import OPEN_LOOP, Prediction, Replay, replay
+from rovsim.scores import errors, metrics
+from rovsim.ui import tasks
+from rovsim.ui.draft import Draft
+from rovsim.ui.work import Work
+from rovsim.where import Judged, judged
+
+KEPT = 200  # replays; one of a minute takes 2 MB
+
+
+@dataclass(eq=False)
+class Workbench:
+    """One campaign, its models (the base first, then what was loaded, saved or trained)."""
+
+    settings: Settings
+    data: Measured
+    models: dict[str, Model]
+    paths: dict[str, str]  # of models that have a file
+    diagnosis: dict[str, Any] | None = None
+    study: Mapping[str, Any] | None = None  # ladder.json beside a diagnosis that was given
+    choices: dict[str, Any] = field(default_factory=dict)  # what a screen remembers
+    work: Work | None = None  # long work, one at a time
+    _replays: dict[tuple, Replay] = field(default_factory=dict)
+    _steps: dict[Model, dict[str, Any]] = field(default_factory=dict)
+    _judged: dict[Model, Judged] = field(default_factory=dict)
+
+    @staticmethod
+    def opened(settings: Settings) -> "Workbench":
+        """Read the campaign and the models of the settings, and a diagnosis that is there.
+
+        Raises:
+            BadInput: one of them cannot be used.
+        """
+        data = measured(settings)
+        found = {m.name: m for m in models(settings, data.vehicle)}
+        specs = [settings.model] if isinstance(settings.model, str) else settings.model
+        paths = dict(zip(found, dict.fromkeys(specs), strict=True))
+        bench = Workbench(settings, data, found, paths)
+        given = Path(settings.diagnosis) if settings.diagnosis else bench.diagnosis_path
+        if settings.diagnosis or given.exists():
+            bench.diagnosis = read_diagnosis(given)
+        beside = given.with_name("ladder.json")
+        if settings.diagnosis and beside.exists():
+            bench.study = read_json(beside)
+        return bench
+
+    @property
+    def base(self) -> Model:
+        """The model that is diagnosed and added to."""
+        return next(iter(self.models.values()))
+
+    @property
+    def out(self) -> Path:
+        """Where the workbench keeps what it computes."""
+        return Path(self.settings.out or f"results/{self.data.campaign.name}/ui")
+
+    @cached_property
+    def diagnosis_path(self) -> Path:
+        """Of these recordings, settings, base and code: an outdated one is never shown."""
+        content = hashlib.sha256()
+        campaign = self.data.campaign
+        files = {campaign.file} | {
+            path
+            for run in campaign.runs
+            for path in (campaign.mocap_path(run), campaign.commands_path(run))
+        }
+        for path in sorted(p for p in files if p.is_file()):
+            content.update(path.read_bytes())
+        content.update(self.settings.diagnosing.model_dump_json().encode())
+        content.update(json.dumps(self.base.content(), sort_keys=True).encode())
+        content.update(digest("rovsim.diagnosing", effects=self.settings.effect_files).encode())
+        return self.out / content.hexdigest()[:12] / "diagnosis.json"
+
+    @cached_property
+    def baseline(self) -> Model:
+        """The model to beat: a vehicle that keeps its velocity."""
+        return zero_acceleration(self.data.vehicle)
+
+    @cached_property
+    def draft(self) -> Draft:
+        """The model that is being put together."""
+        return Draft(self.base, self.diagnosis or {})
+
+    def found(self, diagnosis: dict[str, Any]) -> None:
+        """Take in a new diagnosis; a draft begins with what it selected."""
+        self.diagnosis = diagnosis
+        self.__dict__.pop("draft", None)
+
+    def add(self, model: Model, path: Path) -> None:
+        """Take in a model that was saved or trained."""
+        self.models[model.name], self.paths[model.name] = model, str(path)
+
+    def save(self, path: Path) -> Model:
+        """Write the draft as a model file, and take it in as it is read back.
+
+        Raises:
+            BadInput: no such model can be, or the place is taken by something else.
+        """
+        _check_place(path, {*BUILT_IN, self.base.name})
+        known = provenance(self.settings)
+        story = {"base": self.base.name, "effects": self.draft.ticked, "moved": self.draft.values}
+        self.draft.model().write(path, None, story | {k: known[k] for k in ("code", "versions")})
+        saved = read_model(path)
+        self.add(saved, path)
+        return saved
+
+    def only(self, *names: str) -> Settings:
+        """The settings, with these models."""
+        return self.settings.model_copy(update={"model": [self.paths[name] for name in names]})
+
+    @property
+    def busy(self) -> bool:
+        """Whether long work is going on."""
+        return self.work is not None and self.work.state == "running"
+
+    def diagnose(self) -> None:
+        """Begin to look for what the base lacks."""
+        settings, path = self.only(self.base.name), self.diagnosis_path
+        self.work = Work.start("Finding what is missing", self.found, tasks.find, settings, path)
+
+    def train(self, kind: str, name: str) -> None:
+        """Begin to train a residual on top of one of the models."""
+        trained = f"{kind}_{self.settings.control}"
+        trained = trained if name == self.base.name else f"{name}+{trained}"
+        chosen = compose([f"residual={kind}"]).residual
+        settings = self.only(name).model_copy(update={"residual": chosen})
+
+        def take(path: Path) -> None:
+            self.add(read_model(path), path)
+
+        path = self.out / "trained" / trained / f"{trained}.yaml"
+        self.work = Work.start(f"Training {trained}", take, tasks.learn, settings, path)
+
+    def report(self) -> None:
+        """Begin to write the report and the JSON files behind it."""
+        known: dict[str, Any] = {"ladder": self.ladder()}
+        known |= {"diagnosis": self.diagnosis} if self.diagnosis else {}
+
+        def take(path: Path) -> None:
+            self.choices["report"] = path
+
+        settings = self.only(*self.models)
+        self.work = Work.start("Writing the report", take, tasks.tell, settings, known, self.out)
+
+    def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
+        """One run replayed in windows of `horizon` s, or open loop (None)."""
+        key = (model, run, horizon)
+        if key not in self._replays:
+            if len(self._replays) >= KEPT:
+                self._replays.pop(next(iter(self._replays)))
+            spans = () if horizon is None else (horizon,)
+            how = self.settings.replay.model_copy(update={"horizons": spans})
+            self._replays[key] = replay(
+                model, self.data.motions[run], self.settings.signals, how, not spans
+            )
+        return self._replays[key]
+
+    def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
+        """What the model predicts in windows of `horizon` s, or open loop (None)."""
+        name = OPEN_LOOP if horizon is None else f"{horizon:g}"
+        return self.replayed(model, run, horizon).horizons[name]
+
+    def metrics(self, model: Model, run: str, horizon: float | None) -> dict[str, Any]:
+        """The errors of one run, as comparison.json has them."""
+        return metrics(errors(self.data.motions[run], self.prediction(model, run, horizon)))
+
+    def run_error(self, model: Model, run: str) -> float | None:
+        """`windows_2s` of one run alone."""
+        motion = self.data.motions[run]
+        return step(model.name, [motion], [self.replayed(model, run, 2.0)], motion.run.split)[
+            "windows_2s"
+        ]
+
+    def step(self, model: Model) -> dict[str, Any]:
+        """The ladder's step of one model; this opens the test runs."""
+        if model not in self._steps:
+            tests = [m for m in self.data.motions.values() if m.run.split == "test"]
+            replays = [self.replayed(model, m.run.id, 2.0) for m in tests]
+            self._steps[model] = step(model.name, tests, replays)
+        return self._steps[model]
+
+    def ladder(self) -> dict[str, Any]:
+        """`ladder.json` of all that is known: baseline, base, found effects, models, floor."""
+        if self.study is not None:
+            extra = [self.step(m) for n, m in self.models.items() if m is not self.base]
+            known = list(self.study["steps"])
+            return ladder([*known[:-1], *extra, *known[-1:]])
+        first = [self.baseline, self.base]
+        others = [m for m in self.models.values() if m.name not in {one.name for one in first}]
+        steps = [self.step(m) for m in first]
+        steps += [{"model": EFFECTS}] if self.diagnosis else []
+        steps += [self.step(m) for m in others]
+        return with_diagnosis(steps, self.diagnosis["ladder"]["steps"] if self.diagnosis else [])
+
+    def judged(self, model: Model) -> Judged:
+        """Where a model fails."""
+        if model not in self._judged:
+            motions = list(self.data.motions.values())
+            self._judged[model] = judged(
+                model, motions, self.settings.signals, self.settings.replay
+            )
+        return self._judged[model]
+
+
+def _check_place(path: Path, taken: set[str]) -> None:
+    """Refuse to write over what is no model file, and to call a model as another one is called."""
+    found = ""
+    if path.suffix not in (".yaml", ".yml"):
+        found = "does not end in .yaml"
+    elif path.stem in taken:
+        found = f"would be called '{path.stem}', as another model is"
+    elif path.exists():
+        try:
+            read_model(path)
+        except RovsimError:
+            found = "is there, and is no model file"
+    if found:
+        raise BadInput(
+            found, where=path, expected="a new model file", remedy="Give it another name."
+        )

@@ -1,0 +1,100 @@
+"""How fast the workbench is in a real Chromium: `make bench-ui` writes results/bench_ui.json.
+
+From the start of the process to the first screen; from the key that moves a slider to the end of
+the drawing of the replay, for a run of 60 s; from a horizon chosen to its drawing.
+"""
+
+import shutil
+import tempfile
+import time
+from pathlib import Path
+from statistics import median
+
+from playwright.sync_api import sync_playwright
+
+from chromium import DESK, FLAGS, NAMES, started
+from rovsim.bench.machine import machine
+from rovsim.cli import main
+from rovsim.files import write_json
+
+STARTS, MOVES = 5, 40
+# ECharts clears its canvas, then draws in the same task: the task after that is the end.
+CLOCK = """
+window.times = []; let pressed = null;
+addEventListener('keydown', () => { pressed = performance.now(); }, true);
+const clear = CanvasRenderingContext2D.prototype.clearRect;
+CanvasRenderingContext2D.prototype.clearRect = function (...area) {
+  const since = pressed; pressed = null;
+  if (since !== null) setTimeout(() => times.push(performance.now() - since), 0);
+  return clear.apply(this, area);
+};
+"""
+
+
+def first_screens(browser, campaign: Path, folder: Path) -> list[float]:
+    """Seconds from the start of the process until the first screen is painted."""
+    found = []
+    for _ in range(STARTS):
+        begun = time.perf_counter()
+        process, address = started(folder, f"campaign={campaign}")
+        page = browser.new_page(viewport={"width": DESK[0], "height": DESK[1]})
+        page.goto(address, wait_until="commit")
+        page.locator(".waiting, h1").first.wait_for()
+        found.append(time.perf_counter() - begun)
+        page.close()
+        process.terminate()
+        process.wait(20)
+    return found
+
+
+def redraws(page, slider: str, keys: list[str]) -> list[float]:
+    """Milliseconds from each key to the end of the drawing."""
+    page.wait_for_timeout(2000)
+    page.locator(slider).first.focus()
+    page.evaluate("times.length = 0")
+    for key in keys:
+        page.keyboard.press(key)
+        page.wait_for_timeout(500)
+    return page.evaluate("times")
+
+
+def summary(values: list[float]) -> dict[str, float]:
+    """Median and worst."""
+    return {"median": round(median(values), 3), "worst": round(max(values), 3), "n": len(values)}
+
+
+def run(folder: Path) -> dict:
+    """Measure all of it."""
+    campaign = folder / "raw"
+    main(["tank", "tank=lag", f"out={campaign}", "--quiet"])
+    chromium = next((path for name in NAMES if (path := shutil.which(name))), None)
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        starts = first_screens(browser, campaign, folder)
+        process, address = started(folder, f"campaign={campaign}")
+        page = browser.new_page(viewport={"width": DESK[0], "height": DESK[1]})
+        page.add_init_script(CLOCK)
+        page.goto(f"{address}/why")
+        page.get_by_role("button", name="Find what is missing").click()
+        page.wait_for_selector(".verdict", timeout=300_000)
+        page.goto(f"{address}/add")
+        page.wait_for_selector("[data-name='run/now'][data-value]")
+        moves = redraws(page, ".slider .q-slider__track-container", ["ArrowRight"] * MOVES)
+        page.goto(f"{address}/compare")
+        page.wait_for_selector("table")
+        horizon = ".horizon .q-slider__track-container"
+        jumps = redraws(page, horizon, ["ArrowRight"] * 4 + ["ArrowLeft"] * 6)
+        browser.close()
+        process.terminate()
+        process.wait(20)
+    return {
+        "schema": "rovsim.bench_ui/1", "machine": machine(), "first_screen_s": summary(starts),
+        "slider_to_drawn_ms": summary(moves), "horizon_to_drawn_ms": summary(jumps),
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place:
+        content = run(Path(place))
+    write_json(Path("results/bench_ui.json"), content)
+    print(content)

@@ -1,0 +1,201 @@
+"""The workbench as its users meet it: from the recordings to a model in which the error fell."""
+
+import json
+import urllib.request
+
+import pytest
+
+from chromium import DESK, started
+from rovsim import AXES
+from rovsim.adding import read_diagnosis
+from rovsim.cli import main
+from rovsim.model import read_model
+
+pytestmark = pytest.mark.browser
+SCREENS = ("compare", "where", "why", "add", "ladder", "data", "gallery")
+
+
+CHANGED = (
+    "([name, v]) => Number(document.querySelector(`[data-name='${name}']`).dataset.value) != v"
+)
+
+
+def found(tab) -> None:
+    """Have the campaign diagnosed, unless it is already."""
+    tab.go("why")
+    tab.page.wait_for_selector(".verdict, .onward")
+    ask = tab.page.get_by_role("button", name="Find what is missing")
+    if ask.count():
+        ask.click()
+        tab.page.get_by_role("button", name="Cancel").wait_for()
+    tab.page.wait_for_selector(".verdict", timeout=180_000)
+
+
+def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbench, campaign):
+    folder = workbench[1]
+    tab.go("compare")
+    tab.page.wait_for_selector("table")
+    tab.picture("compare")
+    compared = tab.numbers()
+
+    found(tab)
+    (path,) = folder.glob("results/*/ui/*/diagnosis.json")
+    diagnosis = read_diagnosis(path)
+    assert "lacks physics" in tab.page.locator(".verdict").inner_text()
+    assert tab.page.locator(".effect h3").all_inner_texts() == ["thruster_lag"]
+    shown = tab.numbers()
+    for name, value in diagnosis["error"].items():
+        assert shown[f"error/{name}"] == value
+    for one in diagnosis["ranking"]:
+        if (name := f"ranking/{one['effect']}/probability") in shown:
+            assert shown[name] == one["probability"]
+    tab.picture("why")
+
+    tab.page.get_by_role("button", name="Add what is missing").click()
+    tab.page.wait_for_selector("[data-name='run/now'][data-value]")
+    assert tab.page.get_by_role("checkbox", name="thruster_lag").is_checked()
+    shown = tab.numbers("run/")
+    assert shown["run/now"] < 0.3 * shown["run/before"]
+    tab.picture("add")
+
+    tab.page.get_by_label("Model file").fill("my models/repaired.yaml")
+    tab.page.get_by_role("button", name="Save").click()
+    tab.page.wait_for_selector("[data-name='saved/after']")
+    saved = tab.numbers("saved/")
+    assert saved["saved/before"] == pytest.approx(diagnosis["error"]["nominal"], rel=1e-5)
+    assert saved["saved/after"] == pytest.approx(diagnosis["error"]["with_effects"], rel=1e-5)
+    assert saved["saved/after"] < 0.3 * saved["saved/before"]
+    file = folder / "my models" / "repaired.yaml"
+    entry = read_model(file).entries[0].plain()
+    assert entry["parameters"] == diagnosis["selected"][0]["parameters"]
+
+    tab.page.get_by_role("button", name="See the whole ladder").click()
+    tab.page.wait_for_selector("table")
+    steps = tab.numbers()
+    for step in diagnosis["ladder"]["steps"]:
+        assert steps[f"{step['model']}/windows_2s"] == step["windows_2s"]
+    assert steps["repaired/windows_2s"] == saved["saved/after"]
+    tab.picture("ladder")
+
+    out = folder / "compared"
+    main(["compare", f"campaign={campaign}", f"model=[nominal,{file}]", f"out={out}", "--quiet"])
+    comparison = json.loads((out / "comparison.json").read_text())["models"]
+    shown = next(
+        r for r, found in comparison["nominal"]["runs"].items() if found["split"] == "test"
+    )
+    run = comparison["nominal"]["runs"][shown]["windows"]["2"]
+    for axis in AXES:
+        assert compared[f"velocity_rmse/{axis}"] == run["velocity_rmse"][axis]
+    assert compared["position_rmse_m"] == run["position_rmse_m"]
+    errors = comparison["repaired"]["runs"][shown]["windows"]["2"]["velocity_rmse"]
+    assert errors["surge"] < 0.5 * run["velocity_rmse"]["surge"]
+
+
+def test_a_slider_moves_the_replay_and_keys_alone_suffice(tab):
+    found(tab)
+    tab.page.keyboard.press("4")
+    tab.page.wait_for_selector("[data-name='run/now'][data-value]")
+    before = tab.numbers("run/now")["run/now"]
+    tab.page.locator(".slider .q-slider__track-container").first.focus()
+    for _ in range(40):
+        tab.page.keyboard.press("PageDown")
+    tab.page.wait_for_function(CHANGED, arg=["run/now", before])
+    tab.page.wait_for_timeout(1000)
+    absent = tab.numbers("run/")
+    assert absent["run/now"] == pytest.approx(absent["run/before"], rel=1e-3)
+    tab.page.keyboard.press("1")
+    tab.page.get_by_role("heading", name="Compare").wait_for()
+    tab.page.keyboard.press("Tab")
+    assert tab.page.evaluate("document.activeElement !== document.body")
+
+
+def test_the_horizon_changes_the_errors_and_a_run_plays(tab):
+    tab.go("compare")
+    tab.page.wait_for_selector("table")
+    before = tab.numbers()["velocity_rmse/surge"]
+    tab.page.locator(".horizon .q-slider__track-container").focus()
+    for _ in range(5):
+        tab.page.keyboard.press("ArrowRight")
+    tab.page.wait_for_function(CHANGED, arg=["velocity_rmse/surge", before])
+    tab.page.get_by_text("Horizon, open loop: never corrected").wait_for()
+    tab.page.get_by_role("button", name="Play").click()
+    clock = tab.page.get_by_role("slider", name="Time in the run, seconds")
+    tab.page.wait_for_timeout(1000)
+    assert float(clock.get_attribute("aria-valuenow")) > 0.5
+    tab.page.get_by_role("button", name="Pause").click()
+
+
+def test_a_bin_shows_its_samples_in_time(tab):
+    tab.go("where")
+    bins = tab.page.locator(".bins button")
+    bins.first.wait_for()
+    bins.last.click()
+    tab.page.get_by_role("img", name="Samples of run").first.wait_for()
+    assert "samples, " in tab.page.locator(".side").inner_text()
+    tab.picture("where")
+
+
+def test_long_work_can_be_cancelled_and_changes_nothing(tab, workbench):
+    found(tab)
+    before = tab.numbers()
+    tab.page.get_by_role("button", name="Diagnose again").click()
+    tab.page.get_by_role("button", name="Cancel").click()
+    tab.page.get_by_text("cancelled, nothing was changed").wait_for()
+    tab.page.wait_for_selector(".verdict")
+    assert tab.numbers() == before
+    (path,) = workbench[1].glob("results/*/ui/*/*")
+    assert path.name == "diagnosis.json"
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+def test_every_screen_fits_a_desk_and_a_phone(tab, phone, screen):
+    for one in (tab, phone):
+        if screen in ("why", "add", "ladder"):
+            found(one)
+        one.go(screen)
+        one.page.wait_for_timeout(700)
+        page = one.page
+        wide = page.evaluate("document.scrollingElement.scrollWidth - innerWidth")
+        assert wide <= 0, f"{screen} is {wide} px too wide"
+        small = page.evaluate(
+            "Math.min(...[...document.querySelectorAll('.screen *')].filter(e => e.offsetWidth"
+            " && [...e.childNodes].some(n => n.nodeType == 3 && n.data.trim()))"
+            ".map(e => parseFloat(getComputedStyle(e).fontSize)))"
+        )
+        assert small >= 11
+    if screen == "why":
+        phone.picture("phone-why")
+
+
+def test_another_campaign_is_opened_and_a_bad_one_explained(tab, campaign, tmp_path):
+    tab.go("open")
+    tab.page.get_by_label("Folder that holds campaign.yaml").fill(str(tmp_path / "nowhere"))
+    tab.page.get_by_role("button", name="Open", exact=True).click()
+    tab.page.get_by_text("no such file").wait_for()
+    tab.page.get_by_label("Folder that holds campaign.yaml").fill(str(campaign))
+    tab.page.get_by_role("button", name="Open", exact=True).click()
+    tab.page.get_by_role("heading", name="Compare").wait_for()
+
+
+def test_a_newcomer_without_recordings_gets_some_to_practise_on(chromium, tmp_path):
+    """From `make ui` to the first replay; the rest of the way is tested above."""
+    process, address = started(tmp_path)
+    try:
+        page = chromium.new_page(viewport={"width": DESK[0], "height": DESK[1]})
+        page.goto(address)
+        page.get_by_role("button", name="Practise on a campaign").click()
+        page.get_by_role("heading", name="Compare").wait_for(timeout=120_000)
+        assert (tmp_path / "results" / "practice" / "raw" / "campaign.yaml").exists()
+        page.close()
+    finally:
+        process.terminate()
+        process.wait(20)
+
+
+def test_strangers_are_turned_away(workbench):
+    """A page of another site that points its name at this machine gets nothing (DNS rebinding)."""
+    request = urllib.request.Request(workbench[0], headers={"Host": "elsewhere.example"})
+    with pytest.raises(urllib.error.HTTPError) as refused:
+        urllib.request.urlopen(request, timeout=10)
+    assert refused.value.code == 400
+    refused.value.close()

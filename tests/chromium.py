@@ -1,0 +1,85 @@
+"""A workbench in a process of its own, and tabs of a real Chromium that look at it."""
+
+import os
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from urllib.error import URLError
+from urllib.request import urlopen
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+FLAGS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking")
+DESK, PHONE = (1280, 720), (390, 844)
+PICTURES = os.environ.get("ROVSIM_SCREENSHOTS")  # a folder: `make screenshots`
+
+
+def free_port() -> int:
+    """A port that nobody listens to."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def started(folder: Path, *words: str) -> tuple[subprocess.Popen, str]:
+    """The workbench, started in a folder, and its address, once it answers."""
+    port = free_port()
+    code = "from rovsim.cli import main; main()"
+    command = [sys.executable, "-c", code, "ui", "open=false", f"port={port}", *words]
+    # NiceGUI behaves differently where it sees that pytest runs
+    clean = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
+    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, env=clean)
+    address = f"http://127.0.0.1:{port}"
+    for _ in range(600):
+        try:
+            urlopen(address, timeout=5).close()
+            return process, address
+        except (URLError, ConnectionError):
+            assert process.poll() is None, "the workbench ended"
+            time.sleep(0.05)
+    raise AssertionError("the workbench does not answer")
+
+
+class Tab:
+    """A browser tab that remembers what went wrong, and what it asked of other machines."""
+
+    def __init__(self, page, address: str) -> None:
+        self.page, self.address, self.complaints = page, address, []
+        page.on("console", self._console)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("requestfailed", lambda r: self.complaints.append(f"failed: {r.url}"))
+        page.on("request", self._request)
+        page.on("response", self._response)
+
+    def _console(self, message) -> None:
+        if message.type in ("error", "warning"):
+            self.complaints.append(message.text)
+
+    def _response(self, response) -> None:
+        if response.status >= 400:
+            self.complaints.append(f"{response.status} {response.url}")
+
+    def _request(self, request) -> None:
+        if not request.url.startswith((self.address, "data:", "blob:")):
+            self.complaints.append(f"asks {request.url}")
+
+    def go(self, screen: str) -> None:
+        """Open a screen, and wait until it is there."""
+        self.page.goto(f"{self.address}/{screen}")
+        self.page.wait_for_selector("h1")
+
+    def numbers(self, prefix: str = "") -> dict[str, float]:
+        """Every number shown, at full precision, by name."""
+        pairs = self.page.eval_on_selector_all(
+            "[data-name][data-value]", "all => all.map(e => [e.dataset.name, e.dataset.value])"
+        )
+        return {name: float(value) for name, value in pairs if name.startswith(prefix)}
+
+    def picture(self, name: str) -> None:
+        """A screenshot for the docs, where they were asked for."""
+        if PICTURES:
+            self.page.wait_for_timeout(800)
+            self.page.mouse.move(0, 0)
+            self.page.locator(".q-notification").first.wait_for(state="hidden")
+            self.page.screenshot(path=str(Path(PICTURES) / f"{name}.png"))

@@ -1,0 +1,211 @@
+"""The workbench shows what the commands write; long work reports, ends, can be cancelled."""
+
+import socket
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from chores import counting, dying, failing
+from rovsim.answering import compare
+from rovsim.cli import main
+from rovsim.config import compose
+from rovsim.effects import catalogue
+from rovsim.errors import BadInput
+from rovsim.files import read_json
+from rovsim.model import read_model
+from rovsim.ui import charts, path, tasks
+from rovsim.ui.draft import Draft, reach
+from rovsim.ui.work import Work
+from rovsim.ui.workbench import Workbench
+from worlds import model
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    """A workbench with a tiny campaign, in a folder of its own."""
+    folder = tmp_path_factory.mktemp("desk")
+    main(["tank", "tank=tiny", "tank.duration=8", f"out={folder / 'raw'}", "-q"])
+    settings = compose([f"campaign='{folder / 'raw'}'", f"out='{folder / 'out'}'"])
+    return Workbench.opened(settings)
+
+
+def diagnosis(**values):
+    """A diagnosis that selects a lag with this fitted value."""
+    lag = {"effect": "thruster_lag", "parameters": {"time_constant": {"value": 0.18, "std": 0.01}}}
+    return {"selected": [lag | values], "ranking": [], "base": model().content()}
+
+
+@pytest.mark.parametrize("horizon", [0.5, 2.0, 5.0, None])
+def test_its_errors_are_those_of_the_comparison(bench, horizon):
+    found = compare(bench.data, [bench.base], bench.settings).comparison["models"]["nominal"]
+    for run, scores in found["runs"].items():
+        told = scores["open_loop"] if horizon is None else scores["windows"][f"{horizon:g}"]
+        assert bench.metrics(bench.base, run, horizon) == told
+
+
+def test_its_ladder_holds_the_diagnosis_the_models_and_the_floor_last(bench, monkeypatch):
+    steps = [bench.step(bench.base), {"model": "+lag", "windows_2s": 0.1}]
+    steps += [{"model": "noise_floor", "windows_2s": 0.05}]
+    monkeypatch.setattr(bench, "diagnosis", {"ladder": {"steps": steps}})
+    names = [s["model"] for s in bench.ladder()["steps"]]
+    assert names == ["zero_acceleration", "nominal", "+lag", "noise_floor"]
+
+
+def test_a_diagnosis_of_other_recordings_settings_or_models_is_not_shown(bench):
+    path = bench.diagnosis_path
+    other = bench.settings.model_copy(update={"seed": 7})
+    assert Workbench(other, bench.data, bench.models, bench.paths).diagnosis_path != path
+    assert Workbench(bench.settings, bench.data, bench.models, bench.paths).diagnosis_path == path
+    lagging = {"nominal": Draft(bench.base, diagnosis()).model()}
+    assert Workbench(bench.settings, bench.data, lagging, bench.paths).diagnosis_path != path
+
+
+def test_a_campaign_that_cannot_be_read_is_one_message(tmp_path):
+    with pytest.raises(BadInput, match="nowhere"):
+        Workbench.opened(compose([f"campaign='{tmp_path / 'nowhere'}'"]))
+
+
+def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench, monkeypatch):
+    drawn = []
+    monkeypatch.setattr("rovsim.report.folder.present", lambda *given: drawn.append(given))
+    here = Workbench(bench.settings, bench.data, dict(bench.models), dict(bench.paths))
+    file = tasks.learn(here.only("nominal"), here.out / "knn_6dof.yaml")
+    here.add(read_model(file), file)
+    page = tasks.tell(here.only(*here.models), {"ladder": here.ladder()}, here.out)
+    assert page.name == "report.html"
+    assert len(drawn) == 1
+    comparison = read_json(here.out / "comparison.json")["models"]
+    assert list(comparison) == ["nominal", "knn_6dof"]
+    for name, one in here.models.items():
+        for run, scores in comparison[name]["runs"].items():
+            assert here.metrics(one, run, 2.0) == scores["windows"]["2"]
+    steps = read_json(here.out / "ladder.json")["steps"]
+    assert [s["model"] for s in steps] == ["zero_acceleration", "nominal", "knn_6dof"]
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [("nominal.yaml", "as another"), ("new.json", "yaml"), ("campaign.yaml", "no model file")],
+)
+def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, name, found):
+    path = tmp_path / name
+    path.write_text("name: mine\n")
+    with pytest.raises(BadInput, match=found):
+        bench.save(path)
+    assert path.read_text() == "name: mine\n"
+
+
+def test_a_saved_draft_is_one_of_the_models_and_may_be_saved_again(bench, tmp_path):
+    here = Workbench(bench.settings, bench.data, dict(bench.models), dict(bench.paths))
+    here.draft.tick("thruster_lag", True)
+    for value in (0.1, 0.2):
+        here.draft.move("thruster_lag", "time_constant", value)
+        saved = here.save(tmp_path / "lagging.yaml")
+        assert here.models["lagging"] is saved
+        assert saved.entries[0].parameters["time_constant"].value == value
+    assert here.base.name == "nominal"
+
+
+def test_a_draft_begins_as_the_diagnosis_and_what_is_saved_is_read_back(tmp_path):
+    draft = Draft(model(), diagnosis())
+    draft.model().write(tmp_path / "new.yaml")
+    (entry,) = read_model(tmp_path / "new.yaml").entries
+    assert (entry.parameters["time_constant"].value, entry.parameters["time_constant"].std) == (
+        0.18,
+        0.01,
+    )
+    draft.move("thruster_lag", "time_constant", 0.25)
+    moved = draft.entry("thruster_lag").parameters["time_constant"]
+    assert (moved.value, moved.std) == (0.25, None)  # the interval was that of the fit
+    draft.tick("thruster_lag", False)
+    assert draft.model().content()["effects"] == []
+
+
+@pytest.mark.parametrize("effect", catalogue())
+def test_every_effect_can_be_added_and_moved_within_its_sliders(effect):
+    draft = Draft(model(), {})
+    draft.tick(effect, True)
+    known = {p.name: p for p in catalogue()[effect].parameters}
+    for name, value in draft.entry(effect).parameters.items():
+        low, high = reach(known[name], value.value)
+        assert known[name].low <= low <= value.value <= high <= known[name].high
+        assert low < high
+        draft.move(effect, name, high)
+    assert draft.model().entries[0].effect == effect
+
+
+def test_values_no_model_can_have_are_refused():
+    draft = Draft(model(), {})
+    draft.tick("added_mass", True)
+    draft.move("added_mass", "surge", -1e4)
+    with pytest.raises(BadInput):
+        draft.model()
+
+
+def ended(work):
+    """The state in which work ends, all that it said on the way."""
+    shares = set()
+    while work.look() == "running" and work.elapsed < 60:
+        shares.add(work.share)
+        time.sleep(0.005)
+    return work.state, shares
+
+
+def test_work_tells_how_far_it_is_and_ends_as_it_should():
+    busy = Work.start("counting", print, counting, 40, 0.02)
+    state, shares = ended(busy)
+    assert (state, busy.said) == ("done", 40)
+    assert len(shares) > 5
+    poor, gone = Work.start("failing", print, failing), Work.start("dying", print, dying)
+    assert ended(poor)[0] == "failed"
+    assert "Mend it" in poor.said
+    assert ended(gone)[0] == "failed"
+    assert "unexpectedly" in gone.said
+
+
+def test_work_that_is_cancelled_ends_at_once():
+    work = Work.start("counting", print, counting, 1000, 0.1)
+    work.cancel()
+    work.process.join(10)
+    assert not work.process.is_alive()
+    assert work.look() == "cancelled"
+
+
+@given(turn=st.floats(-180, 180), tilt=st.floats(0, 90))
+def test_a_projection_is_a_view_of_a_rigid_body(turn, tilt):
+    axes = path.projected(np.eye(3), turn, tilt)
+    np.testing.assert_allclose(axes.T @ axes, np.eye(2), atol=1e-12)
+
+
+def test_seen_from_above_north_is_right_and_west_is_up():
+    np.testing.assert_allclose(
+        path.projected(np.eye(3), 0, 90), [[1, 0], [0, 1], [0, 0]], atol=1e-9
+    )
+
+
+def test_curves_are_thinned_and_keep_their_gaps():
+    time = np.linspace(0, 60, 6001)
+    values = np.where(time > 30, np.nan, time)
+    found = np.array(charts.points(time, values))
+    assert len(found) <= 2 * charts.POINTS
+    np.testing.assert_array_equal(np.isnan(found[:, 1]), found[:, 0] > 30)
+
+
+def test_a_file_that_is_no_diagnosis_is_explained(bench, tmp_path):
+    (tmp_path / "other.json").write_text("{}")
+    settings = bench.settings.model_copy(update={"diagnosis": str(tmp_path / "other.json")})
+    with pytest.raises(BadInput, match="not a diagnosis"):
+        Workbench.opened(settings)
+
+
+def test_a_port_in_use_is_one_message(capsys):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(SystemExit) as refused:
+            main(["ui", f"port={taken.getsockname()[1]}", "open=false"])
+    assert refused.value.code == 2
+    assert "cannot be used" in capsys.readouterr().err
