@@ -15,7 +15,7 @@ from rovsim import AXES
 from rovsim.diagnosis.desk import Desk
 from rovsim.diagnosis.fit import Fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.nominal import DRAG, uncertain
+from rovsim.diagnosis.nominal import uncertain
 from rovsim.diagnosis.search import Rival, without_parameters
 from rovsim.effects import effect
 from rovsim.effects.onboard_control import OnboardControl
@@ -23,7 +23,12 @@ from rovsim.model import Model
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
 ACTUATION = ("thruster_gain", "onboard_control")  # ways in which commands could act
-ALWAYS = (*DRAG, "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
+ALWAYS = ("quadratic_damping", "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
+OF_THRUSTERS = (
+    "linear_damping",
+    "added_mass",
+    "thruster_gain",
+)  # what a loop does is linear drag too
 
 
 def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, list[Rival]]:
@@ -53,8 +58,7 @@ def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, l
 def _starts(base: Model, still: Sequence[str], kind: str) -> list[Hypothesis]:
     moved = [axis for axis in AXES if axis not in still]
     common = uncertain(base, moved, ALWAYS)
-    thrusters = uncertain(base, moved, ("added_mass", "thruster_gain"))
-    found = [(*common, *thrusters)]
+    found = [(*common, *uncertain(base, moved, OF_THRUSTERS))]
     if kind == "demand":
         found += [(*common, _loops(start)) for start in OnboardControl.starts if len(start) == 12]
     return [Hypothesis(base, terms) for terms in found]
