@@ -15,7 +15,7 @@ from rovsim import AXES
 from rovsim.diagnosis.desk import Desk
 from rovsim.diagnosis.fit import Fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.nominal import uncertain
+from rovsim.diagnosis.nominal import DRAG, uncertain
 from rovsim.diagnosis.search import Rival, without_parameters
 from rovsim.effects import effect
 from rovsim.effects.onboard_control import OnboardControl
@@ -23,12 +23,10 @@ from rovsim.model import Model
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
 ACTUATION = ("thruster_gain", "onboard_control")  # ways in which commands could act
-ALWAYS = ("quadratic_damping", "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
-OF_THRUSTERS = (
-    "linear_damping",
-    "added_mass",
-    "thruster_gain",
-)  # what a loop does is linear drag too
+ALWAYS = (*DRAG, "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
+OF_THRUSTERS = ("added_mass", "thruster_gain")
+# Scales: what acts only together (drag and a loop, drag and thrust) stays near where it began.
+REACH = 10.0
 
 
 def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, list[Rival]]:
@@ -70,10 +68,10 @@ def _loops(start: dict[str, float]) -> Term:
 
 def _joint(desk: Desk, start: Hypothesis) -> tuple[Desk, Fit]:
     """Fitted, with filters and noise that follow."""
-    found = desk.fit(start)
+    found = desk.fit(start, REACH)
     for _ in range(ROUNDS):
         desk = desk.renewed(found)
-        found = desk.fit(found.hypothesis)
+        found = desk.fit(found.hypothesis, REACH)
     return desk, found
 
 
@@ -84,7 +82,7 @@ def _pruned(desk: Desk, found: Fit) -> Fit:
         weak = _weak(found, desk.price)
         if not weak.any():
             return found
-        smaller = desk.fit(without_parameters(h, weak))
+        smaller = desk.fit(without_parameters(h, weak), REACH)
         if desk.score(smaller) < desk.score(found):
             return found
         found = smaller

@@ -53,10 +53,10 @@ class Desk:
         """What a free parameter costs, in twice the log likelihood."""
         return 2.0 * float(np.log(self.library.count))
 
-    def fit(self, start: Hypothesis) -> Fit:
-        """Fit under the common noise; the same start is fitted once."""
+    def fit(self, start: Hypothesis, reach: float = np.inf) -> Fit:
+        """Fit under the common noise, as far as `reach`; the same start is fitted once."""
         if start.key not in self._fitted:
-            self._fitted[start.key] = fit(start, self.observatory, self.noise)
+            self._fitted[start.key] = fit(start, self.observatory, self.noise, reach)
         return self._fitted[start.key]
 
     def knows(self, start: Hypothesis) -> bool:

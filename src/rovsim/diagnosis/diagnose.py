@@ -16,7 +16,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim import AXES
-from rovsim.diagnosis.at_once import at_once
+from rovsim.diagnosis.at_once import REACH, at_once
 from rovsim.diagnosis.candidates import candidates
 from rovsim.diagnosis.desk import Desk, proposals
 from rovsim.diagnosis.evidence import Observatory
@@ -108,12 +108,14 @@ def diagnose(
     last, found, rivals = search(desk, nothing, seed)
     stage("checking")
     strange: list[Structure] = []
+    reach = np.inf
     if len(found.hypothesis.terms) < settings.most_effects:
         found, strange = unstretched(last, _checked(last, found))
     else:
         last, found, rivals = at_once(last, base, still)
+        reach = REACH
     rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
-    found, observatory = _polished(found, last.observatory)
+    found, observatory = _polished(found, last.observatory, reach)
     structures = [*strange, *_leftover(found, observatory)]
     if structures and found.hypothesis.terms:
         found = replayed(found, observatory)
@@ -174,12 +176,12 @@ def _checked(desk: Desk, found: Fit) -> Fit:
     return found
 
 
-def _polished(found: Fit, observatory: Observatory) -> tuple[Fit, Observatory]:
+def _polished(found: Fit, observatory: Observatory, reach: float) -> tuple[Fit, Observatory]:
     """Fitted once more under its own noise, with filters that suit it and the model's damping."""
     fresh = observatory
     for _ in range(POLISHED):
         fresh = observatory.suiting(found.hypothesis.model, found.noise)
-        found = fit(found.hypothesis, fresh, found.noise)
+        found = fit(found.hypothesis, fresh, found.noise, reach)
     return found, fresh
 
 

@@ -52,12 +52,14 @@ class Fit:
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def fit(start: Hypothesis, observatory: Observatory, noise: Noise) -> Fit:
+def fit(start: Hypothesis, observatory: Observatory, noise: Noise, reach: float = np.inf) -> Fit:
     """Fit the free parameters under a given noise, then the noise to what is left.
+
+    `reach`: see `descend`.
 
     A model that diverges in spite of the observer's corrections is infinitely unlikely.
     """
-    return judged(*descend(start, observatory, noise), observatory, noise)
+    return judged(*descend(start, observatory, noise, reach), observatory, noise)
 
 
 def judged(
@@ -87,10 +89,14 @@ def _cost(observatory: Evidence, e: list[Array], noise: Noise) -> float:
 
 
 def descend(
-    here: Hypothesis, observatory: Evidence, noise: Noise
+    here: Hypothesis, observatory: Evidence, noise: Noise, reach: float = np.inf
 ) -> tuple[Hypothesis, list[Array], list[Array]]:
-    """Least squares from a hypothesis: where it leads, its errors and their derivatives."""
-    trust = FIRST_TRUST
+    """Least squares from a hypothesis: where it leads, its errors and their derivatives.
+
+    `reach`, in scales: a prior's standard deviation about the start, which keeps parameters that
+    only act together from running away together.
+    """
+    trust, start = FIRST_TRUST, here.x
     for _ in range(MOST_ITERATIONS):
         e, J = observatory.linearised(here)
         if not len(here.x) or not _finite(e, J):
@@ -98,7 +104,15 @@ def descend(
         rows = _rows(observatory.white(J, noise))
         target = observatory.white(e, noise).ravel()
         H, g, cost = inner_products(rows), rows @ target, float(target @ target)
-        step, better, cost, trust = _step(here, observatory, noise, H, g, cost, trust)
+        away = (here.x - start) / reach**2
+        H, g, cost = H + np.eye(len(H)) / reach**2, g + away, cost + float(away @ (here.x - start))
+
+        def left(wanted: Hypothesis) -> float:
+            e = [one[0] for one in observatory.innovations([wanted.model])]
+            prior = float(np.sum(((wanted.x - start) / reach) ** 2))
+            return _cost(observatory, e, noise) + prior if _finite(e, []) else np.inf
+
+        step, better, cost, trust = _step(here, left, H, g, cost, trust)
         if better is None:
             return here, e, J
         here = better
@@ -109,7 +123,7 @@ def descend(
     return here, e, J
 
 
-def _step(here, observatory, noise, H, g, cost, trust):
+def _step(here, cost_of, H, g, cost, trust):
     """A step that lowers the cost, where it leads and what is left; None when none does."""
     x = here.x
     while trust < LARGEST_TRUST:
@@ -118,8 +132,7 @@ def _step(here, observatory, noise, H, g, cost, trust):
             break
         wanted = here.at(goal)
         step = wanted.x - x
-        e = [one[0] for one in observatory.innovations([wanted.model])]
-        left = _cost(observatory, e, noise) if _finite(e, []) else np.inf
+        left = cost_of(wanted)
         if left < cost:
             return step, wanted, left, max(trust / 10.0, 1e-8)
         if float(step @ H @ step) < CONVERGED**2:

@@ -13,6 +13,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.at_once import REACH
 from rovsim.diagnosis.evidence import Observatory, linearised
 from rovsim.diagnosis.fit import Fit, descend, judged
 from rovsim.diagnosis.gram import inner_products, solved
@@ -71,7 +72,7 @@ class Replays:
 def replayed(found: Fit, observatory: Observatory) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
     evidence = Replays(observatory.watches, observatory.between)
-    here, e, J = descend(found.hypothesis, evidence, found.noise)
+    here, e, J = descend(found.hypothesis, evidence, found.noise, REACH)
     covariance = _sandwich(
         evidence.white(e, found.noise), evidence.white(J, found.noise), evidence.window()
     )
