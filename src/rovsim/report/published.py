@@ -74,7 +74,7 @@ def _cells(marks: Mapping[str, Any], metric: str) -> list[str]:
 
 
 def _number(value: float | None) -> str:
-    return "–" if value is None else significant(value, 2)
+    return "–" if value is None else significant(value)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
