@@ -79,16 +79,19 @@ def _steps(
         step(one.name, motions, [replay(one, m, settings.signals, horizons) for m in motions])
         for one in found.models()
     ]
-    return [*steps, floor_step(_floor(found, test, settings))]
+    reached = [s["windows_2s"] for s in steps if s["windows_2s"] is not None]
+    return [*steps, floor_step(_floor(found, test, settings, reached))]
 
 
-def _floor(found: Diagnosis, test: list[Watch], settings: DiagnosisSettings) -> float | None:
+def _floor(found: Diagnosis, test: list[Watch], settings: DiagnosisSettings, reached: list[float]):
+    """At most what was reached: where a model came below, part of the noise is structure."""
     if found.fit is None or not test:
         return None
-    return noise_floor(
+    floor = noise_floor(
         found.models()[-1], test, found.fit.noise, settings.signals, settings.replay.commands,
         settings.seed,
     )  # fmt: skip
+    return None if floor is None else min([floor, *reached])
 
 
 def _errors(steps: list[dict[str, Any]]) -> dict[str, float | None]:

@@ -14,6 +14,7 @@ from rovsim.residual.scaling import fit_scaling
 from rovsim.residual.storage import Residual
 
 SEED = 5  # of the rows that are drawn
+NEIGHBOURS = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,14 +52,15 @@ class Pairs:
         scaling = fit_scaling("standard", X)
         Z = scaling.apply(X)
         if kind == "knn":
-            return export_neighbours(features, scaling, Z, Y, 5, "distance")
+            return export_neighbours(features, scaling, Z, Y, NEIGHBOURS, "distance")
         kernel = Kernel(Z, np.full(Z.shape[1], 5.0), Y)
         return export_expansion(features, scaling, np.zeros(outputs), [kernel])
 
 
 def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
     """A residual of that kind."""
-    trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **more}), seed=0)
+    given = {"k": NEIGHBOURS, **more} if kind == "knn" else more
+    trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **given}), seed=0)
     return Residual("6dof", trained.settings, trained.data, trained.arrays, trained.info)
 
 

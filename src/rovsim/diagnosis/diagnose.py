@@ -4,7 +4,9 @@ observe      the base model runs along the train runs, corrected by a filter (ob
 library      how each candidate would change what the filter could not foresee
 search       add, refit, swap, prune; against what chance gives to the best of all candidates
 held out     an addition must help on blocks it was not fitted to, and matter in 2 s windows
+at once      where the search came to no end: all that could be wrong, together, then pruned
 leftover     structure that no candidate explains
+replayed     where there is some: values that replay best, rather than foresee the next reading
 test runs    opened once, for the errors that are reported
 """
 
@@ -12,23 +14,24 @@ from dataclasses import dataclass
 from typing import Callable, Sequence
 
 import numpy as np
-from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.diagnosis.at_once import at_once
 from rovsim.diagnosis.candidates import candidates
-from rovsim.diagnosis.desk import Desk, Proposal, proposals
+from rovsim.diagnosis.desk import Desk, proposals
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import Fit, fit
 from rovsim.diagnosis.heldout import held_out_gain
-from rovsim.diagnosis.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.leftover import Structure, leftover
 from rovsim.diagnosis.library import Library, library, remaining_noise
 from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.ranking import Ranked, Selected, ranking, selected
+from rovsim.diagnosis.replayed import replayed
 from rovsim.diagnosis.search import Rival, matters, search
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.stretched import unstretched
 from rovsim.diagnosis.watch import Watch
-from rovsim.diagnosis.windows import window_errors
 from rovsim.model import Model
 from rovsim.recording.quality import EXCITED
 from rovsim.thrust import Between
@@ -41,25 +44,6 @@ FIRST_NOISE = Noise(
 )
 POLISHED = 2  # times: the noise of the first is already the right one
 SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
-
-
-@dataclass(frozen=True, eq=False)
-class Selected:
-    """A selected effect, the share of the base's error that it removes, how sure its name is."""
-
-    term: Term
-    std: dict[str, float]
-    error_reduction: float
-    probability: float
-
-
-@dataclass(frozen=True, eq=False)
-class Ranked:
-    """One effect by itself on top of the base."""
-
-    term: Term
-    error_reduction: float
-    probability: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,13 +107,19 @@ def diagnose(
     stage("searching")
     last, found, rivals = search(desk, nothing, seed)
     stage("checking")
-    found, strange = unstretched(last, _checked(last, found))
+    strange: list[Structure] = []
+    if len(found.hypothesis.terms) < settings.most_effects:
+        found, strange = unstretched(last, _checked(last, found))
+    else:
+        last, found, rivals = at_once(last, base, still)
     rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
     found, observatory = _polished(found, last.observatory)
     structures = [*strange, *_leftover(found, observatory)]
+    if structures and found.hypothesis.terms:
+        found = replayed(found, observatory)
     return Diagnosis(
-        base, found, _selected(found, rivals, watches, between),
-        _ranking(desk, nothing, alone, found), rivals, structures, still, seconds,
+        base, found, selected(found, rivals, watches, between),
+        ranking(desk, nothing, alone, found), rivals, structures, still, seconds,
     )  # fmt: skip
 
 
@@ -202,70 +192,3 @@ def _leftover(found: Fit, observatory: Observatory) -> list[Structure]:
         np.split(white, counts, axis=-1), np.split(J, counts, axis=-1), observatory.watches,
         observatory.tuned(found.noise), found.noise, found.hypothesis.model.thrust_path,
     )  # fmt: skip
-
-
-def _selected(found: Fit, rivals, watches, between) -> list[Selected]:
-    """Selected effects, the one that removes most error first, then the next on top of it."""
-    left, order, errors = list(range(len(found.hypothesis.terms))), [], []
-    model = found.hypothesis.base
-    start = _error([model], watches, between)[0]
-    now = start
-    while left:
-        tried = [model + found.hypothesis.terms[i].effect for i in left]
-        after = _error(tried, watches, between)
-        best = int(np.argmin(after))
-        order.append(left.pop(best))
-        errors.append((now - after[best]) / start)
-        model, now = tried[best], after[best]
-    return [
-        Selected(
-            found.hypothesis.terms[i], _std(found, i), float(gain), _probability(found, i, rivals)
-        )
-        for i, gain in zip(order, errors, strict=True)
-    ]
-
-
-def _error(models, watches, between) -> Array:
-    return np.array(
-        [np.nan if e is None else e for e in window_errors(models, watches, between)[1]]
-    )
-
-
-def _std(found: Fit, i: int) -> dict[str, float]:
-    """Standard deviations by name; within its grain a value could be anywhere (uniform: / √12)."""
-    term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
-    return {
-        p.name: float(np.hypot(found.std[k] * p.scale, p.grain / np.sqrt(12.0)))
-        for p, k in zip(term.parameters, columns, strict=True)
-    }
-
-
-def _probability(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
-    """Of this name among all that were tried in its place, from their likelihoods."""
-    name = found.hypothesis.terms[i].id
-    odds = sum(np.exp(-0.5 * min(r.deficit, 700.0)) for r in rivals if r.instead_of == name)
-    return float(1.0 / (1.0 + odds))
-
-
-def _ranking(desk: Desk, nothing: Fit, alone: Sequence[Proposal], found: Fit) -> list[Ranked]:
-    """Every effect by itself: those refitted first, by their likelihood, then the others' promise.
-
-    The probability is that of the name if one effect alone is missing, or none.
-    """
-    named = {term.id for term in found.hypothesis.terms}
-    starts = [(p, nothing.hypothesis.with_term(p.term)) for p in alone]
-    fits = [desk.fit(h) for p, h in starts if p.term.id in named or desk.knows(h)]
-    fits.sort(key=desk.score, reverse=True)
-    terms = [one.hypothesis.terms[0] for one in fits]
-    terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
-    gain = np.array([0.5 * (desk.score(one) - desk.score(nothing)) for one in fits])
-    weight = np.exp(gain - np.max(gain, initial=0.0))
-    share = weight / (weight.sum() + np.exp(-np.max(gain, initial=0.0)))
-    observatory, base = desk.observatory, nothing.hypothesis.base
-    models = [base, *(base + term.effect for term in terms)]
-    error = _error(models, observatory.watches, observatory.between)
-    sure = np.append(share, np.zeros(len(terms) - len(fits)))
-    return [
-        Ranked(term, float(max(0.0, 1.0 - e / error[0])), float(p))
-        for term, e, p in zip(terms, error[1:], sure, strict=True)
-    ]

@@ -1,7 +1,7 @@
 """Innovations, and how they change with parameters: what all decisions are made of."""
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -70,12 +70,22 @@ class Observatory:
 
     def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
-        x = at.x
-        steps = [_inward(at, x, i) for i in range(len(x))]
-        moved = [at.at(x + step).model for step in steps]
-        sizes = np.array([step.sum() for step in steps])[:, None, None]
-        found = self.innovations([at.model, *moved])
-        return [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found]
+        return linearised(at, self.innovations)
+
+
+def linearised(
+    at: Hypothesis, errors: Callable[[Sequence[Model]], list[Array]]
+) -> tuple[list[Array], list[Array]]:
+    """Errors (6, n) of each run, and their derivatives (k, 6, n) to the k scaled parameters.
+
+    `errors` returns (m, 6, n) of each run for m models.
+    """
+    x = at.x
+    steps = [_inward(at, x, i) for i in range(len(x))]
+    moved = [at.at(x + step).model for step in steps]
+    sizes = np.array([step.sum() for step in steps])[:, None, None]
+    found = errors([at.model, *moved])
+    return [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found]
 
 
 def _inward(at: Hypothesis, x: Array, i: int) -> Array:

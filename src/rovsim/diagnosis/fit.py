@@ -1,6 +1,7 @@
 """Gauss-Newton on the innovations: the most likely parameters of a hypothesis, and their spread."""
 
 from dataclasses import dataclass
+from typing import Protocol, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -9,11 +10,25 @@ from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.gram import inner_products, solved
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
+from rovsim.model import Model
 
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
 ROUGH = 1e-2  # of what the model does not explain: a wrong model need not be fitted finely
 FIRST_TRUST, LARGEST_TRUST = 1e-4, 1e4  # damping of the steps (Levenberg-Marquardt)
+
+
+class Evidence(Protocol):
+    """Errors of models, how they change with parameters, and what makes them comparable."""
+
+    def innovations(self, models: Sequence[Model]) -> list[Array]:
+        """Errors (m, 6, n) of each run."""
+
+    def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
+        """Errors (6, n) of each run and their derivatives (k, 6, n)."""
+
+    def white(self, e: Sequence[Array], noise: Noise) -> Array:
+        """Errors (..., 6, n) of all runs, each worth the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +57,13 @@ def fit(start: Hypothesis, observatory: Observatory, noise: Noise) -> Fit:
 
     A model that diverges in spite of the observer's corrections is infinitely unlikely.
     """
-    here, e, J = _descend(start, observatory, noise)
+    return judged(*descend(start, observatory, noise), observatory, noise)
+
+
+def judged(
+    here: Hypothesis, e: list[Array], J: list[Array], observatory: Observatory, noise: Noise
+) -> Fit:
+    """A hypothesis as it stands, the noise fitted to what it leaves."""
     if not _finite(e, J):
         unsure = np.full((len(here.x), len(here.x)), np.inf)
         return Fit(here, e, J, noise, -np.inf, unsure)
@@ -60,12 +81,15 @@ def _rows(white: Array) -> Array:
     return white.reshape(len(white), int(np.prod(white.shape[1:])))
 
 
-def _cost(observatory: Observatory, e: list[Array], noise: Noise) -> float:
+def _cost(observatory: Evidence, e: list[Array], noise: Noise) -> float:
     white = observatory.white(e, noise)
     return float(np.sum(white**2))
 
 
-def _descend(here: Hypothesis, observatory: Observatory, noise: Noise):
+def descend(
+    here: Hypothesis, observatory: Evidence, noise: Noise
+) -> tuple[Hypothesis, list[Array], list[Array]]:
+    """Least squares from a hypothesis: where it leads, its errors and their derivatives."""
     trust = FIRST_TRUST
     for _ in range(MOST_ITERATIONS):
         e, J = observatory.linearised(here)

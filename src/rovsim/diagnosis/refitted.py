@@ -8,22 +8,18 @@ compare with and not a diagnosis.
 from dataclasses import replace
 from typing import Sequence
 
-import numpy as np
-from numpy import ndarray as Array
-
 from rovsim import AXES
 from rovsim.diagnosis.diagnose import FIRST_NOISE, enough, usable
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.nominal import DRAG, GAINS, ONE_GAIN, kept_between, uncertain
 from rovsim.diagnosis.watch import Watch
 from rovsim.effects import effect
-from rovsim.effects.base import Effect
 from rovsim.model import Model
 from rovsim.thrust import Between
 
-SINGLE = {"net_buoyancy": ("force",), "buoyancy_center": ("x", "y", "z")}
-GAINS = 0.5, 2.0  # a curve measured on the bench; gain, masses and drag are known to one scale only
+STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center")
 ROUNDS = 3  # the filters suit the noise of the round before
 
 
@@ -43,24 +39,10 @@ def refitted(base: Model, train: Sequence[Watch], between: Between) -> Model:
 
 
 def _start(base: Model, still: Sequence[str]) -> Hypothesis:
-    """All parameters free and unchanged; water neither drives a vehicle nor lightens it."""
-    moved, body = tuple(axis for axis in AXES if axis not in still), base.body
-    total = {
-        "linear_damping": body.linear,
-        "quadratic_damping": body.quadratic,
-        "added_mass": np.diag(body.M_A),
-    }
-    terms = [Term(_bounded(effect(name), -t), moved) for name, t in total.items()]
-    terms += [Term(effect(name)(), free) for name, free in SINGLE.items()]
-    return Hypothesis(base, (*terms, Term(_bounded(effect("thruster_gain"), *GAINS), ("all",))))
-
-
-def _bounded(cls: type[Effect], low: Array | float, high: Array | float = np.inf) -> Effect:
-    """The absent effect, its parameters kept between bounds of this vehicle."""
-    lows, highs = (np.broadcast_to(x, len(cls.parameters)) for x in (low, high))
-    known = zip(cls.parameters, lows, highs, strict=True)
-    parameters = tuple(replace(p, low=float(a), high=float(b)) for p, a, b in known)
-    return type(cls.__name__, (cls,), {"parameters": parameters})()
+    """All parameters free and unchanged."""
+    terms = uncertain(base, [axis for axis in AXES if axis not in still], STATED)
+    gain = Term(kept_between(effect("thruster_gain"), *GAINS), ONE_GAIN)
+    return Hypothesis(base, (*terms, gain))
 
 
 def _held(found: Hypothesis) -> Hypothesis:

@@ -45,13 +45,23 @@ def _weakest_dropped(desk: Desk, current: Fit) -> Hypothesis | None:
 
 
 def _without_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
-    term = h.terms[i]
-    left = tuple(n for n in term.free if n != name)
-    if not left or {} not in term.effect.starts:
-        return h.without(i)
-    default = next(p.default for p in term.effect.parameters if p.name == name)
-    smaller = Term(term.effect.with_values({name: default}), left)
-    return Hypothesis(h.base, (*h.terms[:i], smaller, *h.terms[i + 1 :]))
+    weak = [(k, n) == (i, name) for k, term in enumerate(h.terms) for n in term.free]
+    return without_parameters(h, np.array(weak))
+
+
+def without_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
+    """The hypothesis without some of its free parameters (k,), and without terms that have none.
+
+    An effect that is not absent at its defaults stays or goes as a whole: it goes with the last.
+    """
+    terms = []
+    for term, own in zip(h.terms, h.columns, strict=True):
+        idle = {name for name, k in zip(term.free, own, strict=True) if weak[k]}
+        defaults = {p.name: p.default for p in term.parameters if p.name in idle}
+        left = tuple(name for name in term.free if name not in idle)
+        if left and (not idle or {} in term.effect.starts):
+            terms.append(Term(term.effect.with_values(defaults), left))
+    return Hypothesis(h.base, tuple(terms))
 
 
 def promising(desk: Desk, current: Fit) -> list[Proposal]:

@@ -44,6 +44,7 @@ def differences(
     between: Between = "held",
     starts: Array | None = None,
     pushes: Array | None = None,
+    seconds: float = SECONDS,
 ) -> Array:
     """Predicted minus measured velocity (m, n, 6) at the samples or bins of all windows.
 
@@ -53,8 +54,9 @@ def differences(
         between: how commands are held between two lines.
         starts: states (m, w, 13) as measured to start from; None: the measured ones.
         pushes: further wrench (m, k, 6) over the integration steps, N and N m.
+        seconds: length of the windows.
     """
-    spans = list(windows(watch.motion, SECONDS))
+    spans = list(windows(watch.motion, seconds))
     own = np.array([a for a, _ in spans], int)
     if starts is None:
         starts = np.tile(watch.motion.state[own], (len(models), 1, 1))

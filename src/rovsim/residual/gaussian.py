@@ -11,12 +11,15 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
+from scipy.spatial import cKDTree
 
 from rovsim.residual.export import AXES, Kernel, export_expansion
 from rovsim.residual.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
 from rovsim.residual.scaling import CONSTANT, Scaling, fit_scaling
 from rovsim.residual.spectrum import Known, rbf
 
+NEARBY = 20  # rows: their median's own noise is a quarter of a row's
+MAD = 1.4826  # standard deviation of a Gaussian over its median absolute deviation
 SHOWN = 2000  # training rows that show how sure a process is where it was taught
 
 
@@ -26,6 +29,24 @@ class GaussianSettings(LearnerSettings):
     # Share of the training rows at which the correction counts fully; beyond what these show it
     # fades, to nothing where nothing was seen. null: it never fades (docs/benchmark_speed.md).
     trusted: float | None = Field(default=1.0, gt=0, le=1)
+    # Robust standard deviations by which a target may differ from its neighbours'. null: any
+    tempered: float | None = Field(default=3.0, gt=0)
+
+
+def tempered(X: Array, Y: Array, settings: GaussianSettings) -> Array:
+    """Targets (n, 6) brought within `tempered` robust standard deviations of what is usual there.
+
+    Usual is the median of the nearest rows in X (n, d), unscaled. A command that falls inside a
+    sample leaves an acceleration far off, and a Gaussian likelihood explains such with lengthscales
+    too short for anything else. These are Huber's pseudo-values (Huber & Ronchetti 2009, sec. 7.8).
+    """
+    if settings.tempered is None or len(X) <= NEARBY:
+        return Y
+    Z = fit_scaling("standard", X).apply(X)
+    _, near = cKDTree(Z).query(Z, NEARBY + 1)
+    usual = np.median(Y[np.asarray(near)[:, 1:]], axis=1)
+    reach = settings.tempered * MAD * np.median(np.abs(Y - usual), axis=0)
+    return usual + np.clip(Y - usual, -reach, reach)
 
 
 def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:

@@ -39,7 +39,7 @@ class GpSettings(gaussian.GaussianSettings):
 
 def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress) -> Trained:
     """Tune on some rows, condition on more. See `rovsim.residual.learner.train`."""
-    start = perf_counter()
+    start, Y = perf_counter(), gaussian.tempered(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     some = rows[spread_rows(len(rows), settings.tuning_points, seed)]
     arrays = gaussian.scalings(settings.features.scaling, X, Y)

@@ -6,6 +6,7 @@ from typing import Literal, Mapping
 import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
+from scipy.spatial import cKDTree
 
 from rovsim.errors import BadInput
 from rovsim.residual.export import export_neighbours
@@ -18,15 +19,18 @@ from rovsim.residual.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.residual.scaling import Scaling, fit_scaling
+from rovsim.residual.scaling import CONSTANT, Scaling, fit_scaling
+
+TRIED = (3, 5, 10, 20, 30)
+STRETCHES = 10  # of the training runs, each left out once
 
 
 class KnnSettings(LearnerSettings):
     """k nearest neighbours in scaled features."""
 
     kind: Literal["knn"] = "knn"
-    # one neighbour repeats its measurement noise; the noise of a mean falls with sqrt(k)
-    k: int = Field(default=5, ge=1, le=MOST_NEIGHBOURS)
+    # null: as many as foresee stretches of the training runs best that were left out
+    k: int | None = Field(default=None, ge=1, le=MOST_NEIGHBOURS)
     # by inverse distance the prediction is continuous while the nearest point changes
     weights: Literal["uniform", "distance"] = "distance"
 
@@ -36,7 +40,7 @@ def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress
     start = perf_counter()
     scaling = fit_scaling(settings.features.scaling, X)
     rows = spread_rows(len(X), settings.max_points, seed)
-    if len(rows) < settings.k:
+    if len(rows) < (settings.k or 1):
         raise BadInput(
             f"{len(rows)} training rows",
             where="residual knn",
@@ -44,12 +48,40 @@ def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress
             remedy="Record longer, or lower k (and max_points not below it).",
         )
     Z, Y = scaling.apply(X[rows]), Y[rows]
+    k = settings.k or best_k(Z, Y, settings.weights)
+    settings = settings.model_copy(update={"k": k})
     arrays = {"points": Z, "targets": Y, "shift": scaling.shift, "scale": scaling.scale}
-    data = export_neighbours(settings.features, scaling, Z, Y, settings.k, settings.weights)
+    data = export_neighbours(settings.features, scaling, Z, Y, k, settings.weights)
     library = library_from(arrays, settings)
     progress(1, 1)
-    info = {"points": len(rows), "seconds": round(perf_counter() - start, 3)}
+    info = {"points": len(rows), "k": k, "seconds": round(perf_counter() - start, 3)}
     return Trained(settings, data, arrays, library, info)
+
+
+def best_k(Z: Array, Y: Array, weights: str) -> int:
+    """How many neighbours foresee left-out stretches of the rows best.
+
+    One neighbour repeats its measurement noise, which falls with sqrt(k); many blur the residual.
+
+    Args:
+        Z: scaled features (n, d), rows in the order of time.
+        Y: targets (n, 6).
+        weights: uniform or distance.
+    """
+    tried = [k for k in TRIED if k <= len(Z) - -(-len(Z) // STRETCHES)]
+    if len(tried) < 2:
+        return max(1, min(TRIED[0], len(Z)))
+    scale = np.maximum(np.std(Y, axis=0), CONSTANT)
+    missed = np.zeros(len(tried))
+    for out in np.array_split(np.arange(len(Z)), STRETCHES):
+        kept = np.setdiff1d(np.arange(len(Z)), out)
+        distance, near = map(np.asarray, cKDTree(Z[kept]).query(Z[out], tried[-1]))
+        share = np.ones_like(distance) if weights == "uniform" else 1.0 / (distance + CONSTANT)
+        known = np.cumsum(share[..., None] * Y[kept][near], axis=1)
+        for i, k in enumerate(tried):
+            mean = known[:, k - 1] / share[:, :k].sum(axis=1)[:, None]
+            missed[i] += np.sum(((mean - Y[out]) / scale) ** 2)
+    return tried[int(np.argmin(missed))]
 
 
 def library_from(arrays: Mapping[str, Array], settings: KnnSettings) -> Predict:

@@ -36,7 +36,7 @@ class SvgpSettings(gaussian.GaussianSettings):
 
 def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progress) -> Trained:
     """Maximise the evidence bound by minibatches. See `rovsim.residual.learner.train`."""
-    start = perf_counter()
+    start, Y = perf_counter(), gaussian.tempered(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     arrays = gaussian.scalings(settings.features.scaling, X, Y)
     Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])

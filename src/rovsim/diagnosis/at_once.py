@@ -1,0 +1,102 @@
+"""Much is missing at once: fit all that could be wrong together, then take away what is not needed.
+
+One by one, each addition is judged beside everything still missing. Thrust, drag and inertia hold
+each other up: where all three are wrong, the likeliest single change (a vehicle four times as
+heavy) is a step away from the truth. So what the vehicle file states is taken for uncertain
+altogether, with each way in which the commands could act, and the likeliest is pruned.
+"""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.diagnosis.desk import Desk
+from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.nominal import uncertain
+from rovsim.diagnosis.search import Rival, without_parameters
+from rovsim.effects import effect
+from rovsim.effects.onboard_control import OnboardControl
+from rovsim.model import Model
+
+ROUNDS = 2  # the filters suit the model and the noise of the round before
+ACTUATION = ("thruster_gain", "onboard_control")  # ways in which commands could act
+ALWAYS = ("quadratic_damping", "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
+OF_THRUSTERS = (
+    "linear_damping",
+    "added_mass",
+    "thruster_gain",
+)  # what a loop does is linear drag too
+
+
+def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, list[Rival]]:
+    """The likeliest of all joint fits, pruned; the other ways to act are its rivals.
+
+    Args:
+        desk: where the search one by one ended.
+        base: the model that is diagnosed.
+        still: axes that nobody moved; nothing can be said about them.
+    """
+    kind = desk.observatory.watches[0].motion.commands.kind
+    tried = [_joint(desk, start) for start in _starts(base, still, kind)]
+    tried.sort(key=lambda one: one[0].score(one[1]), reverse=True)
+    best, found = tried[0]
+    found = _pruned(best, found)
+    named = {term.id for term in found.hypothesis.terms}
+    rivals = [
+        Rival(term.id, own.id, best.score(found) - other.score(fit))
+        for other, fit in tried[1:]
+        for own in found.hypothesis.terms
+        for term in fit.hypothesis.terms
+        if own.id in ACTUATION and term.id in ACTUATION and term.id not in named
+    ]
+    return best, found, rivals
+
+
+def _starts(base: Model, still: Sequence[str], kind: str) -> list[Hypothesis]:
+    moved = [axis for axis in AXES if axis not in still]
+    common = uncertain(base, moved, ALWAYS)
+    found = [(*common, *uncertain(base, moved, OF_THRUSTERS))]
+    if kind == "demand":
+        found += [(*common, _loops(start)) for start in OnboardControl.starts if len(start) == 12]
+    return [Hypothesis(base, terms) for terms in found]
+
+
+def _loops(start: dict[str, float]) -> Term:
+    return Term(effect("onboard_control")(**start), OnboardControl.free_at(start))
+
+
+def _joint(desk: Desk, start: Hypothesis) -> tuple[Desk, Fit]:
+    """Fitted, with filters and noise that follow."""
+    found = desk.fit(start)
+    for _ in range(ROUNDS):
+        desk = desk.renewed(found)
+        found = desk.fit(found.hypothesis)
+    return desk, found
+
+
+def _pruned(desk: Desk, found: Fit) -> Fit:
+    """Without all parameters that are not worth their price, until all are."""
+    while True:
+        h = found.hypothesis
+        weak = _weak(found, desk.price)
+        if not weak.any():
+            return found
+        smaller = desk.fit(without_parameters(h, weak))
+        if desk.score(smaller) < desk.score(found):
+            return found
+        found = smaller
+    return found
+
+
+def _weak(found: Fit, price: float) -> Array:
+    """Which free parameters (k,) are not worth their price; those of a loop only together."""
+    h = found.hypothesis
+    away = np.array([p.default / p.scale for t in h.terms for p in t.parameters])
+    weak = ((h.x - away) / np.maximum(found.std, 1e-12)) ** 2 < price
+    for term, own in zip(h.terms, h.columns, strict=True):
+        if {} not in term.effect.starts:
+            weak[own] = weak[own].all()
+    return np.asarray(weak)

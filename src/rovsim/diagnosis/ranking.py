@@ -1,0 +1,104 @@
+"""What was found, in order: each selected effect's worth, and every effect by itself."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.desk import Desk, Proposal
+from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.hypothesis import Term
+from rovsim.diagnosis.search import Rival
+from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.windows import window_errors
+from rovsim.model import Model
+from rovsim.thrust import Between
+
+
+@dataclass(frozen=True, eq=False)
+class Selected:
+    """A selected effect, the share of the base's error that it removes, how sure its name is."""
+
+    term: Term
+    std: dict[str, float]
+    error_reduction: float
+    probability: float
+
+
+@dataclass(frozen=True, eq=False)
+class Ranked:
+    """One effect by itself on top of the base."""
+
+    term: Term
+    error_reduction: float
+    probability: float
+
+
+def selected(
+    found: Fit, rivals: Sequence[Rival], watches: Sequence[Watch], between: Between
+) -> list[Selected]:
+    """Selected effects, the one that removes most error first, then the next on top of it."""
+    left, order, errors = list(range(len(found.hypothesis.terms))), [], []
+    model = found.hypothesis.base
+    start = _error([model], watches, between)[0]
+    now = start
+    while left:
+        tried = [model + found.hypothesis.terms[i].effect for i in left]
+        after = _error(tried, watches, between)
+        best = int(np.argmin(after))
+        order.append(left.pop(best))
+        errors.append((now - after[best]) / start)
+        model, now = tried[best], after[best]
+    return [
+        Selected(
+            found.hypothesis.terms[i], _std(found, i), float(gain), _probability(found, i, rivals)
+        )
+        for i, gain in zip(order, errors, strict=True)
+    ]
+
+
+def _error(models: Sequence[Model], watches: Sequence[Watch], between: Between) -> Array:
+    return np.array(
+        [np.nan if e is None else e for e in window_errors(models, watches, between)[1]]
+    )
+
+
+def _std(found: Fit, i: int) -> dict[str, float]:
+    """Standard deviations by name; within its grain a value could be anywhere (uniform: / √12)."""
+    term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
+    return {
+        p.name: float(np.hypot(found.std[k] * p.scale, p.grain / np.sqrt(12.0)))
+        for p, k in zip(term.parameters, columns, strict=True)
+    }
+
+
+def _probability(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
+    """Of this name among all that were tried in its place, from their likelihoods."""
+    name = found.hypothesis.terms[i].id
+    odds = sum(np.exp(-0.5 * min(r.deficit, 700.0)) for r in rivals if r.instead_of == name)
+    return float(1.0 / (1.0 + odds))
+
+
+def ranking(desk: Desk, nothing: Fit, alone: Sequence[Proposal], found: Fit) -> list[Ranked]:
+    """Every effect by itself: those refitted first, by their likelihood, then the others' promise.
+
+    The probability is that of the name if one effect alone is missing, or none.
+    """
+    named = {term.id for term in found.hypothesis.terms}
+    starts = [(p, nothing.hypothesis.with_term(p.term)) for p in alone]
+    fits = [desk.fit(h) for p, h in starts if p.term.id in named or desk.knows(h)]
+    fits.sort(key=desk.score, reverse=True)
+    terms = [one.hypothesis.terms[0] for one in fits]
+    terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
+    gain = np.array([0.5 * (desk.score(one) - desk.score(nothing)) for one in fits])
+    weight = np.exp(gain - np.max(gain, initial=0.0))
+    share = weight / (weight.sum() + np.exp(-np.max(gain, initial=0.0)))
+    observatory, base = desk.observatory, nothing.hypothesis.base
+    models = [base, *(base + term.effect for term in terms)]
+    error = _error(models, observatory.watches, observatory.between)
+    sure = np.append(share, np.zeros(len(terms) - len(fits)))
+    return [
+        Ranked(term, float(max(0.0, 1.0 - e / error[0])), float(p))
+        for term, e, p in zip(terms, error[1:], sure, strict=True)
+    ]

@@ -1,0 +1,110 @@
+"""Four mistakes of the thesis' public code, repeated on purpose: what each of them costs.
+
+wrong clock       bins of about 0.157 s replayed as if each lasted 0.1 s
+copied runs       a "6-DoF" training set that holds copies of a 3-DoF run
+lost data         a Gaussian process loaded with its hyperparameters but not its data
+scaled twice      features that are scaled before they reach a residual that scales them
+"""
+
+from dataclasses import replace
+from typing import Callable, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.model import Model
+from rovsim.replay import OPEN_LOOP, ReplaySettings, replay
+from rovsim.residual.learner import LearnerSettings, Trained, train
+from rovsim.scores import errors, normalised, rms
+from rovsim.signals.binned import backward_difference
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.training import Samples, samples
+
+SAID = 0.1  # s, the bin that the public code replays with
+FAR = 1e6  # standard deviations from all that was seen: there a process has no data either
+
+
+def on_wrong_clock(motion: Motion, length: float = SAID) -> Motion:
+    """A binned run as if each bin lasted `length` s; its commands move along."""
+    edges = np.append(motion.time, motion.end)
+    said = motion.time[0] + length * np.arange(len(edges))
+    arrival = np.interp(motion.commands.time, edges, said)
+    return replace(
+        motion, time=said[:-1], end=float(said[-1]),
+        nu_dot=backward_difference(motion.nu, said[:-1]),
+        commands=replace(motion.commands, time=arrival),
+    )  # fmt: skip
+
+
+def replay_error(
+    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
+) -> float | None:
+    """Velocity RMSE of an open-loop replay, each axis in units of how much it moves, their mean."""
+    found = replay(model, motion, signals, settings).horizons[OPEN_LOOP]
+    return normalised([motion], rms(errors(motion, found).nu))
+
+
+def explained(predict: Callable[[Array], Array], X: Array, Y: Array) -> float:
+    """Share of residual accelerations Y (n, 6) foretold, mean over axes; below 0: worse."""
+    return float(np.mean(1.0 - np.mean((Y - predict(X)) ** 2, axis=0) / np.mean(Y**2, axis=0)))
+
+
+def mistakes(
+    model: Model,
+    runs: Sequence[Motion],
+    test: Motion,
+    learners: dict[str, LearnerSettings],
+    signals: SignalSettings,
+    settings: ReplaySettings,
+) -> dict[str, dict[str, float | None]]:
+    """Each mistake on one held-out run: `right` and `wrong`, and `unit`, what they measure.
+
+    Args:
+        model: a model without a residual.
+        runs: the training runs, of both controls.
+        test: the run they are judged on.
+        learners: settings of `knn` and `gp`.
+        signals: the signal chain.
+        settings: of the replays.
+    """
+    found = {m.run.id: samples(model, m, signals, settings) for m in runs}
+    asked = samples(model, test, signals, settings)
+
+    def taught(kind: str, names: Sequence[str]) -> tuple[Trained, Array]:
+        own = [found[name] for name in names]
+        return _trained(own, learners[kind]), asked.features(learners[kind].features)
+
+    gp, X = taught("gp", list(found))
+    scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in found.values()]), axis=0), 1e-9)
+    same = [m.run.id for m in runs if m.run.control == "3dof"]
+    real = [m.run.id for m in runs if m.run.control == "6dof"]
+    told = {
+        "wrong clock": (
+            replay_error(model, test, signals, settings),
+            replay_error(model, on_wrong_clock(test), signals, settings),
+        ),
+        "lost data": (
+            explained(gp.predict, X, asked.a_res),
+            explained(gp.predict, X + FAR * scale, asked.a_res),
+        ),
+        "scaled twice": (
+            explained(gp.predict, X, asked.a_res),
+            explained(gp.predict, X / scale, asked.a_res),
+        ),
+    }
+    if same and real:
+        (knn, K), (copy, _) = taught("knn", real), taught("knn", same * len(real))
+        told["copied runs"] = (
+            explained(knn.predict, K, asked.a_res), explained(copy.predict, K, asked.a_res)
+        )  # fmt: skip
+    return {name: {"right": right, "wrong": wrong} for name, (right, wrong) in told.items()}
+
+
+def _X(one: Samples, residual: Trained) -> Array:
+    return one.features(residual.features)
+
+
+def _trained(runs: Sequence[Samples], learner: LearnerSettings) -> Trained:
+    X = np.concatenate([s.features(learner.features) for s in runs])
+    return train(X, np.concatenate([s.a_res for s in runs]), learner, seed=0)

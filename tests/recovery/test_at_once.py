@@ -1,0 +1,68 @@
+"""Where all of it is wrong at once: what the demands command, and how much drag there is."""
+
+import numpy as np
+import pytest
+
+from rovsim import AXES
+from rovsim.campaign import load_campaign
+from rovsim.diagnosing import Runs
+from rovsim.diagnosis.at_once import at_once
+from rovsim.diagnosis.candidates import candidates
+from rovsim.diagnosis.desk import Desk
+from rovsim.diagnosis.diagnose import FIRST_NOISE
+from rovsim.diagnosis.evidence import Observatory
+from rovsim.diagnosis.hypothesis import Hypothesis
+from rovsim.diagnosis.library import library
+from rovsim.diagnosis.replayed import replayed
+from rovsim.diagnosis.settings import SearchSettings
+from rovsim.model import EffectEntry, nominal
+from rovsim.recording import read_run
+from rovsim.signals.chain import SignalSettings, differentiated, filtered, resampled
+from rovsim.tank.campaign import make_campaign
+from rovsim.tank.settings import Log, TankRun, TankSettings
+from rovsim.vehicle import campaign_vehicle
+
+GAIN = dict(zip(AXES, (0.9, 0.8, 0.7, 2.0, 2.0, 2.0), strict=True))
+WIDTH = dict(zip(AXES, (1.5, 1.5, 1.5, 4.0, 4.0, 4.0), strict=True))
+HIDDEN = (
+    EffectEntry(
+        effect="onboard_control",
+        parameters={f"gain_{a}": g for a, g in GAIN.items()}
+        | {f"bandwidth_{a}": w for a, w in WIDTH.items()},
+    ),
+    EffectEntry(effect="quadratic_damping", parameters={"surge": -90.0, "sway": -150.0}),
+)
+
+
+@pytest.fixture(scope="module")
+def watched(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("at_once")
+    run = TankRun(id="a", control="6dof", split="train")
+    settings = TankSettings(runs=(run,), duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
+    make_campaign(settings, folder / "raw")
+    campaign = load_campaign(folder / "raw")
+    stage = resampled(read_run(campaign, "a")[0], SignalSettings())
+    motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
+    watches = Runs({"a": motion}, {"a": stage}).watches("train", 0.01)
+    return nominal(campaign_vehicle(campaign)), watches
+
+
+def test_loops_and_drag_that_are_all_wrong_come_back_together(watched):
+    base, watches = watched
+    observatory = Observatory.built(watches, base, FIRST_NOISE, "held")
+    some = [c for c in candidates(watches) if c.effect.id in ("added_mass", "linear_damping")]
+    known = library(observatory, Hypothesis(base), some)
+    desk = Desk(observatory, known, FIRST_NOISE, SearchSettings())
+    desk, found, rivals = at_once(desk, base, [])
+    terms = {t.id: t.effect for t in found.hypothesis.terms}
+    assert "thruster_gain" not in terms
+    assert all(r.deficit > 0.0 for r in rivals)
+    for axis in AXES:
+        asked = terms["onboard_control"][f"gain_{axis}"]
+        assert asked == pytest.approx(GAIN[axis], rel=0.2), axis
+    again = replayed(found, desk.observatory)
+    assert [t.id for t in again.hypothesis.terms] == [t.id for t in found.hypothesis.terms]
+    assert np.isfinite(again.std).all()
+    for one, other in zip(again.hypothesis.terms, found.hypothesis.terms, strict=True):
+        for name in one.free:
+            assert one.effect[name] == pytest.approx(other.effect[name], rel=0.5, abs=2.0)
