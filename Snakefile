@@ -21,6 +21,7 @@ R = study.folder
 
 wildcard_constraints:
     run="[^/]+",
+    fold="[^/]+",
     model="[^/]+",
     base="(effects\\+)?",
 
