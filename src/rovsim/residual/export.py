@@ -65,10 +65,20 @@ def export_neighbours(
     """
     header = _header(NEIGHBOURS, features, len(Z), Y.shape[1], k)
     header[WEIGHTING] = DISTANCE if weights == "distance" else UNIFORM
-    tree = packed_tree(Z)
-    rows = _row(tree.order, filled(len(Z), LANES))
-    parts = [header, scaling.shift, scaling.scale, tree.boxes, side_by_side(Z[tree.order]), rows]
-    return np.concatenate([part.ravel() for part in (*parts, Y[tree.order])])
+    axes = principal_axes(Z)
+    turned = Z @ axes.T
+    tree = packed_tree(turned)
+    parts = [
+        header, scaling.shift, scaling.scale, _sheet(axes, filled(len(axes), PASS), len(axes)),
+        tree.boxes, side_by_side(turned[tree.order]),
+        _row(tree.order, filled(len(Z), LANES)), Z[tree.order], Y[tree.order],
+    ]  # fmt: skip
+    return np.concatenate([part.ravel() for part in parts])
+
+
+def principal_axes(Z: Array) -> Array:
+    """Principal axes (d, d) of points (n, d), the widest first."""
+    return np.linalg.eigh(np.cov(Z.T, ddof=0).reshape(Z.shape[1], -1))[1].T[::-1]
 
 
 def export_expansion(
@@ -169,7 +179,7 @@ def _size(*header: float) -> int:
     length, wide, rank = filled(n, LANES), filled(d, PASS), filled(int(header[RANK]), PASS)
     if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MOST_NEIGHBOURS):
         boxes = sum(tree_levels(n)[1:]) * 2 * wide * LANES
-        return HEADER + 2 * d + boxes + length * (wide + 1) + n * m
+        return HEADER + (2 + wide) * d + boxes + length * (wide + 1) + n * (d + m)
     sure = header[SURE] <= header[RANK] <= n <= MOST_POINTS
     if header[KIND] == EXPANSION and count in (1, m) and n >= 1 and sure:
         share = m // count

@@ -1,7 +1,8 @@
 """Where things stand in an exported residual: one flat float64 array, read by compiled kernels.
 
     header     FORMAT, KIND, BLOCKS, WIDTH d, POINTS n, OUTPUTS m, COUNT, WEIGHTING, RANK, SURE
-    neighbours (COUNT = k): scaling, boxes (b, 2, d', LANES), points, rows (n'), targets (n, m)
+    neighbours (COUNT = k): scaling, axes (d', d), boxes (b, 2, d', LANES) and points along these
+               axes, rows (n'), points (n, d) as given, targets (n, m)
     expansion  (COUNT = p): mean (m), then p parts:
                identity, limit, prior (m / p), scaling, points, spectrum (r'), weights (w', n'),
                vectors (r', n')

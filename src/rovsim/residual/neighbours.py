@@ -2,8 +2,11 @@
 
 The tree has LANES children a node (`rovsim.residual.tree` builds it), so that the distances to all
 boxes of a node, and to all points of a leaf, are computed side by side. The nearest box is opened
-first; a box farther away than the k-th nearest point is not opened (Roussopoulos et al. 1995). A
-box's distance is summed in the order of a point's: rounding never makes it the larger of the two.
+first; a box farther away than the k-th nearest point is not opened (Roussopoulos et al. 1995).
+
+Features hang together, so boxes along their principal axes are much smaller: tree and points are
+turned into these. What looks near enough there, rounding allowed for, is measured once more as it
+was given, so that turning changes neither an order nor a distance.
 """
 
 from math import inf, nan, sqrt
@@ -23,6 +26,7 @@ from rovsim.residual.layout import (
     WIDTH,
 )
 
+_ROUNDING = 1e-12  # of squared lengths: far above what turning 21 features rounds, far below a gap
 _OPEN = MOST_LEVELS * LANES  # boxes that wait to be opened: at most all of one node a level
 
 
@@ -90,13 +94,31 @@ def _open_node(s, child, last, limit, waiting, index, size):
 
 
 @exact
-def _look_into_leaf(points, rows, b, n, x, s, near, row, place, k):
+def _allowed(distance, size):
+    """Squared distance up to which a turned point may be this near; `size`: the query's square."""
+    return distance + _ROUNDING * (distance + size)
+
+
+@exact
+def _measured(given, at, z):
+    """Squared distance of z to a point as it was given."""
+    total = 0.0
+    for j in range(given.shape[1]):
+        e = given[at, j] - z[j]
+        total += e * e
+    return total
+
+
+@exact
+def _look_into_leaf(points, given, rows, b, n, x, z, size, s, near, row, place, k):
     """Put the points of a leaf that are near enough into the list."""
     first = b * LANES
-    if _within(points, b, x, near[k - 1], s):
+    if _within(points, b, x, _allowed(near[k - 1], size), s):
         for i in range(LANES):
-            if s[i] <= near[k - 1] and s[i] < inf and first + i < n:
-                _insert(near, row, place, k, s[i], rows[first + i], first + i)
+            if first + i < n and s[i] < inf and s[i] <= _allowed(near[k - 1], size):
+                distance = _measured(given, first + i, z)
+                if distance <= near[k - 1]:
+                    _insert(near, row, place, k, distance, rows[first + i], first + i)
 
 
 @exact
@@ -111,8 +133,14 @@ def _levels(n, counts, offsets):
 
 
 @exact
-def _search(boxes, points, rows, n, x, scratch, near, row, place, k):
-    """Squared distances, training rows and places of the k points nearest to x, nearest first."""
+def _search(boxes, points, given, rows, n, x, z, scratch, near, row, place, k):
+    """Squared distances, training rows and places of the k points nearest to z, nearest first.
+
+    `x` is z, turned as `boxes` and `points` are.
+    """
+    size_of_query = 0.0
+    for j in range(given.shape[1]):
+        size_of_query += z[j] * z[j]
     s, waiting, index = scratch[:LANES], scratch[LANES:], scratch[LANES + _OPEN :]
     level, counts = scratch[LANES + 2 * _OPEN :], scratch[LANES + 3 * _OPEN :]
     offsets = counts[MOST_LEVELS + 2 :]
@@ -122,15 +150,18 @@ def _search(boxes, points, rows, n, x, scratch, near, row, place, k):
     waiting[0], index[0], size = 0.0, 0.0, 1
     while size > 0:
         size -= 1
-        if waiting[size] > near[k - 1]:
+        limit = _allowed(near[k - 1], size_of_query)
+        if waiting[size] > limit:
             continue
         high, own = int(level[size]), int(index[size])
         if high == 0:
-            _look_into_leaf(points, rows, own, n, x, s, near, row, place, k)
+            _look_into_leaf(
+                points, given, rows, own, n, x, z, size_of_query, s, near, row, place, k
+            )
             continue
         _box_distances(boxes, int(offsets[high]) + own, x, s)
         before, last = size, int(counts[high - 1])
-        size = _open_node(s, own * LANES, last, near[k - 1], waiting, index, size)
+        size = _open_node(s, own * LANES, last, limit, waiting, index, size)
         level[before:size] = high - 1
 
 
@@ -160,6 +191,15 @@ def _average(targets, m, near, place, k, out):
 
 
 @exact
+def _turn(axes, z, turned):
+    """Write z (d,) along the axes (d', d) into `turned`."""
+    for i in range(axes.shape[0]):
+        turned[i] = 0.0
+        for j in range(axes.shape[1]):
+            turned[i] += axes[i, j] * z[j]
+
+
+@exact
 def neighbours(data, x, scratch, out):
     """Mean of the nearest targets out (m,) at features x."""
     d, n, m, k = int(data[WIDTH]), int(data[POINTS]), int(data[OUTPUTS]), int(data[COUNT])
@@ -169,16 +209,21 @@ def neighbours(data, x, scratch, out):
         below = (below + LANES - 1) // LANES
         nodes += below
     first = HEADER + 2 * d
+    axes = data[first : first + wide * d].reshape((wide, d))
+    first += wide * d
     last = first + nodes * 2 * wide * LANES
     boxes = data[first:last].reshape((nodes, 2, wide, LANES))
     first, last = last, last + leaves * wide * LANES
     points = data[first:last].reshape((leaves, wide, LANES))
-    rows, targets = data[last : last + leaves * LANES], data[last + leaves * LANES :]
-    z, near, row = scratch[:wide], scratch[LANES:], scratch[LANES + MOST_NEIGHBOURS :]
+    rows, last = data[last : last + leaves * LANES], last + leaves * LANES
+    given, targets = data[last : last + n * d].reshape((n, d)), data[last + n * d :]
+    turned, near, row = scratch[:wide], scratch[LANES:], scratch[LANES + MOST_NEIGHBOURS :]
     place = scratch[LANES + 2 * MOST_NEIGHBOURS :]
-    rest = scratch[LANES + 3 * MOST_NEIGHBOURS :]
+    z = scratch[LANES + 3 * MOST_NEIGHBOURS :][:wide]
+    rest = scratch[2 * LANES + 3 * MOST_NEIGHBOURS :]
     scaled(data, HEADER, d, x, z)
-    _search(boxes, points, rows, n, z, rest, near, row, place, k)
+    _turn(axes, z, turned)
+    _search(boxes, points, given, rows, n, turned, z, rest, near, row, place, k)
     if near[k - 1] == inf:  # x is not finite, or too far away to measure
         out[:m] = nan
         return
