@@ -5,10 +5,11 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study test test-ui ui screenshots check bench bench-ui benchmark-hidden catalogue clean lock
+.PHONY: help setup study thesis test test-ui ui screenshots check bench bench-ui benchmark-hidden catalogue clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
+	@echo "make thesis  the thesis' own runs, each held out once, beside its published numbers"
 	@echo "make ui      the workbench in the browser (CAMPAIGN=DIR opens one)"
 	@echo "make test    every test"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
@@ -29,6 +30,11 @@ setup: .venv/.complete
 
 study: setup
 	$(BIN)/snakemake --cores $(CORES)
+
+# Needs the recordings (docs/thesis.md); puts its tables into that page.
+thesis: setup
+	$(BIN)/snakemake --cores $(CORES) --config overrides="+experiment=kth_tank_2025"
+	$(BIN)/python -m rovsim.report.published results/kth_tank_2025/marks.json docs/thesis.md
 
 test: setup
 	$(BIN)/python -m pytest -n $(CORES)

@@ -2,13 +2,16 @@
 
 import sys
 
+from rovsim.chapter import Chapter
 from rovsim.errors import RovsimError
 from rovsim.study import Study
 
 study = Study(config)
+chapter = Chapter(study)
 try:
     config["effects_file"] = study.effect_files
     study.on_effects
+    chapter.targets
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)
@@ -18,6 +21,7 @@ R = study.folder
 
 wildcard_constraints:
     run="[^/]+",
+    fold="[^/]+",
     model="[^/]+",
     base="(effects\\+)?",
 
@@ -35,6 +39,7 @@ rule all:
         f"{R}/ladder.json",
         f"{R}/tables/ladder.tex",
         f"{R}/tracked.json",
+        chapter.targets,
 
 
 include: "workflow/rules/recordings.smk"
@@ -43,3 +48,8 @@ include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/replay.smk"
 include: "workflow/rules/residuals.smk"
 include: "workflow/rules/results.smk"
+
+
+if chapter.folds:
+
+    include: "workflow/rules/folds.smk"

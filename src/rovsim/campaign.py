@@ -111,6 +111,7 @@ class CampaignFile(Section):
     commands: CommandLog
     runs: Annotated[list[Run], Field(min_length=1)]
     folder: str = ""  # where the recordings lie when they are not beside this file
+    source: str = ""  # where to get them, told when they are missing
 
 
 @dataclass(frozen=True)
@@ -128,6 +129,7 @@ class Campaign:
     runs: tuple[Run, ...]
     file: Path
     folder: Path
+    source: str = ""
 
     def run(self, run_id: str) -> Run:
         """Return the run with that id.
@@ -175,8 +177,7 @@ def load_campaign(path: Path) -> Campaign:
     _check_columns(content.commands, file)
     fields = dict(content) | {"runs": tuple(content.runs), "folder": _folder(content.folder, file)}
     campaign = Campaign(file=file, **fields)
-    for run in campaign.runs:
-        _check_files(campaign, run)
+    _check_files(campaign)
     return campaign
 
 
@@ -236,14 +237,25 @@ def _folder(text: str, file: Path) -> Path:
     return Path(os.path.normpath(file.parent / Path(re.sub(pattern, value, text)).expanduser()))
 
 
-def _check_files(campaign: Campaign, run: Run) -> None:
-    for key in ("mocap", "commands"):
-        path = campaign.folder / getattr(run, key)
-        if not path.is_file():
-            raise BadInput(
-                f"the {key} file of run '{run.id}' is missing: {path}",
-                where=campaign.file,
-                expected=f"that file in {campaign.folder}",
-                remedy=f"Put it there, correct '{key}' of that run, or set 'folder' (or the "
-                "environment variable that it names) to where the recordings are.",
-            )
+def _check_files(campaign: Campaign) -> None:
+    missing = [
+        (key, run.id, path)
+        for run in campaign.runs
+        for key in ("mocap", "commands")
+        if not (path := campaign.folder / getattr(run, key)).is_file()
+    ]
+    if not missing:
+        return
+    key, run_id, first = missing[0]
+    others = dict.fromkeys(path.name for _, _, path in missing if path != first)
+    so_are = f"; so are {', '.join(others)}" if others else ""
+    remedy = (
+        f"Put {'them' if others else 'it'} there, correct '{key}' of that run, or set 'folder' (or "
+        "the environment variable that it names) to where the recordings are."
+    )
+    raise BadInput(
+        f"the {key} file of run '{run_id}' is missing: {first}{so_are}",
+        where=campaign.file,
+        expected=f"{'these files' if others else 'that file'} in {campaign.folder}",
+        remedy=f"{remedy} {campaign.source}".strip(),
+    )

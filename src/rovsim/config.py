@@ -3,12 +3,13 @@
 from pathlib import Path
 from typing import Any, Literal, Sequence
 
-from pydantic import Field, PositiveFloat, PositiveInt
+from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.errors import BadInput, nearest
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import LearnerSettings, learner_settings
+from rovsim.residual.storage import Control
 from rovsim.signals.chain import SignalSettings
 from rovsim.strict import Section, checked
 from rovsim.tank.settings import TankSettings
@@ -20,8 +21,27 @@ class StudySettings(Section):
     """Which residuals the workflow trains, on which runs; which also on top of the effects."""
 
     residuals: tuple[str, ...] = ("knn", "gp", "svgp")
-    controls: tuple[Literal["3dof", "6dof"], ...] = ("3dof", "6dof")
+    controls: tuple[Control, ...] = ("3dof", "6dof")
     on_effects: tuple[str, ...] = ("knn_6dof", "gp_6dof")
+
+
+class FoldSettings(Section):
+    """The chapter in which each run is held out once.
+
+    `published` is a csv beside the recordings, of errors that others reached on the same runs. Each
+    residual is trained on the nominal model and on the effects, on the runs of each control.
+    """
+
+    leave_one_run_out: bool = False
+    published: str | None = None
+    residuals: tuple[str, ...] = ("knn", "gp")
+    controls: tuple[Control, ...] = ("6dof",)
+
+    @model_validator(mode="after")
+    def _only_held_out_runs(self) -> "FoldSettings":
+        if self.published and not self.leave_one_run_out:
+            raise ValueError("published numbers only with leave_one_run_out=true")
+        return self
 
 
 class TimingSettings(Section):
@@ -71,7 +91,7 @@ class Settings(Section):
     output: Literal["text", "json", "quiet"] = "text"
     port: int = Field(8501, ge=1, le=65535)
     open: bool = True
-    control: Literal["3dof", "6dof"]
+    control: Control
     seed: int = Field(ge=0)
     signals: SignalSettings
     replay: ReplaySettings
@@ -82,6 +102,7 @@ class Settings(Section):
     effects: list[str] | None = None
     to: str = "nominal"
     study: StudySettings
+    folds: FoldSettings
     timing: TimingSettings
     bench: BenchSettings
     hidden: HiddenSettings

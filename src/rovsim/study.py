@@ -14,6 +14,7 @@ from rovsim.ladder import EFFECTS
 from rovsim.provenance import digest, own_digest, provenance
 from rovsim.residual.learner import learner
 from rovsim.tank.campaign import SEALED, describe
+from rovsim.training import flown_with
 
 BASELINES = ("zero_acceleration", "nominal")
 PHYSICS = ("refitted", EFFECTS)
@@ -62,7 +63,8 @@ class Study:
         return self.campaign_path is None
 
     @cached_property
-    def _campaign(self) -> Campaign | CampaignFile:
+    def campaign(self) -> Campaign | CampaignFile:
+        """The user's campaign, or what the synthetic one will be."""
         if self.campaign_path is not None:
             return load_campaign(Path(self.campaign_path))
         return CampaignFile.model_validate(describe(self.settings.tank))
@@ -70,7 +72,7 @@ class Study:
     @property
     def name(self) -> str:
         """Folder under results/."""
-        return self._campaign.name
+        return self.campaign.name
 
     @cached_property
     def folder(self) -> str:
@@ -79,11 +81,11 @@ class Study:
 
     def raw(self, run: str = "") -> list[str]:
         """Raw files: of one run, with the campaign file, or all that the tank writes."""
-        if isinstance(self._campaign, Campaign):
-            one = self._campaign.run(run)
-            paths = [self._campaign.mocap_path(one), self._campaign.commands_path(one)]
-            return [str(self._campaign.file), *dict.fromkeys(str(path) for path in paths)]
-        runs = [r for r in self._campaign.runs if run in ("", r.id)]
+        if isinstance(self.campaign, Campaign):
+            one = self.campaign.run(run)
+            paths = [self.campaign.mocap_path(one), self.campaign.commands_path(one)]
+            return [str(self.campaign.file), *dict.fromkeys(str(path) for path in paths)]
+        runs = [r for r in self.campaign.runs if run in ("", r.id)]
         files = [name for r in runs for name in (r.mocap, r.commands)]
         extra = [] if run else [SEALED]
         return [f"{self.folder}/raw/{name}" for name in ["campaign.yaml", *extra, *files]]
@@ -95,7 +97,7 @@ class Study:
 
     def runs(self, split: str = "") -> list[str]:
         """Ids of the runs, all or of one split."""
-        return [run.id for run in self._campaign.runs if split in ("", run.split)]
+        return [run.id for run in self.campaign.runs if split in ("", run.split)]
 
     @cached_property
     def trained(self) -> list[str]:
@@ -112,8 +114,7 @@ class Study:
                     expected="runs of both splits: train to learn from, test to report on",
                     remedy="Give each run of campaign.yaml its split.",
                 )
-        found = {run.control for run in self._campaign.runs if run.split == "train"}
-        controls = [c for c in self.settings.study.controls if c in found]
+        controls = [c for c in self.settings.study.controls if self.control_runs(c)]
         kinds = self.settings.study.residuals
         for kind in kinds:
             learner(kind, "study.residuals")
@@ -149,7 +150,7 @@ class Study:
 
     def control_runs(self, control: str) -> list[str]:
         """Train runs of one control."""
-        return [r.id for r in self._campaign.runs if r.split == "train" and r.control == control]
+        return [r.id for r in self.campaign.runs if r.split == "train" and flown_with(control, r)]
 
     def learner(self, kind: str) -> dict[str, Any]:
         """Settings of one residual, whichever the configuration chose as default."""

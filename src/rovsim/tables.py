@@ -19,6 +19,7 @@ from rovsim.figures.marks import (
 )
 from rovsim.figures.pooled import horizon_text, pooled
 from rovsim.files import write_text
+from rovsim.marks import METRICS
 
 QUANTITIES = {
     "velocity_rmse": ("velocity RMSE", VELOCITY_UNITS),
@@ -142,6 +143,28 @@ def ladder_table(ladder: Mapping[str, Any]) -> Table:
         label="tab:ladder",
         columns=columns,
         names=[s["model"] for s in steps],
+        values=np.array(values, dtype=float).reshape(-1, len(columns)),
+    )
+
+
+def marks_table(marks: Mapping[str, Any]) -> Table:
+    """One row per model of `marks.json`, others' last; the metrics apart only in the CSV."""
+    models = marks.get("models", {})
+    columns = [Column("not_below", "not below", "%"), Column("ratio", "all", "–")]
+    columns += [Column(f"{axis}_ratio", axis, "–") for axis in AXES]
+    columns += [Column(f"{metric}_ratio", metric, "–", printed=False) for metric in METRICS]
+    values = [
+        [100 * (1 - number(m["share_below"])), number(m["geometric_mean"]), *vector(m["by_axis"]),
+         *(number(m["by_metric"][k]["geometric_mean"]) for k in METRICS)]
+        for m in models.values()
+    ]  # fmt: skip
+    return Table(
+        caption="Held-out runs against the published numbers: cells (run, axis, metric) in which a "
+        "model is not below the smallest published error, and the geometric mean of its error "
+        "divided by that, over all cells and per axis. Lowest of each column in bold.",
+        label="tab:marks",
+        columns=columns,
+        names=list(models),
         values=np.array(values, dtype=float).reshape(-1, len(columns)),
     )
 

@@ -4,7 +4,7 @@ Teacher-forced: the model is evaluated at the measured state, a_res = a_real - a
 """
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import Any, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -157,13 +157,18 @@ def at_samples(model: Model, motion: Motion, settings: ReplaySettings) -> Inputs
     return _over_bins(found, np.clip(nearest, 0, len(steps.edges) - 1))
 
 
+def flown_with(control: str, run: Any) -> bool:
+    """Whether a run (with its `control`) is one of those that `control` means; `all` means each."""
+    return control in ("all", run.control)
+
+
 def training_runs(motions: Sequence[Motion], control: str) -> list[Motion]:
     """The runs a residual of this control may learn from.
 
     Raises:
         BadInput: the campaign has none.
     """
-    chosen = [m for m in motions if m.run.split == "train" and m.run.control == control]
+    chosen = [m for m in motions if m.run.split == "train" and flown_with(control, m.run)]
     if chosen:
         return chosen
     runs = ", ".join(f"{m.run.id} ({m.run.control}, {m.run.split})" for m in motions)

@@ -54,7 +54,8 @@ def test_it_takes_any_models(name, models, tmp_path):
 def test_nothing_measured_is_said_not_crashed(name, tmp_path):
     content = study()
     for key in (
-        "comparison", "growth", "ladder", "timing", "quality", "where", "diagnosis", "parts"
+        "comparison", "growth", "ladder", "timing", "quality", "where", "diagnosis", "marks",
+        "parts",
     ):  # fmt: skip
         content[key] = {}
     for key in ("nu", "nu_dot", "eta", "missing"):
@@ -115,6 +116,17 @@ def test_the_map_frames_the_findings():
     model = list(content["where"]["models"].values())[-1]
     framed = [p for p in drawn("where_map", content).axes[0].patches if isinstance(p, Rectangle)]
     assert len(framed) == len(model["findings"]) > 0
+
+
+def test_each_cell_of_the_published_figure_is_error_over_mark():
+    found = study()["marks"]
+    cells = [cell for cell in found["cells"] if cell["metric"] == "velocity_mae"]
+    axes = drawn("against_published", {"marks": found}).axes[1]
+    name = next(iter(found["models"]))
+    expected = [min(cell["errors"][name] / cell["mark"], 4.0) for cell in cells]
+    assert list(axes.lines[0].get_ydata()) == pytest.approx(expected)
+    labels = [label.get_text() for label in axes.get_xticklabels()]
+    assert labels[:6] == ["surge", "sway", "heave", "(roll)", "pitch", "yaw"]
 
 
 def test_an_unknown_figure_names_the_nearest():

@@ -10,7 +10,9 @@ import pytest
 from rovsim import AXES
 from rovsim.figures import kind
 from rovsim.figures.style import save
-from rovsim.report import page, terminal
+from rovsim.files import write_json
+from rovsim.report import page, published, terminal
+from rovsim.report.marked import BEGIN, END
 from rovsim.report.verdict import verdict
 from rovsim.tables import errors_table, escaped, ladder_table
 from synthetic_study import study
@@ -131,6 +133,37 @@ def test_too_little_data_is_a_verdict_without_an_error():
     said = verdict(found)
     assert said.remarks[0].startswith("No test run could be used")
     assert not any("noise" in remark for remark in said.remarks)
+
+
+def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
+    found = content["marks"]
+    html = page.render(page.ReportInputs("x", marks=found))
+    assert re.findall(r"<h2>(.*?)</h2>", html) == ["Against the published numbers"]
+    one = found["models"]["gp_6dof"]
+    assert f'data-value="{one["geometric_mean"]}"' in html
+    path = tmp_path / "page.md"
+    path.write_text(f"# Words\n\n{BEGIN}\nold\n{END}\nmore words\n")
+    source = tmp_path / "marks.json"
+    write_json(source, found)
+    published.main([str(source), str(path)])
+    text = path.read_text()
+    assert "old" not in text
+    assert "more words" in text
+    row = next(line for line in text.splitlines() if line.startswith("| gp_6dof |"))
+    assert f"{one['below']} of {one['cells']}" in row
+    cells = [c for c in found["cells"] if c["metric"] == "velocity_mae"]
+    assert text.split("### Velocity MAE")[1].split("###")[0].count("| 3dof-2 |") == len(cells) / 2
+
+
+def test_effects_and_residual_are_said_cell_by_cell():
+    missed = [{"run": "a", "axis": "yaw", "metric": "velocity_mae", "ratio": 1.25}]
+    missed += [{"run": "b", "axis": "yaw", "metric": "acceleration_rmse", "ratio": None}]
+    one = {"cells": 24, "below": 22, "geometric_mean": None, "not_below": missed}
+    (sentence,) = published.said({"models": {"effects+knn_6dof": one, "nominal": one}})
+    assert sentence == (
+        "effects+knn_6dof: 22 of 24 cells below the mark, geometric mean of the ratios –. "
+        "Not below: a yaw velocity MAE (1.25), b yaw acceleration RMSE (–)."
+    )
 
 
 def test_an_empty_study_is_a_page_too():

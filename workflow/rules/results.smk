@@ -1,5 +1,8 @@
 from rovsim.evidence import ONCE, PER_RUN
 
+# Only a chapter with published numbers has marks.
+MARKS = [f"{R}/marks.json"] if chapter.published else []
+
 
 rule compare:
     "All scores in one file, the ladder, and how errors grow."
@@ -28,7 +31,7 @@ rule compare:
 
 
 # One rule a figure, so that each has its own caption and re-runs on its own edits.
-for figure in ONCE:
+for figure in chapter.once:
 
     rule:
         name:
@@ -40,6 +43,7 @@ for figure in ONCE:
             timing=f"{R}/timing.json",
             where=f"{R}/where.json",
             diagnosis=f"{R}/diagnosis.json",
+            marks=MARKS if ONCE[figure] == "marks" else [],
             quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         output:
             png=report(
@@ -119,8 +123,11 @@ rule report:
         timing=f"{R}/timing.json",
         where=f"{R}/where.json",
         diagnosis=f"{R}/diagnosis.json",
+        marks=MARKS,
         quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
-        figures=expand(f"{R}/figures/{{name}}.png", name=[*ONCE, *study.figures()]),
+        figures=expand(
+            f"{R}/figures/{{name}}.png", name=[*chapter.once, *study.figures()]
+        ),
     output:
         report(f"{R}/report.html", caption="../report/report.rst", category="Study"),
     log:
@@ -142,7 +149,7 @@ rule track:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
         diagnosis=f"{R}/diagnosis.json",
-        figures=expand(f"{R}/figures/{{name}}.png", name=ONCE),
+        figures=expand(f"{R}/figures/{{name}}.png", name=chapter.once),
         report=f"{R}/report.html",
         models=expand(f"{R}/models/{{model}}/model.yaml", model=study.files),
     output:

@@ -21,8 +21,9 @@ if __name__ == "__main__":
         main(
             figure=snakemake.params.figure,
             contents={
-                name: Path(snakemake.input[name])
-                for name in ("comparison", "ladder", "growth", "timing", "where", "diagnosis")
+                name: Path(str(path))
+                for name, path in snakemake.input.items()
+                if path and name != "quality"
             },
             quality=dict(
                 zip(snakemake.params.runs, map(Path, snakemake.input.quality), strict=True)

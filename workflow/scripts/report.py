@@ -29,8 +29,9 @@ if __name__ == "__main__":
         main(
             campaign=snakemake.params.campaign,
             contents={
-                name: Path(snakemake.input[name])
-                for name in ("comparison", "ladder", "timing", "where", "diagnosis")
+                name: Path(str(snakemake.input[name]))
+                for name in ("comparison", "ladder", "timing", "where", "diagnosis", "marks")
+                if snakemake.input[name]
             },
             quality=dict(
                 zip(snakemake.params.runs, map(Path, snakemake.input.quality), strict=True)

@@ -6,7 +6,7 @@ from typing import Any, Mapping
 from rovsim.bench.plots import draw_accuracy, draw_sizes
 from rovsim.figures.marks import significant
 from rovsim.figures.style import save
-from rovsim.report.marked import replace_tables
+from rovsim.report.marked import replace_tables, table
 
 PLOTS = {
     "bench_sizes": "Median and 99.9th percentile of one prediction against the number of points.",
@@ -36,17 +36,12 @@ def text(content: Mapping[str, Any]) -> str:
     return "\n\n".join(parts)
 
 
-def _table(head: list[str], rows: list[list[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
 def _replay(replay: Mapping[str, float]) -> str:
     rows = [
         [name.removesuffix("_steps_per_s").replace("_", " "), f"{value:,.0f}"]
         for name, value in replay.items()
     ]
-    return _table(["replay", "RK4 steps a second"], rows)
+    return table(["replay", "RK4 steps a second"], rows)
 
 
 def _inference(inference: Mapping[str, Any]) -> str:
@@ -61,7 +56,7 @@ def _inference(inference: Mapping[str, Any]) -> str:
         gap = f"{gaps[key]:.1e}" if key in gaps else ""
         late = str(stats["misses"]["1000"])
         rows.append([name, points, str(stats["calls"]), *times, late, ratio, gap])
-    return _table(head, rows)
+    return table(head, rows)
 
 
 def _against(inference: Mapping[str, Any], what: str) -> dict[str, float]:
@@ -82,4 +77,4 @@ def _accuracy(rows: list[Mapping[str, Any]]) -> str:
          f"{row['unseen']['mean']:.3f}", f"{row['unseen']['worst']:.3f}"]
         for row in rows
     ]  # fmt: skip
-    return _table(head, lines)
+    return table(head, lines)

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from rovsim.errors import BadInput, nearest
 
-SECTIONS = ("verdict", "where", "compare", "ladder", "timing", "quality")
+SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "quality")
 
 
 @dataclass(frozen=True)

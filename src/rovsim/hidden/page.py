@@ -3,6 +3,7 @@
 from typing import Any, Mapping, Sequence
 
 from rovsim.hidden.case import SEEDS
+from rovsim.report import marked
 
 KIND_COLUMNS = {
     "cases": "cases", "verdict": "verdict right", "first": "first name right",
@@ -39,9 +40,8 @@ def table(rows: Mapping[str, Mapping[str, Any]], head: str, columns: Mapping[str
     """One Markdown table; empty without rows."""
     if not rows:
         return ""
-    lines = [[head, *columns.values()], ["---"] * (len(columns) + 1)]
-    lines += [[name, *(shown(k, row.get(k)) for k in columns)] for name, row in rows.items()]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    lines = [[name, *(shown(k, row.get(k)) for k in columns)] for name, row in rows.items()]
+    return marked.table([head, *columns.values()], lines)
 
 
 def shown(key: str, value: Any) -> str:

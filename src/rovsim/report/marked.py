@@ -1,11 +1,18 @@
 """Pages of docs/ with results in them: tables between two marks, the words around them by hand."""
 
 from pathlib import Path
+from typing import Iterable, Sequence
 
 from rovsim.errors import BadInput
 from rovsim.files import read_text, write_text
 
 BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def replace_tables(path: Path, text: str) -> None:

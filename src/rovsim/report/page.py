@@ -15,9 +15,10 @@ from rovsim.figures.inference_time import RATES
 from rovsim.figures.marks import AXES, number, significant
 from rovsim.files import write_text
 from rovsim.provenance import leaves
+from rovsim.report.published import said
 from rovsim.report.sentences import summary
 from rovsim.report.verdict import verdict
-from rovsim.tables import Table, errors_table, ladder_table
+from rovsim.tables import Table, errors_table, ladder_table, marks_table
 
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
@@ -70,8 +71,8 @@ class Picture:
 class ReportInputs:
     """Everything the report shows; a section without content is left out.
 
-    `comparison`, `ladder`, `timing`, `where`, `diagnosis`: contents of the JSON files of those
-    names. `quality`: the quality reports by run. `pictures`: in the order of appearance.
+    `comparison`, `ladder`, `timing`, `where`, `diagnosis`, `marks`: contents of the JSON files of
+    those names. `quality`: the quality reports by run. `pictures`: in the order of appearance.
     `provenance`: nested plain values (settings, code digest, versions).
     """
 
@@ -84,6 +85,7 @@ class ReportInputs:
     provenance: Mapping[str, Any] = field(default_factory=dict)
     where: Mapping[str, Any] = field(default_factory=dict)
     diagnosis: Mapping[str, Any] = field(default_factory=dict)
+    marks: Mapping[str, Any] = field(default_factory=dict)
 
 
 def render(inputs: ReportInputs) -> str:
@@ -105,6 +107,8 @@ def render(inputs: ReportInputs) -> str:
         where=inputs.where.get("models", {}),
         errors=_errors(inputs.comparison) if inputs.comparison else [],
         ladder=ladder_table(inputs.ladder),
+        marks=marks_table(inputs.marks),
+        published=said(inputs.marks),
         timing=inputs.timing.get("inference", {}),
         rates=RATES,
         quality=inputs.quality,

@@ -1,0 +1,86 @@
+"""A chapter of the study: each run held out once, beside published numbers."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from rovsim.campaign import Campaign
+from rovsim.errors import BadInput
+from rovsim.evidence import ONCE
+from rovsim.ladder import EFFECTS
+from rovsim.residual.learner import learner
+from rovsim.study import PHYSICS, Study
+from rovsim.training import flown_with
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """The folds of a study; without any where `folds.leave_one_run_out` is off."""
+
+    study: Study
+
+    @cached_property
+    def folds(self) -> list[str]:
+        """Runs to be held out, one after the other.
+
+        Raises:
+            BadInput: there is but one run, or an unknown residual.
+        """
+        settings, runs = self.study.settings.folds, self.study.runs()
+        if not settings.leave_one_run_out:
+            return []
+        for kind in settings.residuals:
+            learner(kind, "folds.residuals")
+        if len(runs) < 2:
+            raise BadInput(
+                "only one run",
+                where=self.study.campaign_path or "conf/tank",
+                expected="two runs or more, to leave one out",
+                remedy="Add runs to the campaign, or set folds.leave_one_run_out=false.",
+            )
+        return runs
+
+    @cached_property
+    def published(self) -> Path | None:
+        """The file of published numbers, beside the recordings.
+
+        Raises:
+            BadInput: it is not there.
+        """
+        name, campaign = self.study.settings.folds.published, self.study.campaign
+        if name is None:
+            return None
+        known = isinstance(campaign, Campaign)
+        path = Path(campaign.folder if known else f"{self.study.folder}/raw") / name
+        if path.is_file():
+            return path
+        raise BadInput(
+            "no such file",
+            where=path,
+            expected=f"published errors as csv, named by folds.published={name}",
+            remedy=f"Put it there, or set folds.published=null. {campaign.source}".strip(),
+        )
+
+    def train_runs(self, fold: str, control: str) -> list[str]:
+        """Runs of a control to learn from while `fold` is held out."""
+        runs = self.study.campaign.runs
+        return [run.id for run in runs if run.id != fold and flown_with(control, run)]
+
+    def models(self, fold: str) -> list[str]:
+        """Models of a fold that have a file: physics, then residuals on nominal and effects."""
+        settings = self.study.settings.folds
+        controls = [c for c in settings.controls if self.train_runs(fold, c)]
+        trained = [f"{kind}_{control}" for kind in settings.residuals for control in controls]
+        return [*PHYSICS, *trained, *(f"{EFFECTS}+{name}" for name in trained)]
+
+    @property
+    def once(self) -> list[str]:
+        """Figures that the study draws once; that of the marks only where there are marks."""
+        return [name for name, content in ONCE.items() if content != "marks" or self.published]
+
+    @property
+    def targets(self) -> list[str]:
+        """What the chapter adds to the results."""
+        folder = self.study.folder
+        folds = [f"{folder}/folds/{run}/comparison.json" for run in self.folds]
+        return [*folds, *([f"{folder}/marks.json"] if self.published else [])]

@@ -1,0 +1,194 @@
+"""Errors on held-out runs beside those that others published for the same runs.
+
+A cell is one run, axis and metric. Its mark is the smallest published error of any model and
+variant. On an axis whose demand never moved, the mark is the larger of that and the error of a
+vehicle that keeps its velocity: to stay still there is no feat of a model.
+"""
+
+import csv
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from rovsim import AXES
+from rovsim.errors import BadInput
+from rovsim.files import read_text
+from rovsim.recording.recording import Commands
+from rovsim.scores import number
+
+SCHEMA = "rovsim.marks/1"
+COUNTED = ("acceleration_rmse", "velocity_mae")  # a model is judged by these
+METRICS = (*COUNTED, "velocity_rmse")
+PUBLISHED = "published "  # in front of the names of others' models
+STILL = "zero_acceleration"
+COLUMNS = ("run", "variant", "model", "axis", *METRICS)
+
+Cell = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Published:
+    """Errors (m/s2, rad/s2, m/s, rad/s) by metric of somebody's model on one axis of one run."""
+
+    run: str
+    variant: str
+    model: str
+    axis: str
+    errors: Mapping[str, float]
+
+
+def read_published(path: Path) -> list[Published]:
+    """Read published errors: a csv with the columns `COLUMNS`; further ones are left alone.
+
+    Raises:
+        BadInput: the file, a column or a number is missing or makes no sense.
+    """
+    reader = csv.DictReader(io.StringIO(read_text(path)))
+    lacking = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
+    if lacking:
+        raise BadInput(
+            f"no column {', '.join(lacking)}",
+            where=path,
+            expected=f"the columns {', '.join(COLUMNS)}",
+            remedy="Name the columns in the first line.",
+        )
+    return [_entry(row, f"{path}, line {reader.line_num}") for row in reader]
+
+
+def _entry(row: Mapping[str, str], where: str) -> Published:
+    try:
+        errors = {metric: float(row[metric]) for metric in METRICS}
+    except (TypeError, ValueError):
+        errors = {}
+    if errors and row["axis"] in AXES and all(0 < e < np.inf for e in errors.values()):
+        return Published(row["run"], row["variant"], row["model"], row["axis"], errors)
+    raise BadInput(
+        f"{', '.join(str(row[name]) for name in ('axis', *METRICS))}",
+        where=where,
+        expected=f"an axis ({', '.join(AXES)}) and {len(METRICS)} errors above zero",
+        remedy="Correct or delete that line.",
+    )
+
+
+def demanded(commands: Commands) -> dict[str, bool]:
+    """Axes whose demand moved in a run.
+
+    Thruster commands do not tell axes apart: all count as moved, which makes no mark easier.
+    """
+    if commands.kind == "thruster":
+        return dict.fromkeys(AXES, True)
+    return {axis: bool(np.any(v != v[:1])) for axis, v in zip(AXES, commands.value.T, strict=True)}
+
+
+def against(
+    published: Sequence[Published],
+    comparisons: Mapping[str, Mapping[str, Any]],
+    moved: Mapping[str, Mapping[str, bool]],
+) -> dict[str, Any]:
+    """`marks.json`: every cell, and how each model stands.
+
+    Args:
+        published: what others reached.
+        comparisons: by held-out run, the `comparison.json` in which it was held out.
+        moved: by run, the axes whose demand moved.
+
+    Raises:
+        BadInput: nobody published anything for any of the runs.
+    """
+    known = [run for run in comparisons if any(p.run == run for p in published)]
+    if not known:
+        raise BadInput(
+            f"nothing is published for the runs {', '.join(comparisons)}",
+            where="published numbers",
+            expected=f"one of the runs {', '.join(dict.fromkeys(p.run for p in published))}",
+            remedy="Name the runs of the campaign as in the published file.",
+        )
+    found = [
+        _cell(_of(published, run, axis), _errors(comparisons[run], run, axis, metric), moved[run],
+              run, axis, metric)
+        for run in known for axis in AXES for metric in METRICS
+    ]  # fmt: skip
+    cells = [cell for cell in found if cell]
+    names = dict.fromkeys(name for cell in cells for name in cell["ratios"])
+    return {
+        "schema": SCHEMA,
+        "runs": known,
+        "without_published": [run for run in comparisons if run not in known],
+        "models": {name: _standing(name, cells) for name in names},
+        "cells": cells,
+    }
+
+
+def _of(published: Sequence[Published], run: str, axis: str) -> list[Published]:
+    return [p for p in published if (p.run, p.axis) == (run, axis)]
+
+
+def _errors(
+    comparison: Mapping[str, Any], run: str, axis: str, metric: str
+) -> dict[str, float | None]:
+    """Errors of our models in the open loop; None where a model left the finite numbers."""
+    return {
+        name: model["runs"][run]["open_loop"][metric][axis]
+        for name, model in comparison["models"].items()
+        if run in model["runs"]
+    }
+
+
+def _cell(
+    theirs: Sequence[Published], ours: Mapping[str, float | None], moved: Mapping[str, bool],
+    run: str, axis: str, metric: str,
+) -> Cell | None:  # fmt: skip
+    """One cell; None without a published error, or where nothing was measured."""
+    still = ours.get(STILL)
+    if not theirs or still is None:
+        return None
+    best = min(theirs, key=lambda p: p.errors[metric])
+    mark = best.errors[metric] if moved[axis] else max(best.errors[metric], still)
+    smallest = {
+        f"{PUBLISHED}{model}": min(p.errors[metric] for p in theirs if p.model == model)
+        for model in dict.fromkeys(p.model for p in theirs)
+    }
+    errors = {**ours, **smallest}
+    return {
+        "run": run, "axis": axis, "metric": metric, "demanded": moved[axis], "mark": mark,
+        "best": {"model": best.model, "variant": best.variant}, "errors": errors,
+        "ratios": {name: None if e is None else e / mark for name, e in errors.items()},
+    }  # fmt: skip
+
+
+def standing(ratios: Sequence[float | None]) -> dict[str, Any]:
+    """Cells below the mark, and the geometric mean of error / mark.
+
+    A model without a value in a cell is not below it, and its mean is None.
+    """
+    values = np.array([np.inf if ratio is None else ratio for ratio in ratios])
+    with np.errstate(divide="ignore"):
+        mean = np.exp(np.mean(np.log(values))) if len(values) else np.nan
+    below = int(np.sum(values < 1.0))
+    share = below / len(values) if len(values) else np.nan
+    return {
+        "cells": len(values), "below": below, "share_below": number(share),
+        "geometric_mean": number(mean),
+    }  # fmt: skip
+
+
+def _standing(name: str, cells: Sequence[Cell]) -> dict[str, Any]:
+    """How one model stands in the counted metrics, and by metric and axis."""
+    own = [cell for cell in cells if name in cell["ratios"]]
+    counted = [cell for cell in own if cell["metric"] in COUNTED]
+
+    def of(key: str, value: str, among: Sequence[Cell]) -> dict[str, Any]:
+        return standing([cell["ratios"][name] for cell in among if cell[key] == value])
+
+    missed = [c for c in counted if c["ratios"][name] is None or c["ratios"][name] >= 1.0]
+    return standing([cell["ratios"][name] for cell in counted]) | {
+        "by_metric": {metric: of("metric", metric, own) for metric in METRICS},
+        "by_axis": {axis: of("axis", axis, counted)["geometric_mean"] for axis in AXES},
+        "not_below": [
+            {k: c[k] for k in ("run", "axis", "metric")} | {"ratio": c["ratios"][name]}
+            for c in missed
+        ],
+    }

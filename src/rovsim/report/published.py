@@ -1,0 +1,94 @@
+"""`marks.json` in words and tables: the section of the report, and docs/thesis.md.
+
+python -m rovsim.report.published results/kth_tank_2025/marks.json docs/thesis.md
+"""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from rovsim.errors import RovsimError
+from rovsim.figures.marks import significant
+from rovsim.files import read_json
+from rovsim.ladder import EFFECTS
+from rovsim.marks import COUNTED, METRICS, PUBLISHED
+from rovsim.report.marked import replace_tables, table
+from rovsim.tables import QUANTITIES
+
+
+def said(marks: Mapping[str, Any]) -> list[str]:
+    """One sentence for each residual on top of effects: how many cells, how far, which not."""
+    models = marks.get("models", {})
+    return [_sentence(n, found) for n, found in models.items() if n.startswith(f"{EFFECTS}+")]
+
+
+def _sentence(name: str, found: Mapping[str, Any]) -> str:
+    missed = ", ".join(
+        f"{c['run']} {c['axis']} {QUANTITIES[c['metric']][0]} ({_number(c['ratio'])})"
+        for c in found["not_below"]
+    )
+    return (
+        f"{name}: {found['below']} of {found['cells']} cells below the mark, geometric mean of the "
+        f"ratios {_number(found['geometric_mean'])}. " + (f"Not below: {missed}." if missed else "")
+    ).strip()
+
+
+def text(marks: Mapping[str, Any]) -> str:
+    """Markdown of `marks.json`."""
+    lacking = marks["without_published"]
+    parts = [*said(marks), _standings(marks)]
+    parts += [part for metric in METRICS for part in _cells(marks, metric)]
+    parts += [f"Nothing is published for {', '.join(lacking)}."] if lacking else []
+    return "\n\n".join(parts)
+
+
+def _standings(marks: Mapping[str, Any]) -> str:
+    head = ["model", "below the mark", "geometric mean of the ratios",
+            *(QUANTITIES[metric][0] for metric in METRICS)]  # fmt: skip
+    rows = [
+        [name, f"{found['below']} of {found['cells']}", _number(found["geometric_mean"]),
+         *(_number(found["by_metric"][m]["geometric_mean"]) for m in METRICS)]
+        for name, found in marks["models"].items()
+    ]  # fmt: skip
+    return table(head, rows)
+
+
+def _cells(marks: Mapping[str, Any], metric: str) -> list[str]:
+    """Heading and table of one metric: the mark, whose it is, and the ratios of our models."""
+    heading, units = QUANTITIES[metric]
+    ours = [name for name in marks["models"] if not name.startswith(PUBLISHED)]
+    rows = [
+        [cell["run"], cell["axis"] if cell["demanded"] else f"({cell['axis']})",
+         significant(cell["mark"]), f"{cell['best']['model']}, {cell['best']['variant']}",
+         *(_number(cell["ratios"].get(name)) for name in ours)]
+        for cell in marks["cells"] if cell["metric"] == metric
+    ]  # fmt: skip
+    extra = "" if metric in COUNTED else ", not counted above"
+    units_text = " and ".join(dict.fromkeys(units))
+    return [
+        f"### {heading[0].upper()}{heading[1:]}",
+        f"The mark in {units_text}, whose it is, and our errors divided by it{extra}.",
+        table(["run", "axis", "mark", "smallest published", *ours], rows),
+    ]
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else significant(value)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Put the tables of `marks.json` into a page."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("marks", type=Path)
+    parser.add_argument("page", type=Path)
+    given = parser.parse_args(arguments)
+    replace_tables(given.page, text(read_json(given.marks)))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except RovsimError as error:
+        print(f"rovsim: {error}", file=sys.stderr)
+        sys.exit(2)

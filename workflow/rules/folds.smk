@@ -1,0 +1,126 @@
+F = f"{R}/folds/{{fold}}"
+
+
+def fold_runs():
+    """Every run of a fold, as motion and as poses before the filter, its split changed."""
+    return {
+        kind: expand(f"{F}/{kind}/{{run}}.npz", run=study.runs(), allow_missing=True)
+        for kind in ("motions", "stages")
+    }
+
+
+rule split:
+    "All runs once more, one of them held out: the only test run of its fold."
+    input:
+        **clean_runs(),
+    output:
+        **fold_runs(),
+    log:
+        f"{F}/logs/split.log",
+    benchmark:
+        f"{F}/benchmarks/split.tsv"
+    params:
+        code=study.code("folds"),
+    script:
+        "../scripts/split.py"
+
+
+use rule diagnose as diagnose_fold with:
+    input:
+        **fold_runs(),
+        campaign=lambda w: study.campaign_file,
+    output:
+        f"{F}/diagnosis.json",
+    log:
+        f"{F}/logs/diagnose.log",
+    benchmark:
+        f"{F}/benchmarks/diagnose.tsv"
+
+
+use rule add as add_fold with:
+    input:
+        f"{F}/diagnosis.json",
+    output:
+        f"{F}/models/effects/model.yaml",
+    log:
+        f"{F}/logs/add.log",
+    benchmark:
+        f"{F}/benchmarks/add.tsv"
+
+
+use rule refit as refit_fold with:
+    input:
+        **fold_runs(),
+        campaign=lambda w: study.campaign_file,
+    output:
+        f"{F}/models/refitted/model.yaml",
+    log:
+        f"{F}/logs/refit.log",
+    benchmark:
+        f"{F}/benchmarks/refit.tsv"
+
+
+use rule train as train_fold with:
+    input:
+        motions=lambda w: expand(
+            f"{F}/motions/{{run}}.npz",
+            fold=w.fold,
+            run=chapter.train_runs(w.fold, w.control),
+        ),
+        campaign=lambda w: study.campaign_file,
+        base=lambda w: (
+            [f"{R}/folds/{w.fold}/models/effects/model.yaml"] if w.base else []
+        ),
+    output:
+        model=f"{F}/models/{{base}}{{residual}}_{{control}}/model.yaml",
+        arrays=f"{F}/models/{{base}}{{residual}}_{{control}}/residual.npz",
+    log:
+        f"{F}/logs/train/{{base}}{{residual}}_{{control}}.log",
+    benchmark:
+        f"{F}/benchmarks/train/{{base}}{{residual}}_{{control}}.tsv"
+
+
+rule fold:
+    "Replay and score the held-out run with every model that never saw it."
+    input:
+        motion=f"{F}/motions/{{fold}}.npz",
+        campaign=lambda w: study.campaign_file,
+        models=lambda w: expand(
+            f"{F}/models/{{model}}/model.yaml",
+            fold=w.fold,
+            model=chapter.models(w.fold),
+        ),
+    output:
+        f"{F}/comparison.json",
+    log:
+        f"{F}/logs/fold.log",
+    benchmark:
+        f"{F}/benchmarks/fold.tsv"
+    params:
+        settings=study.section("replay", "signals"),
+        code=study.code("scores", "effects"),
+    script:
+        "../scripts/fold.py"
+
+
+if chapter.published:
+
+    rule against_published:
+        "The folds beside what others published for the same runs."
+        input:
+            comparisons=expand(f"{F}/comparison.json", fold=chapter.folds),
+            motions=expand(f"{R}/motions/{{run}}.npz", run=chapter.folds),
+            published=str(chapter.published),
+        output:
+            marks=f"{R}/marks.json",
+            csv=f"{R}/tables/marks.csv",
+            tex=f"{R}/tables/marks.tex",
+        log:
+            f"{R}/logs/against_published.log",
+        benchmark:
+            f"{R}/benchmarks/against_published.tsv"
+        params:
+            runs=chapter.folds,
+            code=study.code("marks", "tables"),
+        script:
+            "../scripts/against_published.py"

@@ -1,0 +1,36 @@
+"""Replay and score the held-out run with every model of its fold."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.files import write_json
+from rovsim.jobs import job
+from rovsim.model import load_model, read_model
+from rovsim.replay import ReplaySettings, replay
+from rovsim.scores import comparison, score
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.strict import checked
+from rovsim.study import BASELINES
+from rovsim.vehicle import campaign_vehicle
+
+
+def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:
+    vehicle, held = campaign_vehicle(load_campaign(campaign)), Motion.read(motion)
+    chosen = [load_model(name, vehicle) for name in BASELINES]
+    chosen += [read_model(path).called(path.parent.name) for path in models]
+    signals = checked(SignalSettings, settings["signals"], "conf")
+    how = checked(ReplaySettings, settings["replay"], "conf")
+    found = comparison(score(held, replay(model, held, signals, how)) for model in chosen)
+    write_json(out, found)
+
+
+if __name__ == "__main__":
+    with job(snakemake):
+        main(
+            motion=Path(snakemake.input.motion),
+            campaign=Path(snakemake.input.campaign),
+            models=[Path(path) for path in snakemake.input.models],
+            out=Path(snakemake.output[0]),
+            settings=snakemake.params.settings,
+        )
