@@ -1,6 +1,6 @@
 """Train a residual on top of a model, and score it on the runs it did not see.
 
-rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6dof out=OUT
+rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6dof|all out=OUT
 
 Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, and
 an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof.

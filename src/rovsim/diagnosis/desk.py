@@ -141,7 +141,7 @@ def chance(desk: Desk, current: Fit, draws: int, seed: int) -> Array:
     for secant, columns in zip(desk.library.secant, desk.library.derivatives, strict=True):
         own = list(columns)
         if secant is None:
-            gains = np.max(z[:, own] ** 2 / np.diag(M)[own], axis=1) - desk.price
+            gains = np.max((z[:, own] / scale[own]) ** 2, axis=1) - desk.price
         else:
             b = z[:, own] + M[own, secant]
             x = np.linalg.lstsq(M[np.ix_(own, own)], b.T, rcond=1e-9)[0]

@@ -26,7 +26,7 @@ from rovsim.residual.learner import (
 from rovsim.residual.predictor import evaluate_many
 from rovsim.strict import Section, checked
 
-Control = Literal["3dof", "6dof"]
+Control = Literal["3dof", "6dof", "all"]  # runs a residual learns from
 LIBRARY = "library."  # prefix of the arrays from which the library's own model is rebuilt
 
 
