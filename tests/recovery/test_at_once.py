@@ -58,11 +58,11 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(watched):
     assert "thruster_gain" not in terms
     assert all(r.deficit > 0.0 for r in rivals)
     loops, body = terms["onboard_control"], found.hypothesis.model.body
-    for i, axis in enumerate(AXES):
-        # a loop and linear drag do the same about a velocity: only their sum is known
+    for axis in AXES:
         pushed = loops[f"gain_{axis}"] * loops[f"bandwidth_{axis}"]
         assert pushed == pytest.approx(GAIN[axis] * WIDTH[axis], rel=0.2), axis
     for i, axis in enumerate(AXES[:3]):
+        # a loop and linear drag do the same about a velocity: only their sum is known
         decay = loops[f"bandwidth_{axis}"] + body.linear[i] / body.M[i, i]
         true = WIDTH[axis] + base.body.linear[i] / base.body.M[i, i]
         assert decay == pytest.approx(true, rel=0.35), axis
