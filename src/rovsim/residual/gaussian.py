@@ -30,7 +30,7 @@ class GaussianSettings(LearnerSettings):
     # fades, to nothing where nothing was seen. null: it never fades (docs/benchmark_speed.md).
     trusted: float | None = Field(default=1.0, gt=0, le=1)
     # Robust standard deviations by which a target may differ from its neighbours'. null: any
-    tempered: float | None = Field(default=3.0, gt=0)
+    tempered: float | None = Field(default=4.0, gt=0)
 
 
 def tempered(X: Array, Y: Array, settings: GaussianSettings) -> Array:
