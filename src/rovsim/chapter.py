@@ -74,6 +74,11 @@ class Chapter:
         return [*PHYSICS, *trained, *(f"{EFFECTS}+{name}" for name in trained)]
 
     @property
+    def mistakes(self) -> bool:
+        """Whether the mistakes of the thesis' public code are repeated."""
+        return bool(self.folds) and self.study.settings.folds.mistakes
+
+    @property
     def once(self) -> list[str]:
         """Figures that the study draws once; that of the marks only where there are marks."""
         return [name for name, content in ONCE.items() if content != "marks" or self.published]
@@ -83,4 +88,5 @@ class Chapter:
         """What the chapter adds to the results."""
         folder = self.study.folder
         folds = [f"{folder}/folds/{run}/comparison.json" for run in self.folds]
-        return [*folds, *([f"{folder}/marks.json"] if self.published else [])]
+        asked = {"marks": self.published, "mistakes": self.mistakes}
+        return [*folds, *(f"{folder}/{name}.json" for name, yes in asked.items() if yes)]

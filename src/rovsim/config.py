@@ -30,17 +30,19 @@ class FoldSettings(Section):
 
     `published` is a csv beside the recordings, of errors that others reached on the same runs. Each
     residual is trained on the nominal model and on the effects, on the runs of each control.
+    `mistakes`: also what four mistakes of the thesis' public code cost on these runs.
     """
 
     leave_one_run_out: bool = False
     published: str | None = None
+    mistakes: bool = False
     residuals: tuple[str, ...] = ("knn", "gp")
     controls: tuple[Control, ...] = ("6dof",)
 
     @model_validator(mode="after")
     def _only_held_out_runs(self) -> "FoldSettings":
-        if self.published and not self.leave_one_run_out:
-            raise ValueError("published numbers only with leave_one_run_out=true")
+        if (self.published or self.mistakes) and not self.leave_one_run_out:
+            raise ValueError("published numbers and mistakes only with leave_one_run_out=true")
         return self
 
 

@@ -1,10 +1,4 @@
-"""Four mistakes of the thesis' public code, repeated on purpose: what each of them costs.
-
-wrong clock       bins of about 0.157 s replayed as if each lasted 0.1 s
-copied runs       a "6-DoF" training set that holds copies of a 3-DoF run
-lost data         a Gaussian process loaded with its hyperparameters but not its data
-scaled twice      features that are scaled before they reach a residual that scales them
-"""
+"""Four mistakes of the thesis' public code, repeated on purpose: what each of them costs."""
 
 from dataclasses import replace
 from typing import Callable, Sequence
@@ -21,6 +15,15 @@ from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion
 from rovsim.training import Samples, samples
 
+SCHEMA = "rovsim.mistakes/1"
+ERROR, SHARE = "velocity RMSE of the open loop / spread", "share of residual acceleration foretold"
+# What was done, and what `right` and `wrong` measure.
+MISTAKES = {
+    "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", ERROR),
+    "copied runs": ("a '6-DoF' training set that holds copies of a 3-DoF run (KNN)", SHARE),
+    "lost data": ("a GP loaded with its hyperparameters but not its data", SHARE),
+    "scaled twice": ("features scaled before they reach a GP that scales them", SHARE),
+}
 SAID = 0.1  # s, the bin that the public code replays with
 FAR = 1e6  # standard deviations from all that was seen: there a process has no data either
 
@@ -58,7 +61,10 @@ def mistakes(
     signals: SignalSettings,
     settings: ReplaySettings,
 ) -> dict[str, dict[str, float | None]]:
-    """Each mistake on one held-out run: `right` and `wrong`, and `unit`, what they measure.
+    """Each mistake that can be made on one held-out run: `right` and `wrong`.
+
+    The clock, if there are bins, by `replay_error`; the others by what is `explained`; copies only
+    where there are runs of both controls to learn from.
 
     Args:
         model: a model without a residual.
@@ -79,20 +85,15 @@ def mistakes(
     scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in found.values()]), axis=0), 1e-9)
     same = [m.run.id for m in runs if m.run.control == "3dof"]
     real = [m.run.id for m in runs if m.run.control == "6dof"]
-    told = {
-        "wrong clock": (
+    told: dict[str, tuple[float | None, float | None]] = {}
+    if test.binned:
+        told["wrong clock"] = (
             replay_error(model, test, signals, settings),
             replay_error(model, on_wrong_clock(test), signals, settings),
-        ),
-        "lost data": (
-            explained(gp.predict, X, asked.a_res),
-            explained(gp.predict, X + FAR * scale, asked.a_res),
-        ),
-        "scaled twice": (
-            explained(gp.predict, X, asked.a_res),
-            explained(gp.predict, X / scale, asked.a_res),
-        ),
-    }
+        )
+    right = explained(gp.predict, X, asked.a_res)
+    told["lost data"] = right, explained(gp.predict, X + FAR * scale, asked.a_res)
+    told["scaled twice"] = right, explained(gp.predict, X / scale, asked.a_res)
     if same and real:
         (knn, K), (copy, _) = taught("knn", real), taught("knn", same * len(real))
         told["copied runs"] = (

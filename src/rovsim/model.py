@@ -141,9 +141,10 @@ class Model:
 
     def actuated(self, force: Array, demand: Array) -> Array:
         """Wrench (k, 6) of thruster forces (k, n), and of loops that took demands (k, 6)."""
-        inertia = np.diag(self.body.M)
-        loops = (loop.asked(demand, inertia) for loop in self.thrust_path.autopilots)
-        return sum(loops, force @ self.body.B.T)
+        wrench = force @ self.body.B.T
+        for loop in self.thrust_path.autopilots:
+            wrench = wrench + loop.asked(demand, np.diag(self.body.M))
+        return wrench
 
     @cached_property
     def wrenches(self) -> list[Wrench]:

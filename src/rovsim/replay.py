@@ -121,6 +121,13 @@ def packed_inputs(model: Model, thrust: Thrust, duration: float) -> Inputs:
     )  # fmt: skip
 
 
+def stacked(parts: Sequence[Inputs], row: Sequence[int]) -> Inputs:
+    """Inputs of several thrust paths over the same steps; `row` (m,): which of them a model has."""
+    wrench = np.concatenate([one.wrench for one in parts])
+    force = np.concatenate([one.force for one in parts])
+    return parts[0]._replace(wrench=wrench, force=force, row=np.array(row, np.int64))
+
+
 def place(motion: Motion) -> Place:
     """The site of a run, as the engine takes it."""
     return Place(np.ascontiguousarray(motion.site.tank), np.ascontiguousarray(motion.site.axes))

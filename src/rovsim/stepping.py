@@ -15,11 +15,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.body import packed
-from rovsim.engine.at import Inputs, Jobs, Place
+from rovsim.engine.at import Jobs, Place
 from rovsim.errors import BadInput
 from rovsim.model import Model
 from rovsim.recording.recording import CommandKind, Commands, Site
-from rovsim.replay import packed_inputs, residual_data
+from rovsim.replay import packed_inputs, residual_data, stacked
 
 LONGEST = 0.01  # s, an integration step; see `rovsim.replay.ReplaySettings`
 
@@ -153,10 +153,7 @@ def rollouts(
     k, edges = len(commands), dt * np.arange(len(commands) + 1)
     lines, duration = Commands(edges[:-1], np.asarray(commands, np.float64), kind), k * dt
     each = [packed_inputs(m, m.thrust_path.over_steps(lines, edges), duration) for m in models]
-    inputs = Inputs(
-        np.concatenate([one.wrench for one in each]), np.concatenate([one.force for one in each]),
-        each[0].demand, np.arange(len(models)), each[0].duration,
-    )  # fmt: skip
+    inputs = stacked(each, range(len(models)))
     count = len(models) * len(states)
     zero, member = np.zeros(count, np.int64), np.repeat(np.arange(len(models)), len(states))
     jobs = Jobs(

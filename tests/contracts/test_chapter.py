@@ -77,8 +77,9 @@ def test_what_a_chapter_lacks_is_said(folder):
         _ = chapter(folder).published
     with pytest.raises(BadInput, match="Did you mean 'knn'"):
         _ = chapter(folder, "folds.residuals=[knnn]").folds
-    with pytest.raises(BadInput, match="only with leave_one_run_out=true"):
-        compose(["folds.published=published.csv"])
+    for word in ("folds.published=published.csv", "folds.mistakes=true"):
+        with pytest.raises(BadInput, match="only with leave_one_run_out=true"):
+            compose([word])
 
 
 def test_the_experiment_names_campaign_published_numbers_and_learners():
@@ -143,6 +144,7 @@ def test_the_workflow_plans_every_fold_with_its_learners(folder, tmp_path):
         f"campaign={folder.name}",
         "folds.leave_one_run_out=true",
         "folds.published=published.csv",
+        "folds.mistakes=true",
     ]
     done = snakemake(tmp_path, " ".join(words))
     assert done.returncode == 0, done.stderr
@@ -151,3 +153,4 @@ def test_the_workflow_plans_every_fold_with_its_learners(folder, tmp_path):
     assert {name: planned.count(name) for name in each} == dict.fromkeys(each, 3)
     assert planned.count("train_fold") == 3 * 4  # knn and gp, on nominal and on effects
     assert planned.count("against_published") == planned.count("figure_against_published") == 1
+    assert planned.count("mistakes") == 1

@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+from html import unescape
 from html.parser import HTMLParser
 
 import pytest
@@ -143,10 +144,10 @@ def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
     assert f'data-value="{one["geometric_mean"]}"' in html
     path = tmp_path / "page.md"
     path.write_text(f"# Words\n\n{BEGIN}\nold\n{END}\nmore words\n")
-    source = tmp_path / "marks.json"
-    write_json(source, found)
-    published.main([str(source), str(path)])
+    write_json(tmp_path / "marks.json", found)
+    published.main([str(tmp_path), str(path)])
     text = path.read_text()
+    assert "mistakes" not in text
     assert "old" not in text
     assert "more words" in text
     row = next(line for line in text.splitlines() if line.startswith("| gp_6dof |"))
@@ -164,6 +165,23 @@ def test_effects_and_residual_are_said_cell_by_cell():
         "effects+knn_6dof: 22 of 24 cells below the mark, geometric mean of the ratios –. "
         "Not below: a yaw velocity MAE (1.25), b yaw acceleration RMSE (–)."
     )
+
+
+def test_mistakes_are_said_run_by_run(content, tmp_path):
+    cost = {"right": 0.5, "wrong": 1.25}
+    mistakes = {"runs": {"a": {"wrong clock": cost}, "b": {"wrong clock": cost | {"wrong": None}}}}
+    (sentence,) = published.repeated(mistakes)
+    assert sentence == (
+        "Wrong clock: bins of about 0.157 s replayed as if each lasted 0.1 s. Velocity RMSE of the "
+        "open loop / spread: 0.500 becomes 1.25 (a), 0.500 becomes – (b)."
+    )
+    html = page.render(page.ReportInputs("x", marks=content["marks"], mistakes=mistakes))
+    assert sentence in unescape(html)
+    (tmp_path / "page.md").write_text(f"{BEGIN}\n{END}\n")
+    write_json(tmp_path / "marks.json", content["marks"])
+    write_json(tmp_path / "mistakes.json", mistakes)
+    published.main([str(tmp_path), str(tmp_path / "page.md")])
+    assert sentence in (tmp_path / "page.md").read_text()
 
 
 def test_an_empty_study_is_a_page_too():

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from flown import watched
 from rovsim import AXES
-from rovsim.campaign import load_campaign
-from rovsim.diagnosing import Runs
 from rovsim.diagnosis.at_once import at_once
 from rovsim.diagnosis.candidates import candidates
 from rovsim.diagnosis.desk import Desk
@@ -15,12 +14,8 @@ from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.library import library
 from rovsim.diagnosis.replayed import Replays, replayed
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.model import EffectEntry, nominal
-from rovsim.recording import read_run
-from rovsim.signals.chain import SignalSettings, differentiated, filtered, resampled
-from rovsim.tank.campaign import make_campaign
-from rovsim.tank.settings import Log, TankRun, TankSettings
-from rovsim.vehicle import campaign_vehicle
+from rovsim.model import EffectEntry
+from rovsim.tank.settings import Log
 
 GAIN = dict(zip(AXES, (0.9, 0.8, 0.7, 2.0, 2.0, 2.0), strict=True))
 WIDTH = dict(zip(AXES, (1.5, 1.5, 1.5, 4.0, 4.0, 4.0), strict=True))
@@ -34,21 +29,8 @@ HIDDEN = (
 )
 
 
-@pytest.fixture(scope="module")
-def watched(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("at_once")
-    run = TankRun(id="a", control="6dof", split="train")
-    settings = TankSettings(runs=(run,), duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
-    make_campaign(settings, folder / "raw")
-    campaign = load_campaign(folder / "raw")
-    stage = resampled(read_run(campaign, "a")[0], SignalSettings())
-    motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    watches = Runs({"a": motion}, {"a": stage}).watches("train", 0.01)
-    return nominal(campaign_vehicle(campaign)), watches
-
-
-def test_loops_and_drag_that_are_all_wrong_come_back_together(watched):
-    base, watches = watched
+def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
+    base, watches = watched(tmp_path, duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
     observatory = Observatory.built(watches, base, FIRST_NOISE, "held")
     some = [c for c in candidates(watches) if c.effect.id in ("added_mass", "linear_damping")]
     known = library(observatory, Hypothesis(base), some)

@@ -3,27 +3,14 @@
 import numpy as np
 import pytest
 
-from rovsim.campaign import load_campaign
-from rovsim.diagnosing import Runs
+from flown import watched
 from rovsim.diagnosis.refitted import refitted
-from rovsim.model import EffectEntry, nominal
-from rovsim.recording import read_run
-from rovsim.signals.chain import SignalSettings, differentiated, filtered, resampled
-from rovsim.tank.campaign import make_campaign
-from rovsim.tank.settings import TankRun, TankSettings
-from rovsim.vehicle import campaign_vehicle
+from rovsim.model import EffectEntry
 
 
 def train(folder, effects, control="6dof", duration=25.0):
     """The nominal model, and one train run as the observer sees it."""
-    run = TankRun(id="a", control=control, split="train")
-    settings = TankSettings(runs=(run,), duration=duration, effects=effects, seed=5)
-    make_campaign(settings, folder / "raw")
-    campaign = load_campaign(folder / "raw")
-    stage = resampled(read_run(campaign, "a")[0], SignalSettings())
-    motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    watches = Runs({"a": motion}, {"a": stage}).watches("train", 0.01)
-    return nominal(campaign_vehicle(campaign)), watches
+    return watched(folder, control, duration=duration, effects=effects, seed=5)
 
 
 def test_wrong_nominal_parameters_come_back(tmp_path):

@@ -124,3 +124,24 @@ if chapter.published:
             code=study.code("marks", "tables"),
         script:
             "../scripts/against_published.py"
+
+
+if chapter.mistakes:
+
+    rule mistakes:
+        "What four mistakes of the thesis' public code cost, on each held-out run."
+        input:
+            motions=expand(f"{R}/motions/{{run}}.npz", run=chapter.folds),
+            models=expand(f"{F}/models/effects/model.yaml", fold=chapter.folds),
+        output:
+            f"{R}/mistakes.json",
+        log:
+            f"{R}/logs/mistakes.log",
+        benchmark:
+            f"{R}/benchmarks/mistakes.tsv"
+        params:
+            settings=study.section("replay", "signals"),
+            learners={kind: study.learner(kind) for kind in ("knn", "gp")},
+            code=study.code("mistakes", "effects", "residual"),
+        script:
+            "../scripts/mistakes.py"

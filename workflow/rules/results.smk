@@ -124,6 +124,7 @@ rule report:
         where=f"{R}/where.json",
         diagnosis=f"{R}/diagnosis.json",
         marks=MARKS,
+        mistakes=[f"{R}/mistakes.json"] if chapter.mistakes else [],
         quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         figures=expand(
             f"{R}/figures/{{name}}.png", name=[*chapter.once, *study.figures()]

@@ -30,7 +30,7 @@ if __name__ == "__main__":
             campaign=snakemake.params.campaign,
             contents={
                 name: Path(str(snakemake.input[name]))
-                for name in ("comparison", "ladder", "timing", "where", "diagnosis", "marks")
+                for name in page.CONTENTS
                 if snakemake.input[name]
             },
             quality=dict(

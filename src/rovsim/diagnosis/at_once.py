@@ -13,20 +13,18 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.diagnosis.desk import Desk
-from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.fit import REACH, Fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.nominal import DRAG, uncertain
 from rovsim.diagnosis.search import Rival, without_parameters
-from rovsim.effects import effect
-from rovsim.effects.onboard_control import OnboardControl
+from rovsim.effects.onboard_control import EVERY_AXIS, OnboardControl
 from rovsim.model import Model
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
 ACTUATION = ("thruster_gain", "onboard_control")  # ways in which commands could act
-ALWAYS = (*DRAG, "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
-OF_THRUSTERS = ("added_mass", "thruster_gain")
-# Scales: what acts only together (drag and a loop, drag and thrust) stays near where it began.
-REACH = 10.0
+ALWAYS = (
+    *DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay"
+)  # fmt: skip
 
 
 def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, list[Rival]]:
@@ -56,14 +54,11 @@ def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, l
 def _starts(base: Model, still: Sequence[str], kind: str) -> list[Hypothesis]:
     moved = [axis for axis in AXES if axis not in still]
     common = uncertain(base, moved, ALWAYS)
-    found = [(*common, *uncertain(base, moved, OF_THRUSTERS))]
+    found = [(*common, *uncertain(base, moved, ACTUATION[:1]))]
     if kind == "demand":
-        found += [(*common, _loops(start)) for start in OnboardControl.starts if len(start) == 12]
+        loops = Term(OnboardControl(**EVERY_AXIS), OnboardControl.free_at(EVERY_AXIS))
+        found.append((*common, loops))
     return [Hypothesis(base, terms) for terms in found]
-
-
-def _loops(start: dict[str, float]) -> Term:
-    return Term(effect("onboard_control")(**start), OnboardControl.free_at(start))
 
 
 def _joint(desk: Desk, start: Hypothesis) -> tuple[Desk, Fit]:
@@ -86,7 +81,6 @@ def _pruned(desk: Desk, found: Fit) -> Fit:
         if desk.score(smaller) < desk.score(found):
             return found
         found = smaller
-    return found
 
 
 def _weak(found: Fit, price: float) -> Array:

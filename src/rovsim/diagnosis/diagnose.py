@@ -16,11 +16,11 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim import AXES
-from rovsim.diagnosis.at_once import REACH, at_once
+from rovsim.diagnosis.at_once import at_once
 from rovsim.diagnosis.candidates import candidates
 from rovsim.diagnosis.desk import Desk, proposals
 from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.fit import Fit, fit
+from rovsim.diagnosis.fit import REACH, Fit, fit
 from rovsim.diagnosis.heldout import held_out_gain
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.leftover import Structure, leftover

@@ -1,6 +1,7 @@
 """Innovations, and how they change with parameters: what all decisions are made of."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Callable, Sequence
 
 import numpy as np
@@ -41,15 +42,13 @@ class Observatory:
 
     def innovations(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
-        able = [m.possible for m in models]
-        movable = [m for m in models if m.possible]
-        found = []
-        for watch, own in zip(self.watches, self.tunings, strict=True):
-            e = np.full((len(models), 6, len(watch.time)), np.nan)
-            if movable:
-                e[able] = observe(movable, watch, own, self.between)
-            found.append(e)
-        return found
+        return [
+            of_possible(models, len(watch.time), partial(self._of_run, watch, own))
+            for watch, own in zip(self.watches, self.tunings, strict=True)
+        ]
+
+    def _of_run(self, watch: Watch, tuning: Tuning, models: Sequence[Model]) -> Array:
+        return observe(models, watch, tuning, self.between)
 
     def white(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
@@ -71,6 +70,17 @@ class Observatory:
     def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
         return linearised(at, self.innovations)
+
+
+def of_possible(
+    models: Sequence[Model], count: int, errors: Callable[[Sequence[Model]], Array]
+) -> Array:
+    """Errors (m, 6, count) of models; NaN where a model cannot move at all."""
+    able = [m.possible for m in models]
+    e = np.full((len(models), 6, count), np.nan)
+    if any(able):
+        e[able] = errors([m for m, yes in zip(models, able, strict=True) if yes])
+    return e
 
 
 def linearised(

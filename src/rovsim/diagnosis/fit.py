@@ -15,6 +15,9 @@ from rovsim.model import Model
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
 ROUGH = 1e-2  # of what the model does not explain: a wrong model need not be fitted finely
+# Scales: where much is free at once, what acts only together (drag and a loop, drag and thrust)
+# stays near where it began.
+REACH = 10.0
 FIRST_TRUST, LARGEST_TRUST = 1e-4, 1e4  # damping of the steps (Levenberg-Marquardt)
 
 

@@ -14,7 +14,6 @@ from rovsim.model import Model
 DRAG = ("linear_damping", "quadratic_damping")
 PER_AXIS = (*DRAG, "added_mass", "constant_wrench")
 ONE_GAIN = ("all",)  # of all thrusters
-GAINS = 0.5, 2.0  # a curve measured on the bench; gain, masses and drag are known to one scale only
 
 
 def uncertain(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple[Term, ...]:

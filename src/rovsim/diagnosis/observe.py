@@ -17,7 +17,7 @@ from rovsim.engine.at import NO_MEMORY, Inputs, Jobs
 from rovsim.engine.compiled import engine
 from rovsim.memory import measured_memory
 from rovsim.model import Model
-from rovsim.replay import as_true, packed_inputs, place
+from rovsim.replay import as_true, packed_inputs, place, stacked
 from rovsim.thrust import Between
 
 NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
@@ -121,9 +121,7 @@ def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
             thrust = path.over_steps(watch.motion.commands, watch.edges, between)
             parts.append(packed_inputs(model, thrust, duration))
         row.append(rows[key])
-    wrench = np.concatenate([one.wrench for one in parts])
-    force = np.concatenate([one.force for one in parts])
-    return parts[-1]._replace(wrench=wrench, force=force, row=np.array(row, np.int64))
+    return stacked(parts, row)
 
 
 def _seen(models: Sequence[Model], watch: Watch) -> tuple[Array, Array, Array]:

@@ -8,14 +8,14 @@ sandwich estimate: White 1980; windows are the clusters: Liang & Zeger 1986).
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.at_once import REACH
-from rovsim.diagnosis.evidence import Observatory, linearised
-from rovsim.diagnosis.fit import Fit, descend, judged
+from rovsim.diagnosis.evidence import Observatory, linearised, of_possible
+from rovsim.diagnosis.fit import REACH, Fit, descend, judged
 from rovsim.diagnosis.gram import inner_products, solved
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
@@ -25,35 +25,41 @@ from rovsim.model import Model
 from rovsim.replay import windows
 from rovsim.thrust import Between
 
-SECONDS = 5.0  # the longest horizon of the contract: slow errors must show
+SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
 SMALLEST = 1e-3  # m/s or rad/s: an axis that hardly moves does not count
 
 
 @dataclass(frozen=True, eq=False)
 class Replays:
-    """Velocity errors in windows, each axis in units of how much it moves."""
+    """Errors of velocity and acceleration in windows, each in units of how much it varies."""
 
     watches: tuple[Watch, ...]
     between: Between
 
-    @property
-    def spread(self) -> Array:
-        """Standard deviation (6,) of the measured velocity."""
+    @cached_property
+    def spread(self) -> tuple[Array, Array]:
+        """Standard deviations (6,) of the measured velocity and acceleration."""
         nu = np.concatenate([w.motion.nu[w.motion.usable] for w in self.watches])
-        return np.asarray(np.maximum(np.std(nu, axis=0), SMALLEST))
+        nu_dot = np.concatenate([w.motion.nu_dot[w.motion.usable] for w in self.watches])
+        least = SMALLEST, SMALLEST / SECONDS
+        return tuple(
+            np.maximum(np.nanstd(x, axis=0), low)
+            for x, low in zip((nu, nu_dot), least, strict=True)
+        )
 
     def innovations(self, models: Sequence[Model]) -> list[Array]:
         """Scaled errors (m, 6, n) of each run; NaN where a model cannot move at all."""
-        able = [m.possible for m in models]
-        found = []
-        for watch in self.watches:
-            own = differences(
-                [m for m in models if m.possible], watch, self.between, None, None, SECONDS
-            )
-            e = np.full((len(models), *own.shape[:0:-1]), np.nan)
-            e[able] = own.swapaxes(1, 2) / self.spread[:, None]
-            found.append(e)
-        return found
+        return [
+            of_possible(models, len(_window(w)) + np.sum(_follows(w)), partial(self._of_run, w))
+            for w in self.watches
+        ]
+
+    def _of_run(self, watch: Watch, models: Sequence[Model]) -> Array:
+        velocity, acceleration = self.spread
+        nu = differences(models, watch, self.between, seconds=SECONDS)
+        step = np.diff(nu, axis=1) / np.diff(watch.motion.time[_reading(watch)])[:, None]
+        both = [nu / velocity, step[:, _follows(watch)] / acceleration]
+        return soft(np.concatenate(both, axis=1)).swapaxes(1, 2)
 
     def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
         """Errors (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
@@ -64,9 +70,36 @@ class Replays:
         return np.concatenate(e, axis=-1)
 
     def window(self) -> Array:
-        """Number (n,) of the window that each error lies in."""
-        spans = [s for w in self.watches for s in windows(w.motion, SECONDS)]
-        return np.repeat(np.arange(len(spans)), [b - a for a, b in spans])
+        """Number (n,) of the window that each error lies in, over all runs."""
+        parts, count = [], 0
+        for watch in self.watches:
+            own = _window(watch) + count
+            parts += [own, own[1:][_follows(watch)]]
+            count = int(own.max(initial=count - 1)) + 1
+        return np.concatenate(parts)
+
+
+def _window(watch: Watch) -> Array:
+    """Number (n,) of the window of each velocity."""
+    lengths = [b - a for a, b in windows(watch.motion, SECONDS)]
+    return np.repeat(np.arange(len(lengths)), lengths)
+
+
+def _reading(watch: Watch) -> Array:
+    """Sample or bin (n,) of each velocity."""
+    shift = 0 if watch.motion.binned else 1
+    spans = [np.arange(a, b) + shift for a, b in windows(watch.motion, SECONDS)]
+    return np.concatenate([np.empty(0, int), *spans])
+
+
+def _follows(watch: Watch) -> Array:
+    """Whether each velocity but the first (n-1,) lies in the same window as the one before."""
+    return np.diff(_window(watch)) == 0
+
+
+def soft(x: Array) -> Array:
+    """Errors whose squares grow like |x| where they are large (soft L1: Triggs et al. 2000)."""
+    return np.sign(x) * np.sqrt(2.0 * (np.sqrt(1.0 + x**2) - 1.0))
 
 
 def replayed(found: Fit, observatory: Observatory) -> Fit:

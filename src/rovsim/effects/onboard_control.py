@@ -17,6 +17,9 @@ SPEEDS = ("m/s", "rad/s")
 # Where a fit of loops on all axes begins: what this vehicle reaches at full stick (Blue Robotics:
 # 1.5 m/s forward), and how soon.
 FULL_SPEED, FULL_WIDTH = (1.0, 1.0, 1.0, 3.0, 3.0, 3.0), (1.0, 1.0, 1.0, 3.0, 3.0, 3.0)
+EVERY_AXIS = {f"gain_{axis}": g for axis, g in zip(AXES, FULL_SPEED, strict=True)} | {
+    f"bandwidth_{axis}": b for axis, b in zip(AXES, FULL_WIDTH, strict=True)
+}
 ROTATION = ("roll", "pitch", "yaw")
 LEANING = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0])  # axes whose angle a loop may hold
 
@@ -75,8 +78,7 @@ class OnboardControl(Wrench, Autopilot):
             for g, b, extra in ((1.0, 2.0, {}), (0.5, 3.0, {"attitude": 1.0}))
         ),
         {"gain_heave": 0.5, "bandwidth_heave": 1.0},
-        {f"gain_{axis}": g for axis, g in zip(AXES, FULL_SPEED, strict=True)}
-        | {f"bandwidth_{axis}": b for axis, b in zip(AXES, FULL_WIDTH, strict=True)},
+        EVERY_AXIS,
     )
 
     @classmethod

@@ -15,11 +15,13 @@ from rovsim.figures.inference_time import RATES
 from rovsim.figures.marks import AXES, number, significant
 from rovsim.files import write_text
 from rovsim.provenance import leaves
-from rovsim.report.published import said
+from rovsim.report.published import repeated, said
 from rovsim.report.sentences import summary
 from rovsim.report.verdict import verdict
 from rovsim.tables import Table, errors_table, ladder_table, marks_table
 
+# The JSON files of a study that the report reads.
+CONTENTS = ("comparison", "ladder", "timing", "where", "diagnosis", "marks", "mistakes")
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
     ("2", "velocity_rmse"),
@@ -71,9 +73,9 @@ class Picture:
 class ReportInputs:
     """Everything the report shows; a section without content is left out.
 
-    `comparison`, `ladder`, `timing`, `where`, `diagnosis`, `marks`: contents of the JSON files of
-    those names. `quality`: the quality reports by run. `pictures`: in the order of appearance.
-    `provenance`: nested plain values (settings, code digest, versions).
+    `comparison`, `ladder`, `timing`, `where`, `diagnosis`, `marks`, `mistakes`: contents of the
+    JSON files of those names. `quality`: the quality reports by run. `pictures`: in the order of
+    appearance. `provenance`: nested plain values (settings, code digest, versions).
     """
 
     campaign: str
@@ -86,6 +88,7 @@ class ReportInputs:
     where: Mapping[str, Any] = field(default_factory=dict)
     diagnosis: Mapping[str, Any] = field(default_factory=dict)
     marks: Mapping[str, Any] = field(default_factory=dict)
+    mistakes: Mapping[str, Any] = field(default_factory=dict)
 
 
 def render(inputs: ReportInputs) -> str:
@@ -109,6 +112,7 @@ def render(inputs: ReportInputs) -> str:
         ladder=ladder_table(inputs.ladder),
         marks=marks_table(inputs.marks),
         published=said(inputs.marks),
+        mistakes=repeated(inputs.mistakes),
         timing=inputs.timing.get("inference", {}),
         rates=RATES,
         quality=inputs.quality,

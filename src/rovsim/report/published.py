@@ -1,6 +1,6 @@
-"""`marks.json` in words and tables: the section of the report, and docs/thesis.md.
+"""`marks.json` and `mistakes.json` in words and tables: for the report, and docs/thesis.md.
 
-python -m rovsim.report.published results/kth_tank_2025/marks.json docs/thesis.md
+python -m rovsim.report.published results/kth_tank_2025 docs/thesis.md
 """
 
 import argparse
@@ -13,6 +13,7 @@ from rovsim.figures.marks import significant
 from rovsim.files import read_json
 from rovsim.ladder import EFFECTS
 from rovsim.marks import COUNTED, METRICS, PUBLISHED
+from rovsim.mistakes import MISTAKES
 from rovsim.report.marked import replace_tables, table
 from rovsim.tables import QUANTITIES
 
@@ -34,12 +35,32 @@ def _sentence(name: str, found: Mapping[str, Any]) -> str:
     ).strip()
 
 
-def text(marks: Mapping[str, Any]) -> str:
-    """Markdown of `marks.json`."""
+def repeated(mistakes: Mapping[str, Any]) -> list[str]:
+    """One sentence for each mistake: what was done, and what it cost on each run."""
+    runs = mistakes.get("runs", {})
+    return [
+        f"{name[0].upper()}{name[1:]}: {done}. {measure[0].upper()}{measure[1:]}: {costs}."
+        for name, (done, measure) in MISTAKES.items()
+        if (costs := _costs(runs, name))
+    ]
+
+
+def _costs(runs: Mapping[str, Any], name: str) -> str:
+    return ", ".join(
+        f"{_number(found[name]['right'])} becomes {_number(found[name]['wrong'])} ({run})"
+        for run, found in runs.items()
+        if name in found
+    )
+
+
+def text(marks: Mapping[str, Any], mistakes: Mapping[str, Any]) -> str:
+    """Markdown of `marks.json` and `mistakes.json`."""
     lacking = marks["without_published"]
     parts = [*said(marks), _standings(marks)]
     parts += [part for metric in METRICS for part in _cells(marks, metric)]
     parts += [f"Nothing is published for {', '.join(lacking)}."] if lacking else []
+    told = repeated(mistakes)
+    parts += ["### The public code's mistakes, repeated", *told] if told else []
     return "\n\n".join(parts)
 
 
@@ -78,12 +99,16 @@ def _number(value: float | None) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Put the tables of `marks.json` into a page."""
+    """Put what a chapter found into a page."""
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("marks", type=Path)
+    parser.add_argument("results", type=Path)
     parser.add_argument("page", type=Path)
     given = parser.parse_args(arguments)
-    replace_tables(given.page, text(read_json(given.marks)))
+    mistakes = given.results / "mistakes.json"
+    found = text(
+        read_json(given.results / "marks.json"), read_json(mistakes) if mistakes.exists() else {}
+    )
+    replace_tables(given.page, found)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,24 @@
+"""One run of the tank, as the observer sees it."""
+
+from pathlib import Path
+
+from rovsim.campaign import load_campaign
+from rovsim.diagnosing import Runs
+from rovsim.diagnosis.watch import Watch
+from rovsim.model import Model, nominal
+from rovsim.recording import read_run
+from rovsim.signals.chain import SignalSettings, differentiated, filtered, resampled
+from rovsim.tank.campaign import make_campaign
+from rovsim.tank.settings import TankRun, TankSettings
+from rovsim.vehicle import campaign_vehicle
+
+
+def watched(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[Watch]]:
+    """The nominal model, and one train run; `tank` are settings of the tank."""
+    run = TankRun(id="a", control=control, split="train")
+    make_campaign(TankSettings(runs=(run,), **tank), folder / "raw")
+    campaign = load_campaign(folder / "raw")
+    stage = resampled(read_run(campaign, "a")[0], SignalSettings())
+    motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
+    watches = Runs({"a": motion}, {"a": stage}).watches("train", 0.01)
+    return nominal(campaign_vehicle(campaign)), watches

@@ -1,0 +1,41 @@
+"""Repeat the mistakes of the thesis' public code, on each held-out run."""
+
+from pathlib import Path
+
+from rovsim.files import write_json
+from rovsim.jobs import job
+from rovsim.mistakes import SCHEMA, mistakes
+from rovsim.model import read_model
+from rovsim.replay import ReplaySettings
+from rovsim.residual.learner import learner_settings
+from rovsim.signals.chain import SignalSettings
+from rovsim.signals.motion import Motion
+from rovsim.strict import checked
+
+
+def main(
+    *, motions: list[Path], models: list[Path], out: Path, learners: dict, settings: dict
+) -> None:
+    """`models`: the effects found while that run was held out."""
+    runs = [Motion.read(path) for path in motions]
+    known = {kind: learner_settings(given, "conf/residual") for kind, given in learners.items()}
+    signals = checked(SignalSettings, settings["signals"], "conf")
+    how = checked(ReplaySettings, settings["replay"], "conf")
+    found = {
+        test.run.id: mistakes(
+            read_model(path), [r for r in runs if r is not test], test, known, signals, how
+        )
+        for test, path in zip(runs, models, strict=True)
+    }
+    write_json(out, {"schema": SCHEMA, "runs": found})
+
+
+if __name__ == "__main__":
+    with job(snakemake):
+        main(
+            motions=[Path(path) for path in snakemake.input.motions],
+            models=[Path(path) for path in snakemake.input.models],
+            out=Path(snakemake.output[0]),
+            learners=snakemake.params.learners,
+            settings=snakemake.params.settings,
+        )
