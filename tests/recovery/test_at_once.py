@@ -14,6 +14,7 @@ from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.library import library
 from rovsim.diagnosis.replayed import Replays, replayed
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.together import known_together
 from rovsim.model import EffectEntry
 from rovsim.tank.settings import Log
 
@@ -51,6 +52,10 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     again = replayed(found, desk.observatory)
     assert [t.id for t in again.hypothesis.terms] == [t.id for t in found.hypothesis.terms]
     assert np.isfinite(again.std).all()
+    joint = [set(group) for group in known_together(again)]
+    loop = "linear_damping.surge", "onboard_control.gain_surge", "onboard_control.bandwidth_surge"
+    assert set(loop) in joint  # as said above
+    assert any({"quadratic_damping.surge", "added_mass.surge"} <= g for g in joint)  # one scale
     before, after = Replays(tuple(watches), "held").innovations(
         [found.hypothesis.model, again.hypothesis.model]
     )[0]

@@ -6,8 +6,16 @@ from rovsim.diagnosis.diagnose import Diagnosis
 from rovsim.effects import effect
 
 
-def next_experiment(found: Diagnosis, groups: Sequence[Sequence[str]]) -> str:
-    """One or two sentences."""
+def next_experiment(
+    found: Diagnosis, groups: Sequence[Sequence[str]], joint: Sequence[Sequence[str]]
+) -> str:
+    """A few sentences.
+
+    Args:
+        found: the diagnosis.
+        groups: effects that cannot be told apart.
+        joint: parameters, as `effect.parameter`, that are known only together.
+    """
     if not found.enough:
         return (
             "Record train runs of at least a minute in which the vehicle moves: "
@@ -17,6 +25,8 @@ def next_experiment(found: Diagnosis, groups: Sequence[Sequence[str]]) -> str:
     if groups:
         names = " and ".join(groups[0])
         parts.append(f"{names} cannot be told apart with these runs. {_revealed(groups[0])}")
+    if joint:
+        parts.append(_apart(joint))
     if found.still:
         axes = ", ".join(found.still)
         parts.append(f"Move {axes} in a train run: nothing can be said about what acts there.")
@@ -31,6 +41,13 @@ def next_experiment(found: Diagnosis, groups: Sequence[Sequence[str]]) -> str:
 
 def _revealed(names: Sequence[str]) -> str:
     return " ".join(effect(name).revealed_by for name in names if effect(name).revealed_by)
+
+
+def _apart(joint: Sequence[Sequence[str]]) -> str:
+    """How to tell values apart: by what reveals the effect that most of them belong to."""
+    owners = [name.split(".")[0] for group in joint for name in group]
+    most = max(dict.fromkeys(owners), key=owners.count)
+    return f"To know {', '.join(joint[0])} one by one: {effect(most).revealed_by}"
 
 
 def _confirm(found: Diagnosis) -> str:

@@ -6,6 +6,7 @@ from rovsim.diagnosis.advice import next_experiment
 from rovsim.diagnosis.diagnose import Diagnosis, Ranked, Selected
 from rovsim.diagnosis.hypothesis import Term
 from rovsim.diagnosis.search import SURE, Rival
+from rovsim.diagnosis.together import known_together
 
 SCHEMA = "rovsim.diagnosis/1"
 LISTED = 10  # effects of the ranking
@@ -26,15 +27,17 @@ def content(
         base: the base model's own content, so that `rovsim add` needs nothing else.
     """
     alike = indistinguishable(found.rivals)
+    joint = known_together(found.fit) if found.fit else []
     return {
         "schema": SCHEMA,
         "verdict": found.verdict,
         "selected": [_entry(one, one.std) for one in found.selected],
         "ranking": [_entry(one, {}) for one in _listed(found)],
         "indistinguishable": alike,
+        "known_together": joint,
         "where": list(where),
         "unexplained": unexplained(found),
-        "next_experiment": next_experiment(found, alike),
+        "next_experiment": next_experiment(found, alike, joint),
         "error": {name: _rounded(value) for name, value in error.items()},
         "not_excited": found.still,
         "rivals": [

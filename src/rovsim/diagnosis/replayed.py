@@ -2,9 +2,9 @@
 
 The likelihood of the innovations takes all that is left for noise. Where it is physics that no name
 explains, the disturbance it allows for swallows slow errors, and the values that foresee the next
-reading best drift off in a replay. So they are fitted once more to what users see: the velocity in
-windows. How sure they are then comes from how the windows disagree, not from the noise (the
-sandwich estimate: White 1980; windows are the clusters: Liang & Zeger 1986).
+reading best drift off in a replay. So they are fitted once more to what users see: velocity and
+acceleration in windows. How sure they are then comes from how the windows disagree, not from the
+noise (the sandwich estimate: White 1980; windows are the clusters: Liang & Zeger 1986).
 """
 
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ from rovsim.replay import windows
 from rovsim.thrust import Between
 
 SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
-SMALLEST = 1e-3  # m/s or rad/s: an axis that hardly moves does not count
+SMALLEST = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +41,8 @@ class Replays:
         """Standard deviations (6,) of the measured velocity and acceleration."""
         nu = np.concatenate([w.motion.nu[w.motion.usable] for w in self.watches])
         nu_dot = np.concatenate([w.motion.nu_dot[w.motion.usable] for w in self.watches])
-        least = SMALLEST, SMALLEST / SECONDS
-        return tuple(
-            np.maximum(np.nanstd(x, axis=0), low)
-            for x, low in zip((nu, nu_dot), least, strict=True)
+        return np.maximum(np.std(nu, axis=0), SMALLEST), np.maximum(
+            np.nanstd(nu_dot, axis=0), SMALLEST
         )
 
     def innovations(self, models: Sequence[Model]) -> list[Array]:
@@ -115,8 +113,14 @@ def replayed(found: Fit, observatory: Observatory) -> Fit:
 
 
 def _sandwich(e: Array, J: Array, window: Array) -> Array:
-    """Covariance (k, k) from the scores of each window."""
+    """Covariance (k, k): how sure from the scores of each window, what goes together from J.
+
+    There may be fewer windows than parameters, which then would all seem to go together; and never
+    surer than if every error were one for itself.
+    """
     bread = solved(inner_products(J.reshape(len(J), -1)), np.eye(len(J)))
     scores = np.einsum("kin,in->kn", J, e)
-    each = np.array([np.bincount(window, row) for row in scores])
-    return bread @ (each @ each.T) @ bread
+    each = bread @ np.array([np.bincount(window, row) for row in scores])
+    alone = np.diag(bread) * np.sum(e**2) / max(e.size - len(J), 1)
+    ratio = np.sqrt(np.maximum(np.sum(each**2, axis=1), alone) / np.diag(bread))
+    return bread * np.outer(ratio, ratio)

@@ -106,6 +106,10 @@ def apart_sentences(found: Mapping[str, Any]) -> list[str]:
     """Which effects the runs cannot tell apart, and how far behind the next names are."""
     alike = found["indistinguishable"]
     sentences = [f"These runs cannot tell {listed(group)} apart." for group in alike]
+    sentences += [
+        f"Known only together, not one by one: {', '.join(group)}."
+        for group in found.get("known_together", [])
+    ]
     for one in found["selected"]:
         rivals = [r for r in found.get("rivals", []) if r["instead_of"] == one["effect"]]
         taken = {name for group in alike if one["effect"] in group for name in group}

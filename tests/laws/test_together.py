@@ -1,0 +1,49 @@
+"""Values known only together, from covariances made up for the purpose."""
+
+import numpy as np
+
+from rovsim import AXES
+from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.hypothesis import Hypothesis
+from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.nominal import uncertain
+from rovsim.diagnosis.together import known_together
+from rovsim.model import nominal
+from rovsim.vehicle import load_vehicle
+
+TERMS = ("linear_damping", "net_buoyancy")  # surge … yaw, and a force
+NOISE = Noise(np.ones(6), np.ones(6), np.ones(6))
+
+
+def fit(covariance, x=None):
+    base = nominal(load_vehicle("bluerov2_heavy"))
+    h = Hypothesis(base, uncertain(base, AXES, TERMS))
+    return Fit(h.at(np.zeros(7) if x is None else x), [], [], NOISE, 0.0, covariance)
+
+
+def alike(*pairs):
+    covariance = np.diag([4.0, 1.0, 9.0, 1.0, 1.0, 1.0, 2.0])
+    std = np.sqrt(np.diag(covariance))
+    for a, b, r in pairs:
+        covariance[a, b] = covariance[b, a] = r * std[a] * std[b]
+    return covariance
+
+
+def test_what_is_sure_by_itself_is_in_no_group():
+    assert known_together(fit(alike())) == []
+    assert known_together(fit(alike((0, 6, 0.9)))) == []
+
+
+def test_groups_are_chains_of_values_that_go_together_whatever_their_sign():
+    found = known_together(fit(alike((0, 6, -0.99), (6, 2, 0.98), (3, 4, 0.97))))
+    assert found == [
+        ["linear_damping.surge", "linear_damping.heave", "net_buoyancy.force"],
+        ["linear_damping.roll", "linear_damping.pitch"],
+    ]
+
+
+def test_a_value_that_is_surely_there_is_known_by_itself():
+    covariance = alike((0, 6, 0.99), (3, 4, 0.97))
+    assert known_together(fit(covariance, np.array([5.0, 0, 0, 0, 0, 0, 0]))) == [
+        ["linear_damping.roll", "linear_damping.pitch"]
+    ]
