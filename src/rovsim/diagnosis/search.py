@@ -133,7 +133,8 @@ def _others(desk: Desk, rest: Fit, name: str, trials: int) -> list[Proposal]:
 def search(desk: Desk, base: Fit, seed: int) -> tuple[Desk, Fit, list[Rival]]:
     """From the base to the model to which nothing can be added, swapped or taken away.
 
-    Also the desk as it is then: its noise and filters follow what is found.
+    Also the desk as it is then: its noise and filters follow what is found. Rivals only where it
+    came to an end before there were `most_effects`.
     """
     current, settings = base, desk.settings
     while len(current.hypothesis.terms) < settings.most_effects:
@@ -144,4 +145,6 @@ def search(desk: Desk, base: Fit, seed: int) -> tuple[Desk, Fit, list[Rival]]:
             break
         desk = desk.renewed(found)
         current, _ = contested(desk, desk.fit(found.hypothesis), 1)  # the likeliest other name
+    else:
+        return desk, current, []  # no end: these names are not what is missing
     return desk, *contested(desk, current, settings.trials)

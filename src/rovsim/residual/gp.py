@@ -3,6 +3,7 @@
 from time import perf_counter
 from typing import Any, Literal, Mapping
 
+import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
 
@@ -18,6 +19,7 @@ from rovsim.residual.learner import (
     Trained,
     spread_rows,
 )
+from rovsim.residual.left_out import noise_factor
 from rovsim.residual.spectrum import Known, of_exact, rbf
 
 
@@ -48,6 +50,8 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
         loss = _tune(model, settings, progress)
         Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])
         arrays |= gaussian.hyperparameters(model) | {"points": Z, "targets": T}
+        arrays["noise"] *= _factors(arrays)
+        gaussian.set_hyperparameters(model, arrays)
         _condition(model, Z, T)
         library = gaussian.library_predictor(model, arrays)
         weights = model.prediction_strategy.mean_cache.numpy()
@@ -75,6 +79,16 @@ def posterior_from(
         model = _model(arrays["points"], arrays["targets"], settings)
         gaussian.set_hyperparameters(model, arrays)
         return gaussian.library_posterior(model, arrays, fast)
+
+
+def _factors(arrays: Mapping[str, Array]) -> Array:
+    """What to raise each kernel's noise by."""
+    Z = arrays["points"]
+    errors = np.split(arrays["targets"] - arrays["mean"][:, None], len(arrays["noise"]))
+    per_kernel = zip(
+        arrays["lengthscale"], errors, arrays["outputscale"], arrays["noise"], strict=True
+    )
+    return np.array([noise_factor(rbf(Z, Z, length), *rest) for length, *rest in per_kernel])
 
 
 def _known(arrays: Mapping[str, Array]) -> list[Known]:

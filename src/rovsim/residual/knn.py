@@ -19,10 +19,10 @@ from rovsim.residual.learner import (
     Trained,
     spread_rows,
 )
+from rovsim.residual.left_out import STRETCHES, stretches
 from rovsim.residual.scaling import CONSTANT, Scaling, fit_scaling
 
 TRIED = (3, 5, 10, 20, 30)
-STRETCHES = 10  # of the training runs, each left out once
 
 
 class KnnSettings(LearnerSettings):
@@ -73,7 +73,7 @@ def best_k(Z: Array, Y: Array, weights: str) -> int:
         return max(1, min(TRIED[0], len(Z)))
     scale = np.maximum(np.std(Y, axis=0), CONSTANT)
     missed = np.zeros(len(tried))
-    for out in np.array_split(np.arange(len(Z)), STRETCHES):
+    for out in stretches(len(Z)):
         kept = np.setdiff1d(np.arange(len(Z)), out)
         distance, near = map(np.asarray, cKDTree(Z[kept]).query(Z[out], tried[-1]))
         share = np.ones_like(distance) if weights == "uniform" else 1.0 / (distance + CONSTANT)
