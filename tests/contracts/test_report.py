@@ -12,11 +12,14 @@ from rovsim import AXES
 from rovsim.figures import kind
 from rovsim.figures.style import save
 from rovsim.files import write_json
-from rovsim.report import page, published, terminal
+from rovsim.report import chapter_page, page, published, terminal
 from rovsim.report.marked import BEGIN, END
+from rovsim.report.speed import timing_sentences
 from rovsim.report.verdict import verdict
 from rovsim.tables import errors_table, escaped, ladder_table
 from synthetic_study import study
+
+JOINT = ["linear_damping.surge", "added_mass.surge"]
 
 
 @pytest.fixture(scope="module")
@@ -136,6 +139,15 @@ def test_too_little_data_is_a_verdict_without_an_error():
     assert not any("noise" in remark for remark in said.remarks)
 
 
+def _write_chapter(folder, content):
+    """What a chapter leaves in its results; one fold knows two values only together."""
+    write_json(folder / "marks.json", content["marks"])
+    write_json(folder / "timing.json", content["timing"])
+    for run, group in zip(content["marks"]["runs"], ([], JOINT), strict=True):
+        diagnosis = content["diagnosis"] | {"known_together": [group] if group else []}
+        write_json(folder / "folds" / run / "diagnosis.json", diagnosis)
+
+
 def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
     found = content["marks"]
     html = page.render(page.ReportInputs("x", marks=found))
@@ -143,12 +155,17 @@ def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
     one = found["models"]["gp_6dof"]
     assert f'data-value="{one["geometric_mean"]}"' in html
     path = tmp_path / "page.md"
-    path.write_text(f"# Words\n\n{BEGIN}\nold\n{END}\nmore words\n")
-    write_json(tmp_path / "marks.json", found)
-    published.main([str(tmp_path), str(path)])
+    _write_chapter(tmp_path, content)
+    path.write_text(f"# Words\n\n{BEGIN}\nbefore\n{END}\nmore words\n")
+    chapter_page.main([str(tmp_path), str(path)])
     text = path.read_text()
     assert "mistakes" not in text
-    assert "old" not in text
+    runs = " | ".join(f"without {run}" for run in found["runs"])
+    assert f"| parameter | {runs} |" in text
+    assert "| thruster_lag time_constant | 0.1500 ± 0.0078 s | 0.1500 ± 0.0078 s |" in text
+    assert "| linear_damping.surge, added_mass.surge | 1 of 2 |" in text
+    assert all(sentence in text for sentence in timing_sentences(content["timing"]))
+    assert "before" not in text
     assert "more words" in text
     row = next(line for line in text.splitlines() if line.startswith("| gp_6dof |"))
     assert f"{one['below']} of {one['cells']}" in row
@@ -178,9 +195,9 @@ def test_mistakes_are_said_run_by_run(content, tmp_path):
     html = page.render(page.ReportInputs("x", marks=content["marks"], mistakes=mistakes))
     assert sentence in unescape(html)
     (tmp_path / "page.md").write_text(f"{BEGIN}\n{END}\n")
-    write_json(tmp_path / "marks.json", content["marks"])
+    _write_chapter(tmp_path, content)
     write_json(tmp_path / "mistakes.json", mistakes)
-    published.main([str(tmp_path), str(tmp_path / "page.md")])
+    chapter_page.main([str(tmp_path), str(tmp_path / "page.md")])
     assert sentence in (tmp_path / "page.md").read_text()
 
 

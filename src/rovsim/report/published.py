@@ -1,20 +1,12 @@
-"""`marks.json` and `mistakes.json` in words and tables: for the report, and docs/thesis.md.
+"""`marks.json` and `mistakes.json` in words and tables: for the report, and docs/thesis.md."""
 
-python -m rovsim.report.published results/kth_tank_2025 docs/thesis.md
-"""
+from typing import Any, Mapping
 
-import argparse
-import sys
-from pathlib import Path
-from typing import Any, Mapping, Sequence
-
-from rovsim.errors import RovsimError
 from rovsim.figures.marks import significant
-from rovsim.files import read_json
 from rovsim.ladder import EFFECTS
 from rovsim.marks import COUNTED, METRICS, PUBLISHED
 from rovsim.mistakes import MISTAKES
-from rovsim.report.marked import replace_tables, table
+from rovsim.report.marked import table
 from rovsim.tables import QUANTITIES
 
 
@@ -53,15 +45,12 @@ def _costs(runs: Mapping[str, Any], name: str) -> str:
     )
 
 
-def text(marks: Mapping[str, Any], mistakes: Mapping[str, Any]) -> str:
-    """Markdown of `marks.json` and `mistakes.json`."""
+def text(marks: Mapping[str, Any]) -> list[str]:
+    """Paragraphs of Markdown of `marks.json`."""
     lacking = marks["without_published"]
     parts = [*said(marks), _standings(marks)]
     parts += [part for metric in METRICS for part in _cells(marks, metric)]
-    parts += [f"Nothing is published for {', '.join(lacking)}."] if lacking else []
-    told = repeated(mistakes)
-    parts += ["### The public code's mistakes, repeated", *told] if told else []
-    return "\n\n".join(parts)
+    return parts + ([f"Nothing is published for {', '.join(lacking)}."] if lacking else [])
 
 
 def _standings(marks: Mapping[str, Any]) -> str:
@@ -96,24 +85,3 @@ def _cells(marks: Mapping[str, Any], metric: str) -> list[str]:
 
 def _number(value: float | None) -> str:
     return "–" if value is None else significant(value)
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Put what a chapter found into a page."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("results", type=Path)
-    parser.add_argument("page", type=Path)
-    given = parser.parse_args(arguments)
-    mistakes = given.results / "mistakes.json"
-    found = text(
-        read_json(given.results / "marks.json"), read_json(mistakes) if mistakes.exists() else {}
-    )
-    replace_tables(given.page, found)
-
-
-if __name__ == "__main__":
-    try:
-        main()
-    except RovsimError as error:
-        print(f"rovsim: {error}", file=sys.stderr)
-        sys.exit(2)
