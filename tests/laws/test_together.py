@@ -3,11 +3,14 @@
 import numpy as np
 
 from rovsim import AXES
+from rovsim.diagnosis.advice import next_experiment
+from rovsim.diagnosis.diagnose import Diagnosis
 from rovsim.diagnosis.fit import Fit
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.nominal import uncertain
 from rovsim.diagnosis.together import known_together
+from rovsim.effects import effect
 from rovsim.model import nominal
 from rovsim.vehicle import load_vehicle
 
@@ -47,3 +50,12 @@ def test_a_value_that_is_surely_there_is_known_by_itself():
     assert known_together(fit(covariance, np.array([5.0, 0, 0, 0, 0, 0, 0]))) == [
         ["linear_damping.roll", "linear_damping.pitch"]
     ]
+
+
+def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
+    found = Diagnosis(fit(alike()).hypothesis.base, fit(alike()), [], [], [], [], [], 60.0)
+    loops = [f"onboard_control.gain_{axis}" for axis in AXES[:2]]
+    advice = next_experiment(found, [], [["added_mass.surge", "net_buoyancy.force"], loops])
+    reveals = effect("onboard_control").revealed_by
+    assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
+    assert next_experiment(found, [], []).startswith("Nothing is needed")

@@ -47,7 +47,8 @@ def _apart(joint: Sequence[Sequence[str]]) -> str:
     """How to tell values apart: by what reveals the effect that most of them belong to."""
     owners = [name.split(".")[0] for group in joint for name in group]
     most = max(dict.fromkeys(owners), key=owners.count)
-    return f"To know {', '.join(joint[0])} one by one: {effect(most).revealed_by}"
+    group = next(g for g in joint if any(name.startswith(f"{most}.") for name in g))
+    return f"To know {', '.join(group)} one by one: {effect(most).revealed_by}"
 
 
 def _confirm(found: Diagnosis) -> str:
