@@ -129,6 +129,19 @@ def test_each_cell_of_the_published_figure_is_error_over_mark():
     assert labels[:6] == ["surge", "sway", "heave", "(roll)", "pitch", "yaw"]
 
 
+def test_the_published_figure_shows_what_is_in_every_fold_and_stands_on_effects():
+    names = ["nominal", "effects", "knn_6dof", "gp_3dof", "effects+knn_6dof", "effects+gp_3dof"]
+    cells = [
+        {"run": run, "axis": "surge", "metric": metric, "demanded": True,
+         "ratios": {n: 1.0 for n in names if "3dof" not in n or run == "b"}}
+        for run in "ab" for metric in ("acceleration_rmse", "velocity_mae")
+    ]  # fmt: skip
+    figure = drawn("against_published", {"marks": {"models": names, "cells": cells}})
+    (legend,) = figure.legends
+    shown = [text.get_text() for text in legend.get_texts()]
+    assert shown == ["nominal", "effects", "effects+knn_6dof"]
+
+
 def test_an_unknown_figure_names_the_nearest():
     with pytest.raises(BadInput, match="Did you mean 'ladder'"):
         kind("lader")

@@ -10,13 +10,15 @@ from matplotlib.lines import Line2D
 from rovsim.figures.marks import legend, note, nothing, number, short
 from rovsim.figures.palette import Look, looks
 from rovsim.figures.style import sheet, styled
+from rovsim.ladder import EFFECTS
 from rovsim.marks import COUNTED, PUBLISHED
 
 SECTION = "published"
 CAPTION = (
     "Error on each held-out run and axis divided by its mark, the smallest error that anybody "
     "published for it (1 = as good as the best of them, lower is better). In parentheses: axes "
-    "whose demand never moved."
+    "whose demand never moved. Models of every fold, residuals on top of effects only; the table "
+    "has all."
 )
 LABELS = {"acceleration_rmse": "acceleration RMSE", "velocity_mae": "velocity MAE"}
 SHAPES = "osD^vP*hX<>"
@@ -27,7 +29,7 @@ TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 @styled()
 def draw(*, marks: Mapping[str, Any]) -> Figure:
     """Draw the ratios of `marks.json`, one panel a metric."""
-    names = [name for name in marks.get("models", {}) if not name.startswith(PUBLISHED)]
+    names = _shown(marks)
     style = looks(names)
     figure = sheet(60 + 60 * len(COUNTED))
     for axes, metric in zip(figure.subplots(len(COUNTED), 1), COUNTED, strict=True):
@@ -40,6 +42,15 @@ def draw(*, marks: Mapping[str, Any]) -> Figure:
     beyond = any(_ratio(c, n) > HIGHEST for c in marks.get("cells", []) for n in c["ratios"])
     note(figure, [f"On the upper edge: {HIGHEST:g} or more, or no value." if beyond else ""])
     return figure
+
+
+def _shown(marks: Mapping[str, Any]) -> list[str]:
+    """Our models of every cell; of residuals those on top of effects, if there are any."""
+    cells = marks.get("cells", [])
+    ours = [n for n in marks.get("models", {}) if not n.startswith(PUBLISHED)]
+    whole = [n for n in ours if all(n in cell["ratios"] for cell in cells)]
+    stacked = {n.partition("+")[2] for n in whole if n.startswith(f"{EFFECTS}+")}
+    return [n for n in whole if n not in stacked]
 
 
 def _panel(axes: Axes, cells: Sequence[Mapping[str, Any]], style: Mapping[str, Look]) -> None:

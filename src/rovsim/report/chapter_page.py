@@ -31,10 +31,11 @@ def _values(diagnosis: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def together(diagnoses: Mapping[str, Mapping[str, Any]]) -> str:
-    """What the runs fixed only jointly, and in how many folds."""
+    """What the runs fixed only jointly in half of the folds or more, the most frequent first."""
     groups = [tuple(g) for one in diagnoses.values() for g in one.get("known_together", [])]
-    seen = {group: groups.count(group) for group in groups}
-    rows = [[", ".join(group), f"{n} of {len(diagnoses)}"] for group, n in seen.items()]
+    seen = {group: n for group in groups if 2 * (n := groups.count(group)) >= len(diagnoses)}
+    often = sorted(seen, key=lambda group: (-seen[group], group))
+    rows = [[", ".join(group), f"{seen[group]} of {len(diagnoses)}"] for group in often]
     return table(["known only together", "folds"], rows)
 
 
