@@ -1,11 +1,12 @@
 """Exact Gaussian process (GPyTorch): a smooth residual, sure of itself only where data is."""
 
 from time import perf_counter
-from typing import Any, Literal, Mapping
+from typing import Any, Literal, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
+from scipy.linalg import eigh
 
 from rovsim.residual import gaussian
 from rovsim.residual.determinism import seeded_torch
@@ -21,6 +22,8 @@ from rovsim.residual.learner import (
 )
 from rovsim.residual.left_out import noise_factor
 from rovsim.residual.spectrum import Known, of_exact, rbf
+
+Spectrum = tuple[Array, Array]  # eigenvalues (n,) and eigenvectors (n, n) of a kernel matrix
 
 
 class GpSettings(gaussian.GaussianSettings):
@@ -50,12 +53,13 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
         loss = _tune(model, settings, progress)
         Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])
         arrays |= gaussian.hyperparameters(model) | {"points": Z, "targets": T}
-        arrays["noise"] *= _factors(arrays)
+        spectra = [eigh(rbf(Z, Z, lengthscale)) for lengthscale in arrays["lengthscale"]]
+        arrays["noise"] *= _factors(arrays, spectra)
         gaussian.set_hyperparameters(model, arrays)
         _condition(model, Z, T)
         library = gaussian.library_predictor(model, arrays)
         weights = model.prediction_strategy.mean_cache.numpy()
-    known = gaussian.trusting(_known(arrays), arrays, Z, X, settings)
+    known = gaussian.trusting(_known(arrays, spectra), arrays, Z, X, settings)
     data = gaussian.export(settings, arrays, Z, weights, known)
     info = {"points": len(rows), "tuning_points": len(some), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
@@ -81,23 +85,17 @@ def posterior_from(
         return gaussian.library_posterior(model, arrays, fast)
 
 
-def _factors(arrays: Mapping[str, Array]) -> Array:
+def _factors(arrays: Mapping[str, Array], spectra: Sequence[Spectrum]) -> Array:
     """What to raise each kernel's noise by."""
-    Z = arrays["points"]
-    errors = np.split(arrays["targets"] - arrays["mean"][:, None], len(arrays["noise"]))
-    per_kernel = zip(
-        arrays["lengthscale"], errors, arrays["outputscale"], arrays["noise"], strict=True
-    )
-    return np.array([noise_factor(rbf(Z, Z, length), *rest) for length, *rest in per_kernel])
+    errors = np.split(arrays["targets"] - arrays["mean"][:, None], len(spectra))
+    kernels = zip(spectra, errors, arrays["outputscale"], arrays["noise"], strict=True)
+    return np.array([noise_factor(*spectrum, *rest) for spectrum, *rest in kernels])
 
 
-def _known(arrays: Mapping[str, Array]) -> list[Known]:
+def _known(arrays: Mapping[str, Array], spectra: Sequence[Spectrum]) -> list[Known]:
     """What each kernel's process knows."""
-    Z, noise = arrays["points"], arrays["noise"] / arrays["outputscale"]
-    return [
-        of_exact(rbf(Z, Z, lengthscale), float(ratio))
-        for lengthscale, ratio in zip(arrays["lengthscale"], noise, strict=True)
-    ]
+    noise = arrays["noise"] / arrays["outputscale"]
+    return [of_exact(*own, float(ratio)) for own, ratio in zip(spectra, noise, strict=True)]
 
 
 def _model(Z: Array, T: Array, settings: GpSettings) -> Any:

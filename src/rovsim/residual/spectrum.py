@@ -52,10 +52,16 @@ def rbf(X: Array, Z: Array, lengthscale: Array) -> Array:
     return np.exp(-0.5 * cdist(X / lengthscale, Z / lengthscale, "sqeuclidean"))
 
 
-def of_exact(K: Array, noise: float) -> Known:
-    """An exact process with kernel matrix K (n, n), 1 on its diagonal, and noise variance > 0."""
-    values, vectors = eigh(K, subset_by_value=(_least(noise, EXACT), np.inf))
-    values, vectors = values[::-1], vectors[:, ::-1]
+def of_exact(values: Array, vectors: Array, noise: float) -> Known:
+    """An exact process with noise variance > 0.
+
+    Args:
+        values: eigenvalues (n,), in ascending order, of its kernel matrix with 1 on the diagonal.
+        vectors: the eigenvectors (n, n), one a column.
+        noise: in units of the prior variance.
+    """
+    kept = values > _least(noise, EXACT)
+    values, vectors = values[kept][::-1], vectors[:, kept][:, ::-1]
     spectrum = -values / (noise * (values + noise))
     sure = int(np.sum(values > _least(noise, ROUGH)))
     return Known(1.0 / noise, spectrum, np.ascontiguousarray(vectors.T), max(sure, 1))
