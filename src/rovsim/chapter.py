@@ -76,7 +76,7 @@ class Chapter:
     @property
     def mistakes(self) -> bool:
         """Whether the mistakes of the thesis' public code are repeated."""
-        return bool(self.folds) and self.study.settings.folds.mistakes
+        return self.study.settings.folds.mistakes
 
     @property
     def once(self) -> list[str]:

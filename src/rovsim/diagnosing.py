@@ -83,7 +83,9 @@ def _steps(
     return [*steps, floor_step(_floor(found, test, settings, reached))]
 
 
-def _floor(found: Diagnosis, test: list[Watch], settings: DiagnosisSettings, reached: list[float]):
+def _floor(
+    found: Diagnosis, test: list[Watch], settings: DiagnosisSettings, reached: list[float]
+) -> float | None:
     """At most what was reached: where a model came below, part of the noise is structure."""
     if found.fit is None or not test:
         return None

@@ -55,13 +55,14 @@ class Desk:
 
     def fit(self, start: Hypothesis, reach: float = np.inf) -> Fit:
         """Fit under the common noise, as far as `reach`; the same start is fitted once."""
-        if start.key not in self._fitted:
-            self._fitted[start.key] = fit(start, self.observatory, self.noise, reach)
-        return self._fitted[start.key]
+        key = start.key, reach
+        if key not in self._fitted:
+            self._fitted[key] = fit(start, self.observatory, self.noise, reach)
+        return self._fitted[key]
 
     def knows(self, start: Hypothesis) -> bool:
-        """Whether that start was fitted already."""
-        return start.key in self._fitted
+        """Whether that start was fitted already, without a `reach`."""
+        return (start.key, np.inf) in self._fitted
 
     def score(self, found: Fit) -> float:
         """Twice the log likelihood, the price of the free parameters paid."""

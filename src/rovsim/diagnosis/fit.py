@@ -100,6 +100,10 @@ def descend(
     only act together from running away together.
     """
     trust, start = FIRST_TRUST, here.x
+
+    def prior(x: Array) -> float:
+        return float(np.sum(((x - start) / reach) ** 2))
+
     for _ in range(MOST_ITERATIONS):
         e, J = observatory.linearised(here)
         if not len(here.x) or not _finite(e, J):
@@ -107,13 +111,12 @@ def descend(
         rows = _rows(observatory.white(J, noise))
         target = observatory.white(e, noise).ravel()
         H, g, cost = inner_products(rows), rows @ target, float(target @ target)
-        away = (here.x - start) / reach**2
-        H, g, cost = H + np.eye(len(H)) / reach**2, g + away, cost + float(away @ (here.x - start))
+        H, g = H + np.eye(len(H)) / reach**2, g + (here.x - start) / reach**2
+        cost += prior(here.x)
 
         def left(wanted: Hypothesis) -> float:
             e = [one[0] for one in observatory.innovations([wanted.model])]
-            prior = float(np.sum(((wanted.x - start) / reach) ** 2))
-            return _cost(observatory, e, noise) + prior if _finite(e, []) else np.inf
+            return _cost(observatory, e, noise) + prior(wanted.x) if _finite(e, []) else np.inf
 
         step, better, cost, trust = _step(here, left, H, g, cost, trust)
         if better is None:

@@ -20,7 +20,7 @@ from rovsim.diagnosis.gram import inner_products, solved
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.watch import Watch
-from rovsim.diagnosis.windows import differences
+from rovsim.diagnosis.windows import differences, readings
 from rovsim.model import Model
 from rovsim.replay import windows
 from rovsim.thrust import Between
@@ -85,9 +85,8 @@ def _window(watch: Watch) -> Array:
 
 def _reading(watch: Watch) -> Array:
     """Sample or bin (n,) of each velocity."""
-    shift = 0 if watch.motion.binned else 1
-    spans = [np.arange(a, b) + shift for a, b in windows(watch.motion, SECONDS)]
-    return np.concatenate([np.empty(0, int), *spans])
+    every, spans = np.arange(len(watch.motion.time)), windows(watch.motion, SECONDS)
+    return np.concatenate([np.empty(0, int), *(every[readings(watch, span)] for span in spans)])
 
 
 def _follows(watch: Watch) -> Array:

@@ -104,7 +104,13 @@ def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:
 def _at_readings(watch: Watch, span: tuple[int, int], nu: Array) -> Array:
     """Predicted minus measured velocity at the samples or bins of one window."""
     a, b = span
-    at = watch.ends[a : b + 1] - watch.ends[a]
+    at, measured = watch.ends[a : b + 1] - watch.ends[a], watch.motion.nu[readings(watch, span)]
     if not watch.motion.binned:
-        return nu[at[1:]] - watch.motion.nu[a + 1 : b + 1]
-    return bin_means(np.arange(len(nu), dtype=float), nu, at) - watch.motion.nu[a:b]
+        return nu[at[1:]] - measured
+    return bin_means(np.arange(len(nu), dtype=float), nu, at) - measured
+
+
+def readings(watch: Watch, span: tuple[int, int]) -> slice:
+    """The samples or bins at which a window is compared: it starts from its first sample."""
+    first = 0 if watch.motion.binned else 1
+    return slice(span[0] + first, span[1] + first)

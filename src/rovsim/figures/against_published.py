@@ -39,7 +39,7 @@ def draw(*, marks: Mapping[str, Any]) -> Figure:
     legend(
         figure, [Line2D([], [], label=short(n), **_look(k, style[n])) for k, n in enumerate(names)]
     )
-    beyond = any(_ratio(c, n) > HIGHEST for c in marks.get("cells", []) for n in c["ratios"])
+    beyond = any(_ratio(c, n) > HIGHEST for c in marks.get("cells", []) for n in names)
     note(figure, [f"On the upper edge: {HIGHEST:g} or more, or no value." if beyond else ""])
     return figure
 
