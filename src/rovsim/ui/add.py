@@ -12,7 +12,7 @@ from rovsim.figures.marks import significant
 from rovsim.gallery.page import unit
 from rovsim.model import Model
 from rovsim.ui.draft import reach
-from rovsim.ui.parts import computed, heading, onward, section, text, tile, tile_html
+from rovsim.ui.parts import Slider, computed, heading, onward, section, text, tile, tile_html
 from rovsim.ui.traces import Traces, excited, panels
 from rovsim.ui.workbench import Workbench
 
@@ -83,7 +83,7 @@ class Add:
         shown = unit(parameter.unit)
         with ui.row().classes("slider"):
             ui.label(parameter.name).classes("name")
-            slider = ui.slider(min=low, max=high, step=(high - low) / STEPS, value=value)
+            slider = Slider(min=low, max=high, step=(high - low) / STEPS, value=value)
             slider.props(f'aria-label="{effect}, {parameter.name}"')
             label = ui.label(f"{significant(value)} {shown}").classes("value")
 

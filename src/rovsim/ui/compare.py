@@ -10,7 +10,7 @@ from rovsim.figures.marks import VELOCITY_UNITS
 from rovsim.frames import HALF_TURN_X
 from rovsim.ui import path
 from rovsim.ui.charts import styles
-from rovsim.ui.parts import cell, chart, computed, heading, onward, section, table, text
+from rovsim.ui.parts import Slider, cell, chart, computed, heading, onward, section, table, text
 from rovsim.ui.traces import HORIZONS, QUANTITIES, Traces, excited, horizon_text, panels
 from rovsim.ui.workbench import Workbench
 
@@ -61,7 +61,7 @@ class Compare:
             with ui.column().classes("control horizon"):
                 self.horizon = ui.label()
                 at = HORIZONS.index(self.chosen["horizon"])
-                slider = ui.slider(min=0, max=len(HORIZONS) - 1, step=1, value=at)
+                slider = Slider(min=0, max=len(HORIZONS) - 1, step=1, value=at)
                 slider.props('markers snap aria-label="Horizon"')
                 slider.on("update:model-value", lambda e: self._horizon(e.args), throttle=0.05)
         self.horizon.text = f"Horizon, {horizon_text(self.chosen['horizon'])}"
@@ -81,6 +81,8 @@ class Compare:
         self.chosen["horizon"] = HORIZONS[at]
         self.horizon.text = f"Horizon, {horizon_text(HORIZONS[at])}"
         shown, predicted = await self._predicted()
+        if self.chosen["horizon"] != HORIZONS[at]:  # moved on meanwhile
+            return
         if self.traces:
             self.traces.redraw(shown)
         self._numbers(predicted)
@@ -150,7 +152,7 @@ class Compare:
             first, last = float(self.motion.time[0]), float(self.motion.time[-1])
             with ui.column().classes("control wide"):
                 ui.label("Time (s)")
-                self.clock = ui.slider(min=first, max=last, step=TICK, value=first).props(
+                self.clock = Slider(min=first, max=last, step=TICK, value=first).props(
                     'label aria-label="Time in the run, seconds"'
                 )
                 self.clock.on("update:model-value", lambda e: self._at(e.args), throttle=0.05)
@@ -160,7 +162,7 @@ class Compare:
             ):
                 with ui.column().classes("control"):
                     ui.label(label)
-                    slider = ui.slider(min=low, max=high, step=5, value=self.chosen[name])
+                    slider = Slider(min=low, max=high, step=5, value=self.chosen[name])
                     slider.props(f'label aria-label="{label}"')
                     slider.on(
                         "update:model-value", lambda e, n=name: self._turn(n, e.args), throttle=0.05

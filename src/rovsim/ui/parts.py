@@ -20,6 +20,16 @@ async def computed(function: Callable, *given: Any) -> Any:
     return await asyncio.get_running_loop().run_in_executor(_thread, function, *given)
 
 
+class Slider(ui.slider):
+    """A slider that keeps up with a fast hand or key.
+
+    With NiceGUI's own, every value that reaches the server comes back and sets the slider to where
+    it was by then: of five quick keys, two or three were lost.
+    """
+
+    LOOPBACK = False
+
+
 def heading(title: str, question: str) -> None:
     """Title of a screen, and the question it answers."""
     with ui.column().classes("heading"):
