@@ -6,7 +6,7 @@ back is aligned with the measurement and went through the same filter.
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Iterator, Sequence
+from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -21,7 +21,7 @@ from rovsim.recording.recording import RunInfo
 from rovsim.signals.binned import backward_difference, bin_means
 from rovsim.signals.chain import SignalSettings, velocities
 from rovsim.signals.motion import Motion
-from rovsim.strict import Section
+from rovsim.strict import Section, checked
 from rovsim.thrust import Between, Thrust
 
 OPEN_LOOP = "open_loop"
@@ -33,6 +33,16 @@ class ReplaySettings(Section):
     step: PositiveFloat = 0.01  # RK4's error is below 1e-6 m/s here (tests/laws/test_replay.py)
     commands: Between = "held"  # what an autopilot does with a set-point
     horizons: tuple[PositiveFloat, ...] = (0.5, 2.0, 5.0)  # s, contract section 3
+
+
+def rule_settings(given: Mapping[str, Any]) -> tuple[SignalSettings, ReplaySettings]:
+    """How motions were made and are replayed, from the parameters of a rule.
+
+    Raises:
+        BadInput: one of them does not fit.
+    """
+    signals = checked(SignalSettings, given["signals"], "conf")
+    return signals, checked(ReplaySettings, given["replay"], "conf")
 
 
 @dataclass(frozen=True, eq=False)

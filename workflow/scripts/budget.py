@@ -6,18 +6,15 @@ from rovsim.budget import budget
 from rovsim.campaign import load_campaign
 from rovsim.jobs import job
 from rovsim.model import nominal
-from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings
+from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
-from rovsim.strict import checked
 from rovsim.training import samples
 from rovsim.vehicle import campaign_vehicle
 
 
 def main(*, motion: Path, campaign: Path, out: Path, settings: dict) -> None:
     model = nominal(campaign_vehicle(load_campaign(campaign)))
-    signals = checked(SignalSettings, settings["signals"], "conf")
-    how = checked(ReplaySettings, settings["replay"], "conf")
+    signals, how = rule_settings(settings)
     measured = Motion.read(motion)
     budget(model, measured, samples(model, measured, signals, how), how).write(out)
 

@@ -6,11 +6,9 @@ from rovsim.campaign import load_campaign
 from rovsim.files import write_json
 from rovsim.jobs import job
 from rovsim.model import load_model, read_model
-from rovsim.replay import ReplaySettings, replay
+from rovsim.replay import replay, rule_settings
 from rovsim.scores import comparison, score
-from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion
-from rovsim.strict import checked
 from rovsim.study import BASELINES
 from rovsim.vehicle import campaign_vehicle
 
@@ -19,8 +17,7 @@ def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, setting
     vehicle, held = campaign_vehicle(load_campaign(campaign)), Motion.read(motion)
     chosen = [load_model(name, vehicle) for name in BASELINES]
     chosen += [read_model(path).called(path.parent.name) for path in models]
-    signals = checked(SignalSettings, settings["signals"], "conf")
-    how = checked(ReplaySettings, settings["replay"], "conf")
+    signals, how = rule_settings(settings)
     found = comparison(score(held, replay(model, held, signals, how)) for model in chosen)
     write_json(out, found)
 

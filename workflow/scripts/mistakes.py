@@ -6,11 +6,9 @@ from rovsim.files import write_json
 from rovsim.jobs import job
 from rovsim.mistakes import SCHEMA, mistakes
 from rovsim.model import read_model
-from rovsim.replay import ReplaySettings
+from rovsim.replay import rule_settings
 from rovsim.residual.learner import learner_settings
-from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion
-from rovsim.strict import checked
 
 
 def main(
@@ -19,8 +17,7 @@ def main(
     """`models`: the effects found while that run was held out."""
     runs = [Motion.read(path) for path in motions]
     known = {kind: learner_settings(given, "conf/residual") for kind, given in learners.items()}
-    signals = checked(SignalSettings, settings["signals"], "conf")
-    how = checked(ReplaySettings, settings["replay"], "conf")
+    signals, how = rule_settings(settings)
     found = {
         test.run.id: mistakes(
             read_model(path), [r for r in runs if r is not test], test, known, signals, how

@@ -5,18 +5,15 @@ from pathlib import Path
 from rovsim.campaign import load_campaign
 from rovsim.jobs import job
 from rovsim.model import load_model
-from rovsim.replay import ReplaySettings, replay
-from rovsim.signals.chain import SignalSettings
+from rovsim.replay import replay, rule_settings
 from rovsim.signals.motion import Motion
-from rovsim.strict import checked
 from rovsim.vehicle import campaign_vehicle
 
 
 def main(*, motion: Path, campaign: Path, file: str, name: str, out: Path, settings: dict) -> None:
     vehicle = campaign_vehicle(load_campaign(campaign))
     model = load_model(file or name, vehicle).called(name)
-    signals = checked(SignalSettings, settings["signals"], "conf")
-    how = checked(ReplaySettings, settings["replay"], "conf")
+    signals, how = rule_settings(settings)
     replay(model, Motion.read(motion), signals, how).write(out)
 
 

@@ -6,10 +6,8 @@ from rovsim.campaign import load_campaign
 from rovsim.files import write_json
 from rovsim.jobs import job
 from rovsim.model import load_model
-from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings
+from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
-from rovsim.strict import checked
 from rovsim.vehicle import campaign_vehicle
 from rovsim.where import content, judged
 
@@ -19,8 +17,7 @@ def main(
 ) -> None:
     vehicle = campaign_vehicle(load_campaign(campaign))
     model = load_model(file or name, vehicle).called(name)
-    signals = checked(SignalSettings, settings["signals"], "conf")
-    how = checked(ReplaySettings, settings["replay"], "conf")
+    signals, how = rule_settings(settings)
     runs = [Motion.read(path) for path in motions]
     write_json(out, content([judged(model, runs, signals, how)]))
 

@@ -8,8 +8,7 @@ from rovsim.files import write_json
 from rovsim.jobs import job
 from rovsim.latency import both_ways
 from rovsim.model import nominal, read_model
-from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings
+from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
 from rovsim.strict import checked
 from rovsim.training import samples
@@ -18,8 +17,7 @@ from rovsim.vehicle import campaign_vehicle
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:
     base = nominal(campaign_vehicle(load_campaign(campaign)))
-    signals = checked(SignalSettings, settings["signals"], "conf")
-    how = checked(ReplaySettings, settings["replay"], "conf")
+    signals, how = rule_settings(settings)
     timing = checked(TimingSettings, settings["timing"], "conf")
     found = samples(base, Motion.read(motion), signals, how)
     inference = {}

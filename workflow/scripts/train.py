@@ -5,12 +5,10 @@ from pathlib import Path
 from rovsim.campaign import load_campaign
 from rovsim.jobs import job
 from rovsim.model import load_model
-from rovsim.replay import ReplaySettings
+from rovsim.replay import rule_settings
 from rovsim.residual.learner import learner_settings
 from rovsim.residual.storage import write_residual
-from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion
-from rovsim.strict import checked
 from rovsim.training import train_residual
 from rovsim.vehicle import campaign_vehicle
 
@@ -22,8 +20,7 @@ def main(
     base = load_model(file or name, campaign_vehicle(load_campaign(campaign)))
     runs = [Motion.read(path) for path in motions]
     learner = learner_settings(residual, "conf/residual")
-    signals = checked(SignalSettings, settings["signals"], "conf")
-    how = checked(ReplaySettings, settings["replay"], "conf")
+    signals, how = rule_settings(settings)
     trained = train_residual(base, runs, control, learner, signals, how, settings["seed"])
     description = write_residual(out.parent, trained, control)
     story = {"base": name, "train_runs": [m.run.id for m in runs], "seed": settings["seed"]}
