@@ -13,6 +13,7 @@ from numpy import ndarray as Array
 from pydantic import PositiveFloat
 
 from rovsim.engine.at import Inputs, Jobs, Place
+from rovsim.engine.cores import run_jobs
 from rovsim.files import read_arrays, write_arrays
 from rovsim.frames import normalized
 from rovsim.memory import measured_memory
@@ -174,8 +175,8 @@ def trajectories(
         remembered[first] if remembered.size else remembered,
     )  # fmt: skip
     out = np.empty((rows[-1], 13))
-    model.engine.integrate_parallel(
-        jobs, steps.h, steps.stride, model.constants,
+    run_jobs(
+        model.engine.integrate, jobs, steps.h, steps.stride, model.constants,
         inputs(model, motion, steps.edges, settings.commands), model.wrench_parameters()[None],
         residual_data(model), place(motion), out,
     )  # fmt: skip

@@ -16,6 +16,7 @@ from numpy import ndarray as Array
 
 from rovsim.body import packed
 from rovsim.engine.at import Jobs, Place
+from rovsim.engine.cores import run_jobs
 from rovsim.errors import BadInput
 from rovsim.model import Model
 from rovsim.recording.recording import CommandKind, Commands, Site
@@ -163,8 +164,9 @@ def rollouts(
     constants = packed([m.body for m in models])
     out = np.empty((count * k, 13))
     site = Site.unknown()
-    first.engine.integrate_parallel(
-        jobs, dt, 1, constants, inputs, np.stack([m.wrench_parameters() for m in models]),
+    run_jobs(
+        first.engine.integrate, jobs, dt, 1, constants, inputs,
+        np.stack([m.wrench_parameters() for m in models]),
         residual_data(first), Place(site.tank, site.axes), out,
     )  # fmt: skip
     found = np.concatenate([jobs.state[:, None], out.reshape(count, k, 13)], axis=1)

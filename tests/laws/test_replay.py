@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -17,6 +18,7 @@ from rovsim.effects.buoyancy import NetBuoyancy
 from rovsim.effects.damping import QuadraticDamping
 from rovsim.engine.at import Inputs, Jobs, Place
 from rovsim.engine.compiled import engine
+from rovsim.engine.cores import run_jobs
 from rovsim.frames import from_euler, matrix, rotate, unrotate
 from rovsim.model import zero_acceleration
 from rovsim.replay import Replay, ReplaySettings, replay, trajectories, windows
@@ -57,13 +59,13 @@ def arrange(bodies, states, steps):
     ), inputs  # fmt: skip
 
 
-def drift(bodies, states, h, steps, how="integrate"):
+def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
     """States (j, steps, 13) of bodies left alone."""
     jobs, inputs = arrange(bodies, states, steps)
     out = np.empty((len(jobs.first) * steps, 13))
-    getattr(engine([]), how)(
-        jobs, h, 1, packed(bodies), inputs, np.empty((len(bodies), 0)), np.empty(0),
-        Place(np.full((3, 2), np.nan), np.ones(3)), out,
+    how(
+        engine([]).integrate, jobs, h, 1, packed(bodies), inputs, np.empty((len(bodies), 0)),
+        np.empty(0), Place(np.full((3, 2), np.nan), np.ones(3)), out,
     )  # fmt: skip
     return out.reshape(-1, steps, 13)
 
@@ -149,12 +151,13 @@ def test_static_equilibrium_stays():
     np.testing.assert_allclose(path, np.tile(at_rest(), (201, 1)), atol=1e-12)
 
 
-def test_batches_do_not_change_the_numbers():
+def test_batches_do_not_change_the_numbers(monkeypatch):
     bodies = [some_body(seed, drag=1.0) for seed in range(4)]
     states = np.array([state(nu) for nu in np.random.default_rng(0).uniform(-1, 1, (5, 6))])
     serial = drift(bodies, states, 0.01, 100)
-    parallel = drift(bodies, states, 0.01, 100, "integrate_parallel")
-    again = drift(bodies[::-1], states[::-1], 0.01, 100, "integrate_parallel")[::-1]
+    monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 3)
+    parallel = drift(bodies, states, 0.01, 100, run_jobs)
+    again = drift(bodies[::-1], states[::-1], 0.01, 100, run_jobs)[::-1]
     alone = np.concatenate([drift([b], s[None], 0.01, 100) for b in bodies for s in states])
     assert serial.tobytes() == parallel.tobytes() == again.tobytes() == alone.tobytes()
 
@@ -164,7 +167,7 @@ from worlds import model, motion, at_rest, sticks
 from rovsim.replay import ReplaySettings, trajectories
 world = model()
 trajectories(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
-stats = world.engine.integrate_parallel.stats
+stats = world.engine.integrate.stats
 print(world.engine.__name__, sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
 """
 

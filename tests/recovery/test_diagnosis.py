@@ -2,6 +2,7 @@
 
 import json
 
+import numba
 import pytest
 
 from rovsim.diagnosis.content import SCHEMA
@@ -51,14 +52,10 @@ def test_the_tank_gives_up_what_it_hides(case, tmp_path):
     assert json.loads(json.dumps(found, allow_nan=False)) == found
 
 
-def test_the_same_runs_give_the_same_diagnosis_on_any_number_of_cores(tmp_path):
-    import numba
-
+def test_the_same_runs_give_the_same_diagnosis_on_any_number_of_cores(tmp_path, monkeypatch):
     short = {"duration": 20.0}
     fly(nothing(42, "development", "none, 20 s", short), tmp_path / "raw")
-    first, cores = diagnosis(tmp_path / "raw", tmp_path), numba.get_num_threads()
-    numba.set_num_threads(1)
-    try:
-        assert json.dumps(diagnosis(tmp_path / "raw", tmp_path)) == json.dumps(first)
-    finally:
-        numba.set_num_threads(cores)
+    monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 3)
+    first = diagnosis(tmp_path / "raw", tmp_path)
+    monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 1)
+    assert json.dumps(diagnosis(tmp_path / "raw", tmp_path)) == json.dumps(first)

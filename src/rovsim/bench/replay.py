@@ -1,6 +1,7 @@
 """Steps per second: one trajectory, many side by side, with a residual in the loop."""
 
 from dataclasses import replace
+from functools import partial
 from time import perf_counter
 from typing import Any, Callable, Mapping
 
@@ -9,6 +10,7 @@ from numpy import ndarray as Array
 
 from rovsim import body as bodies
 from rovsim.engine.at import Inputs, Jobs, Place
+from rovsim.engine.cores import run_jobs
 from rovsim.model import Model
 from rovsim.residual.storage import Residual
 
@@ -30,7 +32,8 @@ def steps_per_second(model: Model, jobs: int, steps: int, parallel: bool) -> flo
     count = np.arange(jobs)
     batch = Jobs(start, np.zeros(jobs), 0 * count, np.full(jobs, steps), 0 * count, count * steps)
     data = model.residual.data if model.residual else np.empty(0)
-    integrate = model.engine.integrate_parallel if parallel else model.engine.integrate
+    kernel = model.engine.integrate
+    integrate = partial(run_jobs, kernel) if parallel else kernel
     out = np.empty((jobs * steps, 13))
     arguments = (batch, STEP, 1, model.constants, inputs, model.wrench_parameters()[None])
     return jobs * steps / best(lambda: integrate(*arguments, data, place, out))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy import ndarray as Array
 
 MOST_DOUBLINGS = 60
@@ -122,7 +122,7 @@ def _filtered(b, a, value, state):
     return out
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def filter_kept(b, a, e, spans, kept, scale, out):
     """Filter each span of e (k, 6, n) by itself, axis by axis; the kept ones (k, 6, m) into out.
 
@@ -135,7 +135,7 @@ def filter_kept(b, a, e, spans, kept, scale, out):
         scale: factors (6,) of what is written.
         out: what is written.
     """
-    for job in prange(e.shape[0] * 6):
+    for job in range(e.shape[0] * 6):
         k, i = job // 6, job % 6
         m = 0
         for s in range(len(spans)):

@@ -19,6 +19,7 @@ from scipy.optimize import minimize
 from rovsim import AXES
 from rovsim.diagnosis.kalman import AxisFilter, axis_filter, filter_kept, sum_of_squares
 from rovsim.diagnosis.watch import Watch
+from rovsim.engine.cores import on_cores
 
 # Eddies as large as the vehicle (0.2 to 0.5 m) pass it within 0.3 to 3 s at 0.15 to 0.7 m/s.
 # Longer memory would let the disturbance swallow a steady force, which is a missing effect.
@@ -87,7 +88,10 @@ def _white_run(e: Array, watch: Watch, found: Tuning, wanted: Tuning) -> Array:
     rows = e.reshape(int(np.prod(e.shape[:-2])), *e.shape[-2:])
     out = np.empty((*rows.shape[:-1], int(watch.settled.sum())), e.dtype)
     scale = 1.0 / np.sqrt(wanted.variance)
-    filter_kept(b, a, rows, watch.rows, watch.settled, scale, out)
+    on_cores(
+        lambda k: filter_kept(b, a, rows[k], watch.rows, watch.settled, scale, out[k]),
+        np.ones(len(rows)),
+    )
     return out.reshape(*e.shape[:-1], out.shape[-1])
 
 

@@ -15,6 +15,7 @@ from rovsim.effects import catalogue
 from rovsim.effects.base import Wrench
 from rovsim.engine.at import NO_MEMORY, Inputs, Jobs
 from rovsim.engine.compiled import engine
+from rovsim.engine.cores import run_jobs
 from rovsim.memory import measured_memory
 from rovsim.model import Model
 from rovsim.replay import as_true, packed_inputs, place, stacked
@@ -34,10 +35,10 @@ def observe(
     module, inputs, p = batch(models, watch, between)
     readings, starts, row = _seen(models, watch)
     out = np.empty((len(models) * len(watch.time), 6))
-    module.observe(
-        _jobs(models, watch, starts), watch.h, watch.ends, packed([m.body for m in models]),
-        inputs, p, place(watch.motion), readings, row, tuning.gains, tuning.decay(watch.h),
-        watch.motion.binned, out,
+    run_jobs(
+        module.observe, _jobs(models, watch, starts), watch.h, watch.ends,
+        packed([m.body for m in models]), inputs, p, place(watch.motion),
+        readings, row, tuning.gains, tuning.decay(watch.h), watch.motion.binned, out,
     )  # fmt: skip
     e = out.reshape(len(models), -1, 6)
     reported = np.stack([m.view.twists(own) for m, own in zip(models, e, strict=True)])

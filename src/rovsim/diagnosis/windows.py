@@ -13,6 +13,7 @@ from rovsim.body import packed
 from rovsim.diagnosis.observe import batch, remembered
 from rovsim.diagnosis.watch import Watch
 from rovsim.engine.at import Jobs
+from rovsim.engine.cores import run_jobs
 from rovsim.model import Model
 from rovsim.replay import place, windows
 from rovsim.scores import normalised, rms
@@ -91,9 +92,9 @@ def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:
         remembered(models, watch, first),
     )  # fmt: skip
     out = np.empty((count * total, 13))
-    module.integrate_parallel(
-        jobs, watch.h, 1, packed([m.body for m in models]), inputs, p, np.empty(0),
-        place(watch.motion), out,
+    run_jobs(
+        module.integrate, jobs, watch.h, 1, packed([m.body for m in models]), inputs, p,
+        np.empty(0), place(watch.motion), out,
     )  # fmt: skip
     found = [
         np.vstack([s, out[a:b]]) for s, a, b in zip(jobs.state, rows[:-1], rows[1:], strict=True)

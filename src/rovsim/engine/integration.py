@@ -7,7 +7,6 @@ model instead of the imported one.
 from math import exp, sqrt
 
 import numpy as np
-from numba import njit, prange
 
 from rovsim.engine.at import Constants, State
 
@@ -19,13 +18,14 @@ from rovsim.engine.vectors import (
     add3,
     add4,
     add6,
+    called,
     compiled,
     each6,
-    inlined,
     matrix6,
     times6,
     vector3,
     vector6,
+    woven,
 )
 from rovsim.residual.features import FEATURES, assemble_one
 from rovsim.residual.predictor import evaluate
@@ -33,7 +33,7 @@ from rovsim.residual.predictor import evaluate
 ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@inlined
+@woven
 def moved(x, h, dx):
     """x + h dx."""
     return State(
@@ -43,7 +43,7 @@ def moved(x, h, dx):
     )
 
 
-@inlined
+@woven
 def renormalised(x):
     """The state with its quaternion scaled to unit length."""
     w, i, j, k = x.attitude
@@ -51,7 +51,7 @@ def renormalised(x):
     return State(x.position, (w / length, i / length, j / length, k / length), x.nu)
 
 
-@inlined
+@woven
 def runge_kutta(t, x, h, body, p, step, correction, site):
     """One classical Runge-Kutta 4 step."""
     k1 = slope(t, x, body, p, step, correction, site)
@@ -62,40 +62,40 @@ def runge_kutta(t, x, h, body, p, step, correction, site):
     return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
 
 
-@inlined
+@woven
 def through_water(x, body):
     """Velocity through the water."""
     return flow(body.current, rotation(x.attitude), x.nu)[0]
 
 
-@inlined
+@woven
 def lagged(memory, nu_r, time):
     """What is remembered after a time, in time constants, of going at nu_r."""
     kept = exp(-time)
     return add6(add6(ZERO6, kept, memory), 1.0 - kept, nu_r)
 
 
-@inlined
+@woven
 def memory_push(body, memory):
     """Acceleration by the water that still moves as the vehicle did."""
     return times6(body.M_inv, each6(body.memory, memory))
 
 
-@compiled
+@called
 def push_over_step(x, memory, h, body):
     """The same at the middle of a step that begins at x; held, it is of second order."""
     ahead = lagged(memory, through_water(x, body), 0.5 * h * body.forgets)
     return memory_push(body, ahead)
 
 
-@compiled
+@called
 def memory_after(memory, x, after, h, body):
     """Memory after a step from one state to another."""
     mean = add6(through_water(x, body), 1.0, through_water(after, body))
     return lagged(memory, add6(ZERO6, 0.5, mean), h * body.forgets)
 
 
-@compiled
+@called
 def learned(t, x, body, p, step, push, data, site, features, a_res):
     """Learned acceleration error at x. tau_res = M a_res, so it simply adds to nu_dot."""
     base = slope(t, x, body, p, step, push, site)
@@ -104,7 +104,7 @@ def learned(t, x, body, p, step, push, data, site, features, a_res):
     return vector6(a_res)
 
 
-@inlined
+@woven
 def constants_of(bodies, m):
     """Constants of parameter set m alone, as tuples."""
     return Constants(
@@ -116,7 +116,7 @@ def constants_of(bodies, m):
     )  # fmt: skip
 
 
-@inlined
+@woven
 def step_of(inputs, row, k):
     """Commands of step k: thruster wrench, thruster forces, demand, duration of the recording."""
     return (
@@ -125,13 +125,13 @@ def step_of(inputs, row, k):
     )  # fmt: skip
 
 
-@inlined
+@woven
 def state_of(a):
     """State of an array (13,)."""
     return State((a[0], a[1], a[2]), (a[3], a[4], a[5], a[6]), vector6(a[7:]))
 
 
-@inlined
+@woven
 def store(x, out):
     """Write a state into an array (13,)."""
     for i in range(3):
@@ -142,7 +142,7 @@ def store(x, out):
         out[7 + i] = x.nu[i]
 
 
-@inlined
+@woven
 def site_of(site):
     """Walls (low, high per world axis) and MoCap axes as tuples."""
     tank = site.tank
@@ -150,7 +150,7 @@ def site_of(site):
     return walls, vector3(site.axes)
 
 
-@inlined
+@woven
 def stepped(t, x, memory, h, body, own, step, data, place, features, a_res):
     """State and memory one step later; a learned residual is held over the step."""
     push = ZERO6
@@ -166,17 +166,18 @@ def stepped(t, x, memory, h, body, own, step, data, place, features, a_res):
 
 
 @compiled
-def run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out):
-    """Integrate one job; after every `stride` steps its state goes into the next row of out."""
-    m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
-    x, body, own, place = state_of(jobs.state[job]), constants_of(bodies, m), p[m], site_of(site)
-    features, a_res = np.empty(FEATURES), np.empty(6)
-    memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
-    for n in range(jobs.steps[job]):
-        step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
-        x, memory = stepped(t, x, memory, h, body, own, step, data, place, features, a_res)
-        if (n + 1) % stride == 0:
-            store(x, out[row + n // stride])
+def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
+    """Integrate the jobs; after every `stride` steps a state goes into the next row of out."""
+    place, features, a_res = site_of(site), np.empty(FEATURES), np.empty(6)
+    for job in range(jobs.first.size):
+        m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
+        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), p[m]
+        memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
+        for n in range(jobs.steps[job]):
+            step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
+            x, memory = stepped(t, x, memory, h, body, own, step, data, place, features, a_res)
+            if (n + 1) % stride == 0:
+                store(x, out[row + n // stride])
 
 
 @compiled
@@ -190,20 +191,6 @@ def advance(state, memory, t, h, bodies, inputs, p, data, site):
     store(x, state)
     for i in range(6):
         memory[i] = m[i]
-
-
-@compiled
-def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
-    """Run the jobs one after the other on this core."""
-    for job in range(jobs.first.size):
-        run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out)
-
-
-@njit(cache=True, parallel=True)
-def integrate_parallel(jobs, h, stride, bodies, inputs, p, data, site, out):
-    """Run the jobs on all cores; each is independent, so the numbers do not depend on how many."""
-    for job in prange(jobs.first.size):
-        run_job(job, jobs, h, stride, bodies, inputs, p, data, site, out)
 
 
 @compiled

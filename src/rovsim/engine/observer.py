@@ -7,8 +7,6 @@ A part of the engine's template, like `integration`.
 A steady-state Kalman filter per axis; its innovations are what the model could not foresee.
 """
 
-from numba import njit, prange
-
 from rovsim.engine.at import State
 
 # <equation>
@@ -31,14 +29,14 @@ from rovsim.engine.vectors import (
     add6,
     compiled,
     each6,
-    inlined,
     into_body,
     into_world,
     vector6,
+    woven,
 )
 
 
-@inlined
+@woven
 def turned(q, v):
     """q followed by a small rotation vector v in body axes; the length is restored later."""
     w, i, j, k = q
@@ -49,7 +47,7 @@ def turned(q, v):
     )  # fmt: skip
 
 
-@inlined
+@woven
 def pose_error(x, y):
     """Measured pose y (7,) minus the predicted one, in body axes: m and rad."""
     moved = (y[0] - x.position[0], y[1] - x.position[1], y[2] - x.position[2])
@@ -65,7 +63,7 @@ def pose_error(x, y):
     )  # fmt: skip
 
 
-@inlined
+@woven
 def velocity_error(mean, y):
     """Measured mean velocity, in y (13,) behind the pose, minus the predicted one."""
     return (
@@ -74,7 +72,7 @@ def velocity_error(mean, y):
     )  # fmt: skip
 
 
-@inlined
+@woven
 def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
     """The state after a reading; where velocities are read, poses are taken as measured."""
     nu = add6(x.nu, 1.0, each6(gain_nu, e))
@@ -86,44 +84,34 @@ def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
 
 
 @compiled
-def observe_job(
-    job, jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
-):
-    """Innovations of one job: from reading `first`, over the `steps` readings that follow."""
-    m, first, at, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
-    x, body, own, place = state_of(jobs.state[job]), constants_of(bodies, m), p[m], site_of(site)
-    gain_pose, gain_nu, gain_a = vector6(gains[0]), vector6(gains[1]), vector6(gains[2])
-    fade, a, n = vector6(decay), ZERO6, ends[first]
-    memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
-    for k in range(first + 1, first + 1 + jobs.steps[job]):
-        mean, count = ZERO6, ends[k] - n
-        while n < ends[k]:
-            t, before, push = start + (n - ends[first]) * h, x, a
-            if body.forgets != 0.0:
-                push = add6(a, 1.0, push_over_step(x, memory, h, body))
-            x = runge_kutta(t, x, h, body, own, step_of(inputs, inputs.row[m], n), push, place)
-            if body.forgets != 0.0:
-                memory = memory_after(memory, before, x, h, body)
-            mean = add6(add6(mean, 0.5 / count, before.nu), 0.5 / count, x.nu)
-            a, n = each6(fade, a), n + 1
-        y = readings[row[m], k]
-        e = velocity_error(mean, y) if by_velocity else pose_error(x, y)
-        x = renormalised(corrected(x, y, e, gain_pose, gain_nu, by_velocity))
-        a = add6(a, 1.0, each6(gain_a, e))
-        for i in range(6):
-            out[at + k - first - 1, i] = e[i]
-
-
-@njit(cache=True, parallel=True)
 def observe(jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out):
-    """Run the jobs on all cores; each is independent, so the numbers do not depend on how many.
+    """Innovations of the jobs: each from reading `first`, over the `steps` readings that follow.
 
     `ends` (k,) steps at which the readings (r, k, 13) end, `row` (m,) which of them belong to each
     parameter set; `gains` (3, 6) of pose, velocity and disturbance; `decay` (6,) of the
     disturbance over one step; `out` (.., 6) innovations, m or m/s and rad or rad/s.
     """
-    for job in prange(jobs.first.size):
-        observe_job(
-            job, jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay,
-            by_velocity, out,
-        )  # fmt: skip
+    place, fade = site_of(site), vector6(decay)
+    gain_pose, gain_nu, gain_a = vector6(gains[0]), vector6(gains[1]), vector6(gains[2])
+    for job in range(jobs.first.size):
+        m, first, at, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
+        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), p[m]
+        a, n = ZERO6, ends[first]
+        memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
+        for k in range(first + 1, first + 1 + jobs.steps[job]):
+            mean, count = ZERO6, ends[k] - n
+            while n < ends[k]:
+                t, before, push = start + (n - ends[first]) * h, x, a
+                if body.forgets != 0.0:
+                    push = add6(a, 1.0, push_over_step(x, memory, h, body))
+                x = runge_kutta(t, x, h, body, own, step_of(inputs, inputs.row[m], n), push, place)
+                if body.forgets != 0.0:
+                    memory = memory_after(memory, before, x, h, body)
+                mean = add6(add6(mean, 0.5 / count, before.nu), 0.5 / count, x.nu)
+                a, n = each6(fade, a), n + 1
+            y = readings[row[m], k]
+            e = velocity_error(mean, y) if by_velocity else pose_error(x, y)
+            x = renormalised(corrected(x, y, e, gain_pose, gain_nu, by_velocity))
+            a = add6(a, 1.0, each6(gain_a, e))
+            for i in range(6):
+                out[at + k - first - 1, i] = e[i]

@@ -1,9 +1,17 @@
 """Small vectors as tuples of floats: they live in registers, where arrays would be counted."""
 
+from typing import Any
+
 from numba import njit
 
-inlined = njit(cache=True, forceinline=True, error_model="numpy", fastmath={"contract", "nsz"})
-compiled = njit(cache=True, error_model="numpy", fastmath={"contract", "nsz"})
+MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
+# What makes a function callable from outside takes half of the time that it takes to compile.
+UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+inlined = njit(cache=True, forceinline=True, **MATHS)  # helpers of kernels
+woven = njit(cache=True, forceinline=True, **MATHS, **UNSEEN)  # the same, not called from Python
+called = njit(cache=True, **MATHS, **UNSEEN)  # too large or too rare to be inlined
+compiled = njit(cache=True, nogil=True, **MATHS)  # what Python calls, from any thread
 
 
 @inlined

@@ -103,7 +103,7 @@ def run(
 def _in_parallel(jobs: Sequence[Job], cores: int, progress: Progress) -> None:
     """One process a core, one thread each: seconds are then those of one core."""
     os.environ.update(ONE_THREAD)
-    context = multiprocessing.get_context("spawn")  # numba's threads do not survive a fork
+    context = multiprocessing.get_context("spawn")  # threads do not survive a fork
     with ProcessPoolExecutor(cores, mp_context=context) as pool:
         waiting = [pool.submit(work, job) for job in jobs]
         try:

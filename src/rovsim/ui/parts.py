@@ -11,7 +11,7 @@ from rovsim.figures.marks import number, significant
 
 FONT = "Roboto, system-ui, sans-serif"
 
-# One thread computes: Numba's parallel loops must not run twice at once in a process.
+# One thread computes: it uses all cores, and what was asked for first is shown first.
 _thread = ThreadPoolExecutor(1)
 
 
