@@ -37,7 +37,7 @@ thesis: setup
 	$(BIN)/python -m rovsim.report.chapter_page results/kth_tank_2025 docs/thesis.md
 
 test: setup
-	$(BIN)/python -m pytest -n $(CORES)
+	$(BIN)/python -m pytest -n $(CORES) --dist worksteal
 
 ui: setup
 	$(BIN)/rovsim ui $(if $(CAMPAIGN),campaign=$(CAMPAIGN))
