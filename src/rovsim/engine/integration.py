@@ -171,13 +171,15 @@ def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
     place, features, a_res = site_of(site), np.empty(FEATURES), np.empty(6)
     for job in range(jobs.first.size):
         m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
-        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), p[m]
+        x, body, own, left = state_of(jobs.state[job]), constants_of(bodies, m), p[m], stride
         memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
         for n in range(jobs.steps[job]):
             step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
             x, memory = stepped(t, x, memory, h, body, own, step, data, place, features, a_res)
-            if (n + 1) % stride == 0:
-                store(x, out[row + n // stride])
+            left -= 1
+            if left == 0:
+                store(x, out[row])
+                row, left = row + 1, stride
 
 
 @compiled
