@@ -39,6 +39,13 @@ class ThrustPath:
         self.strengths = [e for e in ranked if isinstance(e, Strength)]
         self.responses = [e for e in ranked if isinstance(e, Response)]
 
+    @property
+    def key(self) -> tuple:
+        """Equal where the same commands make the same thrust, whatever autopilots do beside it."""
+        left = [autopilot.mixed(np.eye(6)).tobytes() for autopilot in self.autopilots]
+        acting = (*self.clocks, *self.shapings, *self.strengths, *self.responses)
+        return (*left, *((e.id, e.values.tobytes()) for e in acting))
+
     def arrival(self, time: Array) -> Array:
         """Instants at which lines logged at `time` take effect."""
         for clock in self.clocks:

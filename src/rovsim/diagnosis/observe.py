@@ -19,7 +19,7 @@ from rovsim.engine.cores import run_jobs
 from rovsim.memory import measured_memory
 from rovsim.model import Model
 from rovsim.replay import as_true, packed_inputs, place, stacked
-from rovsim.thrust import Between
+from rovsim.thrust import Between, Thrust
 
 NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
 
@@ -107,20 +107,20 @@ def _wrench_parameters(model: Model, slots: Sequence[type[Wrench]]) -> Array:
 
 
 def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
-    """Thrust of all models; those with the same thrust path share a row."""
+    """Thrust of all models; those that are pushed alike share a row."""
     rows: dict[tuple, int] = {}
+    thrusts: dict[tuple, Thrust] = {}
     parts, row, duration = [], [], float(watch.edges[-1] - watch.edges[0])
     for model in models:
         path = model.thrust_path
-        acting = (
-            *path.clocks, *path.autopilots, *path.shapings, *path.strengths, *path.responses
-        )  # fmt: skip
-        inertia = model.body.M.tobytes() if path.autopilots else b""
-        key = (model.body.B.tobytes(), inertia, *((e.id, e.values.tobytes()) for e in acting))
+        if path.key not in thrusts:
+            thrusts[path.key] = path.over_steps(watch.motion.commands, watch.edges, between)
+        loops = [loop.values.tobytes() for loop in path.autopilots]
+        inertia = model.body.M.tobytes() if loops else b""
+        key = (*path.key, *loops, inertia, model.body.B.tobytes())
         if key not in rows:
             rows[key] = len(rows)
-            thrust = path.over_steps(watch.motion.commands, watch.edges, between)
-            parts.append(packed_inputs(model, thrust, duration))
+            parts.append(packed_inputs(model, thrusts[path.key], duration))
         row.append(rows[key])
     return stacked(parts, row)
 
