@@ -23,7 +23,8 @@ def _threads(count: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(count, "rovsim")
 
 
-os.register_at_fork(after_in_child=_threads.cache_clear)  # a child has none of them
+if hasattr(os, "register_at_fork"):  # where processes fork, a child has none of the threads
+    os.register_at_fork(after_in_child=_threads.cache_clear)
 
 
 def run_jobs(kernel: Callable, jobs: Jobs, *given: Any) -> None:
