@@ -2,7 +2,9 @@
 
 from typing import Any, Mapping
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from rovsim.figures.marks import legend
 from rovsim.figures.style import sheet, styled
@@ -25,7 +27,7 @@ COLORS = {"knn": "#D55E00", "gp": "#0072B2", "gp_six_kernels": "#009E73", "svgp"
 @styled()
 def draw_sizes(content: Mapping[str, Any]) -> Figure:
     """Median (line) and p99.9 (thin, above it) against points, one panel a family."""
-    figure = sheet(85)
+    figure = sheet(110)
     for axes, (title, names) in zip(figure.subplots(1, 2), SIZES.items(), strict=True):
         for name, color in names.items():
             sizes = _sizes(content["inference"], name)
@@ -38,8 +40,17 @@ def draw_sizes(content: Mapping[str, Any]) -> Figure:
         axes.axhline(1000.0, color="#444444", linestyle="--", linewidth=0.8)
         axes.set(xscale="log", yscale="log", xlabel="points", ylabel="one prediction (µs)")
         axes.set_title(title)
-        axes.legend(fontsize=6.5)
+        _plain(axes)
+        axes.legend(fontsize=6.5, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
     return figure
+
+
+def _plain(axes: Axes) -> None:
+    """Decades as plain numbers: the style takes no mathematical notation."""
+    for axis in (axes.xaxis, axes.yaxis):
+        if axis.get_scale() == "log":
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}"))
+            axis.set_minor_formatter(NullFormatter())
 
 
 def _sizes(inference: Mapping[str, Any], name: str) -> dict[int, Mapping[str, Any]]:
@@ -65,6 +76,7 @@ def draw_accuracy(content: Mapping[str, Any]) -> Figure:
             )  # fmt: skip
         axes.axhline(1.0, color="#444444", linewidth=0.8, linestyle=":")
         axes.set(xscale="log", xlabel="one prediction (µs)", title=where)
+        _plain(axes)
     panels[0].set_ylabel("share of the residual left")
     legend(figure, panels[0].get_legend_handles_labels()[0])
     return figure
