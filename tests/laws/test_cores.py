@@ -13,40 +13,46 @@ from hypothesis import strategies as st
 from rovsim.engine.cores import on_cores
 
 
-def times_done(lengths, cores):
+def on(cores):
+    """As if the machine had so many cores."""
+    return patch.object(numba.config, "NUMBA_NUM_THREADS", cores)
+
+
+def times_done(lengths):
     """How often each job was worked off."""
     done = np.zeros(len(lengths), int)
 
     def work(part):
         done[part] += 1
 
-    with patch.object(numba.config, "NUMBA_NUM_THREADS", cores):
-        on_cores(work, np.asarray(lengths))
+    on_cores(work, np.asarray(lengths))
     return done.tolist()
 
 
 @given(st.lists(st.integers(0, 1000), max_size=40), st.integers(1, 5))
 def test_every_job_is_done_once(lengths, cores):
-    assert times_done(lengths, cores) == [1] * len(lengths)
+    with on(cores):
+        assert times_done(lengths) == [1] * len(lengths)
 
 
 def test_several_may_share_at_once():
-    with ThreadPoolExecutor(4) as threads:
-        found = list(threads.map(lambda _: times_done([3] * 50, 2), range(20)))
+    with on(2), ThreadPoolExecutor(4) as threads:
+        found = list(threads.map(lambda _: times_done([3] * 50), range(20)))
     assert found == [[1] * 50] * 20
 
 
 def test_a_forked_process_has_threads_of_its_own():
-    assert times_done([1] * 9, 2) == [1] * 9
-    child = os.fork()
-    if child == 0:
-        os._exit(0 if times_done([1] * 9, 2) == [1] * 9 else 1)
-    assert os.waitpid(child, 0)[1] == 0
+    with on(2):
+        assert times_done([1] * 9) == [1] * 9
+        child = os.fork()
+        if child == 0:
+            os._exit(0 if times_done([1] * 9) == [1] * 9 else 1)
+        assert os.waitpid(child, 0)[1] == 0
 
 
 def test_what_goes_wrong_in_a_part_is_told():
     def work(part):
         raise ZeroDivisionError
 
-    with patch.object(numba.config, "NUMBA_NUM_THREADS", 2), pytest.raises(ZeroDivisionError):
+    with on(2), pytest.raises(ZeroDivisionError):
         on_cores(work, np.ones(9))

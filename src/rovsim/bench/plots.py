@@ -2,11 +2,9 @@
 
 from typing import Any, Mapping
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from rovsim.figures.marks import legend
+from rovsim.figures.marks import legend, plain_log
 from rovsim.figures.style import sheet, styled
 
 # One colour for us, the Okabe-Ito colours for the libraries
@@ -38,19 +36,11 @@ def draw_sizes(content: Mapping[str, Any]) -> Figure:
                     markersize=3, label=label,
                 )  # fmt: skip
         axes.axhline(1000.0, color="#444444", linestyle="--", linewidth=0.8)
-        axes.set(xscale="log", yscale="log", xlabel="points", ylabel="one prediction (µs)")
+        plain_log(axes, "xy")
+        axes.set(xlabel="points", ylabel="one prediction (µs)")
         axes.set_title(title)
-        _plain(axes)
         axes.legend(fontsize=6.5, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
     return figure
-
-
-def _plain(axes: Axes) -> None:
-    """Decades as plain numbers: the style takes no mathematical notation."""
-    for axis in (axes.xaxis, axes.yaxis):
-        if axis.get_scale() == "log":
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}"))
-            axis.set_minor_formatter(NullFormatter())
 
 
 def _sizes(inference: Mapping[str, Any], name: str) -> dict[int, Mapping[str, Any]]:
@@ -75,8 +65,8 @@ def draw_accuracy(content: Mapping[str, Any]) -> Figure:
                 label=f"{name.replace('_', ' ')}{', fades' if fades else ''}",
             )  # fmt: skip
         axes.axhline(1.0, color="#444444", linewidth=0.8, linestyle=":")
-        axes.set(xscale="log", xlabel="one prediction (µs)", title=where)
-        _plain(axes)
+        plain_log(axes)
+        axes.set(xlabel="one prediction (µs)", title=where)
     panels[0].set_ylabel("share of the residual left")
     legend(figure, panels[0].get_legend_handles_labels()[0])
     return figure

@@ -112,15 +112,15 @@ def _inputs(models: Sequence[Model], watch: Watch, between: Between) -> Inputs:
     thrusts: dict[tuple, Thrust] = {}
     parts, row, duration = [], [], float(watch.edges[-1] - watch.edges[0])
     for model in models:
-        path = model.thrust_path
-        if path.key not in thrusts:
-            thrusts[path.key] = path.over_steps(watch.motion.commands, watch.edges, between)
+        path, pushed = model.thrust_path, model.thrust_path.key
+        if pushed not in thrusts:
+            thrusts[pushed] = path.over_steps(watch.motion.commands, watch.edges, between)
         loops = [loop.values.tobytes() for loop in path.autopilots]
         inertia = model.body.M.tobytes() if loops else b""
-        key = (*path.key, *loops, inertia, model.body.B.tobytes())
+        key = (*pushed, *loops, inertia, model.body.B.tobytes())
         if key not in rows:
             rows[key] = len(rows)
-            parts.append(packed_inputs(model, thrusts[path.key], duration))
+            parts.append(packed_inputs(model, thrusts[pushed], duration))
         row.append(rows[key])
     return stacked(parts, row)
 

@@ -82,11 +82,13 @@ def nothing(axes: Axes, text: str) -> None:
     )  # fmt: skip
 
 
-def plain_log(axes: Axes) -> None:
-    """Label a logarithmic x axis with plain numbers: 0.1, 1, 10."""
-    axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda *_: ""))
+def plain_log(axes: Axes, names: str = "x") -> None:
+    """Make axes (x, y or xy) logarithmic and label them with plain numbers: 0.1, 1, 10."""
+    axes.set(**{f"{name}scale": "log" for name in names})
+    for name in names:
+        axis = axes.xaxis if name == "x" else axes.yaxis
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(FuncFormatter(lambda *_: ""))
 
 
 def number(value: float | None) -> float:
