@@ -3,7 +3,7 @@
 import sys
 
 from rovsim.chapter import Chapter
-from rovsim.errors import RovsimError
+from rovsim.core.errors import RovsimError
 from rovsim.study import Study
 
 study = Study(config)

@@ -3,8 +3,8 @@
 import os
 import time
 
-from rovsim.errors import BadInput
-from rovsim.progress import counted
+from rovsim.core.errors import BadInput
+from rovsim.core.progress import counted
 
 
 def counting(rounds, pause):

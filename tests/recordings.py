@@ -7,7 +7,7 @@ import numpy as np
 import yaml
 from numpy import ndarray as Array
 
-from rovsim.frames import axes_signs, from_euler, from_matrix, matrix, to_euler
+from rovsim.core.rotations import axes_signs, from_euler, from_matrix, matrix, to_euler
 
 FORMATS = {"qtm_tsv": "poses.tsv", "csv": "poses.csv"}
 

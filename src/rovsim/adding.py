@@ -4,11 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Mapping, Sequence
 
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import read_json
+from rovsim.core.schema import checked
 from rovsim.diagnosis.content import SCHEMA
-from rovsim.errors import BadInput, nearest
-from rovsim.files import read_json
 from rovsim.model import EffectEntry, Model, load_model, model_of
-from rovsim.strict import checked
 
 
 def read_diagnosis(path: Path) -> dict[str, Any]:

@@ -5,12 +5,12 @@ from typing import Any, Sequence
 
 from rovsim.budget import Budget, budget
 from rovsim.config import Settings
+from rovsim.core.errors import BadInput
+from rovsim.core.progress import counted, reported, staged
 from rovsim.diagnosing import STAGES, Diagnosed, diagnosed
-from rovsim.errors import BadInput
 from rovsim.evidence import Evidence
 from rovsim.loading import Measured
 from rovsim.model import Model, read_model
-from rovsim.progress import counted, reported, staged
 from rovsim.provenance import provenance
 from rovsim.replay import Replay, replay
 from rovsim.residual.storage import write_residual

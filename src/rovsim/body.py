@@ -6,8 +6,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
 from rovsim.engine.at import Constants
-from rovsim.errors import BadInput
 
 
 def cross_matrix(r: Array) -> Array:

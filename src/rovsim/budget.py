@@ -17,9 +17,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.files import read_arrays, write_arrays
 from rovsim.effects.base import Effect
 from rovsim.engine.at import Inputs
-from rovsim.files import read_arrays, write_arrays
 from rovsim.model import Model
 from rovsim.replay import ReplaySettings
 from rovsim.signals.motion import Motion

@@ -11,10 +11,10 @@ import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from rovsim import AXES
-from rovsim.errors import BadInput, nearest
-from rovsim.files import read_yaml
-from rovsim.frames import BodyAxes, WorldAxes, axes_signs
-from rovsim.strict import Section, checked
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import read_yaml
+from rovsim.core.rotations import BodyAxes, WorldAxes, axes_signs
+from rovsim.core.schema import Section, checked
 
 
 def _as_text(value: Any) -> Any:

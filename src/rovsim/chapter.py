@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import Path
 
 from rovsim.campaign import Campaign
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.evidence import ONCE
 from rovsim.ladder import EFFECTS
 from rovsim.residual.learner import learner

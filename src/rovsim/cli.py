@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, Sequence
 
-from rovsim.errors import BadInput, RovsimError, nearest
+from rovsim.core.errors import BadInput, RovsimError, nearest
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to")
@@ -53,8 +53,8 @@ def _main(words: list[str]) -> None:
         _sweep([f"command={command}", *overrides])
     else:
         from rovsim.config import compose
+        from rovsim.core.progress import heard_by
         from rovsim.effects import use_effect_files
-        from rovsim.progress import heard_by
 
         settings = compose([f"command={command}", *overrides])
         use_effect_files(settings.effect_files)

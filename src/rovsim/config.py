@@ -5,13 +5,13 @@ from typing import Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.schema import Section, checked
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
-from rovsim.errors import BadInput, nearest
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import LearnerSettings, learner_settings
 from rovsim.residual.storage import Control
 from rovsim.signals.chain import SignalSettings
-from rovsim.strict import Section, checked
 from rovsim.tank.settings import TankSettings
 
 CONF = Path(__file__).parents[2] / "conf"

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Iterator
 
+from rovsim.core.errors import RovsimError
 from rovsim.effects import use_effect_files
-from rovsim.errors import RovsimError
 
 
 @contextmanager

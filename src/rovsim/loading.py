@@ -7,10 +7,10 @@ from typing import Any
 
 from rovsim.campaign import Campaign, load_campaign
 from rovsim.config import Settings
+from rovsim.core.errors import BadInput
+from rovsim.core.progress import counted
 from rovsim.diagnosing import Runs
-from rovsim.errors import BadInput
 from rovsim.model import Model, load_model
-from rovsim.progress import counted
 from rovsim.quality import quality_of
 from rovsim.recording import read_run, usable_reason
 from rovsim.signals.chain import Stage, differentiated, filtered, resampled

@@ -14,8 +14,8 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 
 from rovsim import AXES
-from rovsim.errors import BadInput
-from rovsim.files import read_text
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text
 from rovsim.recording.recording import Commands
 from rovsim.scores import number
 

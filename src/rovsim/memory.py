@@ -4,8 +4,8 @@ import numpy as np
 import scipy
 from numpy import ndarray as Array
 
+from rovsim.core.rotations import unrotate
 from rovsim.engine.at import NO_MEMORY
-from rovsim.frames import unrotate
 from rovsim.model import Model
 from rovsim.signals.motion import Motion
 

@@ -11,15 +11,15 @@ from numpy import ndarray as Array
 from pydantic import BeforeValidator, Field
 
 from rovsim.body import Body, packed
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import plain, read_yaml, write_yaml
+from rovsim.core.schema import Number, Section, checked
 from rovsim.effects import effect
 from rovsim.effects.base import Coefficients, Effect, Sensing, Wrench
 from rovsim.engine.at import Constants
 from rovsim.engine.compiled import engine
-from rovsim.errors import BadInput, nearest
-from rovsim.files import plain, read_yaml, write_yaml
 from rovsim.recording.recording import CommandKind, Site
 from rovsim.residual.storage import Residual, read_residual
-from rovsim.strict import Number, Section, checked
 from rovsim.thrust import ThrustPath
 from rovsim.vehicle import VEHICLES, Thrusters, Vehicle, check_layout, load_vehicle
 from rovsim.view import View

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 import rovsim
-from rovsim.strict import Section
+from rovsim.core.schema import Section
 
 SOURCE = Path(rovsim.__file__).parent
 UNRELATED = ("command", "tracking", "timing", "hidden", "bench", "output", "port", "open")

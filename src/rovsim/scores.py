@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.frames import conjugate, log, multiply
+from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.recording.quality import EXCITED
 from rovsim.replay import OPEN_LOOP, Prediction, Replay, windows
 from rovsim.signals.motion import Motion

@@ -15,9 +15,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.body import packed
+from rovsim.core.errors import BadInput
 from rovsim.engine.at import Jobs, Place
 from rovsim.engine.cores import run_jobs
-from rovsim.errors import BadInput
 from rovsim.model import Model
 from rovsim.recording.recording import CommandKind, Commands, Site
 from rovsim.replay import packed_inputs, residual_data, stacked

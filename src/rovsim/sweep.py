@@ -6,9 +6,9 @@ from contextlib import nullcontext
 from typing import Any
 
 from rovsim.config import settings_of
+from rovsim.core.errors import RovsimError
+from rovsim.core.progress import heard_by
 from rovsim.effects import use_effect_files
-from rovsim.errors import RovsimError
-from rovsim.progress import heard_by
 
 
 def job(composed: Any) -> None:

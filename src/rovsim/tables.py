@@ -9,6 +9,7 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.files import write_text
 from rovsim.figures.marks import (
     ACCELERATION_UNITS,
     AXES,
@@ -18,7 +19,6 @@ from rovsim.figures.marks import (
     vector,
 )
 from rovsim.figures.pooled import horizon_text, pooled
-from rovsim.files import write_text
 from rovsim.marks import METRICS
 
 QUANTITIES = {

@@ -10,8 +10,8 @@ from typing import Literal, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
 from rovsim.effects.base import Autopilot, Clock, Effect, Response, Shaping, Strength
-from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Commands
 from rovsim.vehicle import Thrusters
 

@@ -9,8 +9,8 @@ from typing import Any, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
 from rovsim.engine.at import Inputs
-from rovsim.errors import BadInput
 from rovsim.memory import measured_memory
 from rovsim.model import Model
 from rovsim.replay import (

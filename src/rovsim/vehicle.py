@@ -10,14 +10,14 @@ from pydantic import Field, PositiveFloat
 from rovsim import AXES
 from rovsim.body import Body
 from rovsim.campaign import Campaign
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import read_yaml
+from rovsim.core.schema import Section, checked
 from rovsim.effects.added_mass import AddedMass
 from rovsim.effects.base import Coefficients, Effect
 from rovsim.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.effects.rigid_body import RigidBody
-from rovsim.errors import BadInput, nearest
-from rovsim.files import read_yaml
-from rovsim.strict import Section, checked
 
 VEHICLES = Path(__file__).parents[2] / "conf" / "vehicle"
 

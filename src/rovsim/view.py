@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.body import cross_matrix
-from rovsim.frames import Rigid, matrix, multiply, rotate
+from rovsim.core.rotations import Rigid, matrix, multiply, rotate
 
 
 @dataclass(frozen=True, eq=False)

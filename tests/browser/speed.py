@@ -15,7 +15,7 @@ from playwright.sync_api import sync_playwright
 from chromium import DESK, FLAGS, NAMES, started
 from rovsim.bench.machine import machine
 from rovsim.cli import main
-from rovsim.files import write_json
+from rovsim.core.files import write_json
 
 STARTS, MOVES = 5, 40
 # ECharts clears its canvas, then draws in the same task: the task after that is the end.

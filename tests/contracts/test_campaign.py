@@ -8,7 +8,7 @@ import pytest
 
 from recordings import campaign_content, write_campaign, write_run
 from rovsim.campaign import load_campaign
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 
 
 def test_a_campaign_gives_absolute_paths_and_the_tank_in_ned(tmp_path, monkeypatch):

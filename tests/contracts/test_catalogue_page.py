@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from rovsim import AXES
+from rovsim.core.errors import BadInput
 from rovsim.effects import built_in
-from rovsim.errors import BadInput
 from rovsim.figures.signature import signature, write
 from rovsim.gallery.flight import blocks, fly, found, seen, settings
 from rovsim.gallery.page import PAGE, PICTURES, entry, page

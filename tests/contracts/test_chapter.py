@@ -13,7 +13,7 @@ from recordings import write_campaign, write_lines
 from rovsim.chapter import Chapter
 from rovsim.cli import main
 from rovsim.config import compose
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.study import Study
 
 ROOT = Path(__file__).parents[2]

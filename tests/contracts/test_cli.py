@@ -9,7 +9,7 @@ import yaml
 
 from rovsim.cli import listed, main, override, quoted
 from rovsim.config import compose
-from rovsim.files import read_yaml
+from rovsim.core.files import read_yaml
 
 AWKWARD = [
     "my tank, 2.5 m (a=b) é",

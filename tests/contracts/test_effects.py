@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from rovsim.core.errors import BadInput
 from rovsim.effects import built_in, effect
 from rovsim.effects.base import Autopilot, Coefficients, Wrench
-from rovsim.errors import BadInput
 from rovsim.model import read_model
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings, trajectories

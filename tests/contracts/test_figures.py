@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.patches import Rectangle
 
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.evidence import ONCE, PER_RUN
 from rovsim.figures import SECTIONS, kind, kinds
 from rovsim.figures.style import save

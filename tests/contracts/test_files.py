@@ -5,8 +5,8 @@ import pickle
 import numpy as np
 import pytest
 
-from rovsim.errors import BadInput
-from rovsim.files import (
+from rovsim.core.errors import BadInput
+from rovsim.core.files import (
     appearing,
     read_arrays,
     read_json,
@@ -14,9 +14,9 @@ from rovsim.files import (
     write_arrays,
     write_json,
 )
+from rovsim.core.schema import checked
 from rovsim.loading import results_folder
 from rovsim.signals.chain import SignalSettings
-from rovsim.strict import checked
 
 
 class Evil:

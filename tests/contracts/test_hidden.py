@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_json
 from rovsim.effects import catalogue
-from rovsim.errors import BadInput
-from rovsim.files import read_json
 from rovsim.hidden.case import SEEDS, Case, Unlisted, seed_of
 from rovsim.hidden.flight import fly
 from rovsim.hidden.methods import Method
@@ -227,14 +227,14 @@ def asked(tmp_path):
 
 def test_what_was_answered_is_not_asked_again(tmp_path, asked):
     cases = [case(LAG, tank=SHORT, id=f"single/{k}", seed=k) for k in range(2)]
-    method = Method("stub", stub, ("rovsim.errors",))
+    method = Method("stub", stub, ("rovsim.core.errors",))
     run(cases[:1], [method], tmp_path / "r", 1)
     assert asked() == 1
     run(cases, [method], tmp_path / "r", 1)
     assert asked() == 2
     run(cases, [method], tmp_path / "r", 1)
     assert asked() == 2
-    changed = Method("stub", stub, ("rovsim.errors", "rovsim.latency"))
+    changed = Method("stub", stub, ("rovsim.core.errors", "rovsim.latency"))
     run(cases[:1], [changed], tmp_path / "r", 1)
     assert asked() == 3
     found = summary(judged(answers(cases, method, tmp_path / "r")))
@@ -243,7 +243,7 @@ def test_what_was_answered_is_not_asked_again(tmp_path, asked):
 
 def test_a_crash_is_a_wrong_answer_and_is_told(tmp_path, asked):
     STATE["crash"] = True
-    one, method = case(LAG, tank=SHORT), Method("stub", stub, ("rovsim.errors",))
+    one, method = case(LAG, tank=SHORT), Method("stub", stub, ("rovsim.core.errors",))
     run([one], [method], tmp_path, 1)
     assert "no idea" in read_json(place(tmp_path, method, one))["error"]
     found = summary(judged(answers([one], method, tmp_path)))

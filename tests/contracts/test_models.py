@@ -3,8 +3,8 @@
 import pytest
 import yaml
 
-from rovsim.errors import BadInput
-from rovsim.files import read_yaml
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_yaml
 from rovsim.model import read_model
 from rovsim.vehicle import VEHICLES, load_vehicle
 from worlds import SHARED, needed

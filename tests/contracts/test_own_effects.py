@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from rovsim.cli import main
+from rovsim.core.errors import BadInput
 from rovsim.effects import catalogue, effect, use_effect_files
-from rovsim.errors import BadInput
 from rovsim.study import Study
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")

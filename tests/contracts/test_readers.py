@@ -16,7 +16,7 @@ from recordings import (
     write_run,
 )
 from rovsim.campaign import load_campaign
-from rovsim.frames import matrix
+from rovsim.core.rotations import matrix
 from rovsim.recording import Recording, quality_report, read_run, usable_reason
 from rovsim.recording.readers import command_readers, mocap_readers
 

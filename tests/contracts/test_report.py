@@ -9,9 +9,9 @@ from html.parser import HTMLParser
 import pytest
 
 from rovsim import AXES
+from rovsim.core.files import write_json
 from rovsim.figures import kind
 from rovsim.figures.style import save
-from rovsim.files import write_json
 from rovsim.report import chapter_page, page, published, terminal
 from rovsim.report.marked import BEGIN, END
 from rovsim.report.speed import timing_sentences

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import yaml
 
-from rovsim.errors import BadInput
-from rovsim.files import read_arrays, write_arrays
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_arrays, write_arrays
 from rovsim.residual.features import FEATURES, FeatureSettings, feature_names
 from rovsim.residual.layout import BLOCKS, COUNT, POINTS
 from rovsim.residual.learner import learner, learner_settings, learners, spread_rows, train

@@ -3,7 +3,7 @@
 import pytest
 
 from rovsim.cli import main
-from rovsim.progress import counted, heard_by, reported, staged
+from rovsim.core.progress import counted, heard_by, reported, staged
 
 
 @pytest.mark.parametrize("flag", ["--quiet", "-q", "output=quiet"])

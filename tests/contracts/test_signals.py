@@ -10,8 +10,9 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rovsim import frames
-from rovsim.errors import BadInput
+from rovsim.core import rotations
+from rovsim.core.errors import BadInput
+from rovsim.core.schema import checked
 from rovsim.recording.recording import Commands, Recording, RunInfo, Site
 from rovsim.signals.chain import (
     SignalSettings,
@@ -27,7 +28,6 @@ from rovsim.signals.filter import Filter, filter_eta
 from rovsim.signals.motion import Motion, Poses
 from rovsim.signals.outliers import KeepAll, Outliers, find_outliers
 from rovsim.signals.resample import Resampling, resample
-from rovsim.strict import checked
 
 CONF = Path(__file__).parents[2] / "conf"
 
@@ -63,7 +63,7 @@ def wandering(seed, n, batch=()):
     t = 0.01 * np.arange(n)[:, None, None]
     pulse, phase = rng.uniform(0.5, 6, (*batch, 1, 6, 3)), rng.uniform(0, 6, (*batch, 1, 6, 3))
     x = np.sum(0.1 * np.sin(pulse * t + phase), axis=-1)
-    return np.concatenate([x[..., :3], frames.exp(x[..., 3:])], axis=-1)
+    return np.concatenate([x[..., :3], rotations.exp(x[..., 3:])], axis=-1)
 
 
 def recording(eta, time=None, found=None, nu=None):
@@ -162,7 +162,7 @@ def test_long_gaps_stay_gaps_and_the_clock_is_uniform(kind, seed):
         )
     # accelerations stay below 0.1 x 3 x 6^2 = 11 /s2 an axis: h^2 / 8 of it over a gap of 0.1 s
     between = np.stack([np.interp(poses.time, 3.0 + 0.01 * np.arange(n), x) for x in eta.T], axis=1)
-    between[:, 3:] = frames.normalized(between[:, 3:])
+    between[:, 3:] = rotations.normalized(between[:, 3:])
     # 4 ms of jitter at up to 0.1 x 3 x 6 = 1.8 /s
     off = np.abs(poses.eta - between)[poses.usable]
     assert off.max() < 11 * 0.1**2 / 8 + 0.004 * 1.8

@@ -12,9 +12,9 @@ from chores import counting, dying, failing
 from rovsim.answering import compare
 from rovsim.cli import main
 from rovsim.config import compose
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_json
 from rovsim.effects import catalogue
-from rovsim.errors import BadInput
-from rovsim.files import read_json
 from rovsim.model import read_model
 from rovsim.ui import charts, path, tasks
 from rovsim.ui.draft import Draft, reach

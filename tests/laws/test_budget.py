@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rovsim.budget import RESTORING, Budget, budget
+from rovsim.core.rotations import exp
 from rovsim.effects import catalogue
 from rovsim.effects.base import Autopilot
-from rovsim.frames import exp
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
 from rovsim.training import accelerations, at_samples, samples

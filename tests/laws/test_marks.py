@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rovsim import AXES
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.folds import held_out
 from rovsim.marks import METRICS, Published, against, standing
 from rovsim.recording.recording import Commands, RunInfo, Site

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rovsim.core.errors import BadInput
 from rovsim.effects.current import Current
 from rovsim.effects.damping import LinearDamping
 from rovsim.effects.fluid_memory import ARM, FluidMemory
-from rovsim.errors import BadInput
 from rovsim.memory import lag_of_lines, measured_memory
 from rovsim.replay import ReplaySettings, replay, trajectories
 from rovsim.signals.chain import SignalSettings

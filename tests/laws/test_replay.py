@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from rovsim.body import Body, packed
+from rovsim.core.rotations import from_euler, matrix, rotate, unrotate
 from rovsim.effects.buoyancy import NetBuoyancy
 from rovsim.effects.damping import QuadraticDamping
 from rovsim.engine.at import Inputs, Jobs, Place
 from rovsim.engine.compiled import engine
 from rovsim.engine.cores import run_jobs
-from rovsim.frames import from_euler, matrix, rotate, unrotate
 from rovsim.model import zero_acceleration
 from rovsim.replay import Replay, ReplaySettings, replay, trajectories, windows
 from rovsim.scores import score

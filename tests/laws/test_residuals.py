@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numba import njit
 from scipy.linalg import eigh
 
-from rovsim import frames
+from rovsim.core import rotations
 from rovsim.engine.cores import on_cores
 from rovsim.residual.export import Kernel, check_exported, export_expansion, export_neighbours
 from rovsim.residual.features import (
@@ -148,20 +148,22 @@ def test_far_away_an_expansion_knows_nothing_but_its_mean(seed, far):
 def test_one_sample_is_assembled_as_many(seed, blocks):
     rng = np.random.default_rng(seed)
     nu, nu_dot, wrench = rng.normal(size=(3, 5, 6))
-    q = frames.normalized(rng.normal(size=(5, 4)))
+    q = rotations.normalized(rng.normal(size=(5, 4)))
     chosen = FeatureSettings(blocks=blocks)
     X = assemble(chosen, nu, nu_dot, wrench, q)
     data, d = np.zeros(HEADER), len(feature_names(chosen))
     data[BLOCKS] = blocks_code(chosen)
     for i in range(5):
         x = np.full(FEATURES, np.nan)
-        assemble_one(data, nu[i], nu_dot[i], wrench[i], frames.matrix(q[i]), x)
+        assemble_one(data, nu[i], nu_dot[i], wrench[i], rotations.matrix(q[i]), x)
         assert x[:d] == pytest.approx(X[i], abs=1e-14)
         assert np.isnan(x[d:]).all()
 
 
 def test_gravity_points_down_whatever_the_heading():
-    q = frames.from_euler(np.zeros(3), np.array([0.0, 0.0, np.pi / 2]), np.array([0.0, 2.0, 1.0]))
+    q = rotations.from_euler(
+        np.zeros(3), np.array([0.0, 0.0, np.pi / 2]), np.array([0.0, 2.0, 1.0])
+    )
     X = assemble(FeatureSettings(blocks=("gravity",)), *np.zeros((3, 3, 6)), q)
     # nose up by a right angle: down is towards the stern
     assert np.allclose(X, [[0, 0, 1], [0, 0, 1], [-1, 0, 0]])

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from rovsim.core.rotations import exp, log, matrix, multiply, normalized
 from rovsim.effects.sensing import MarkerMisalignment, MarkerOffset, WorldTilt
-from rovsim.frames import exp, log, matrix, multiply, normalized
 from rovsim.replay import ReplaySettings, replay, trajectories
 from rovsim.signals.chain import SignalSettings, velocities
 from rovsim.signals.filter import Butterworth

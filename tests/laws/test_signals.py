@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rovsim import frames
-from rovsim.errors import BadInput
+from rovsim.core import rotations
+from rovsim.core.errors import BadInput
 from rovsim.signals.binned import backward_difference, bin_means, edge_values
 from rovsim.signals.chain import SignalSettings, velocities
 from rovsim.signals.differentiate import Central, SavitzkyGolay, Spline, differentiate_eta
@@ -24,8 +24,8 @@ class Sway:
     def eta(self, t):
         (psi, *_), (phi, *_) = self.psi(t), self.phi(t)
         p = self.amplitude * np.sin(self.pulse * t[:, None] + self.phase)
-        q = frames.multiply(
-            frames.from_euler(0 * t, 0 * t, psi), frames.from_euler(phi, 0 * t, 0 * t)
+        q = rotations.multiply(
+            rotations.from_euler(0 * t, 0 * t, psi), rotations.from_euler(phi, 0 * t, 0 * t)
         )
         return np.concatenate([p, q], axis=1)
 
@@ -100,8 +100,8 @@ def test_coning_at_a_constant_rate(cone, spin, speed):
     """
     h, t = 0.01, 0.01 * np.arange(200)
     angle = spin * t
-    q = frames.multiply(
-        frames.from_euler(0 * t, 0 * t, angle), frames.from_euler(cone + 0 * t, 0 * t, 0 * t)
+    q = rotations.multiply(
+        rotations.from_euler(0 * t, 0 * t, angle), rotations.from_euler(cone + 0 * t, 0 * t, 0 * t)
     )
     p = np.stack([np.sin(angle), -np.cos(angle), speed * t], axis=1)
     nu, nu_dot = differentiate_eta(np.concatenate([p, q], axis=1), h, Spline())
@@ -146,7 +146,7 @@ def test_noise_in_velocity_and_acceleration_is_what_theory_says(seed):
     """White noise of standard deviation s at rate F leaves s sqrt(2/F int (2 pi f)^2k G^2 df)."""
     rate, n, noise = 100.0, 20000, np.repeat([0.5e-3, 2e-3], 3)
     e = noise * np.random.default_rng(seed).normal(size=(n, 6))
-    eta = np.concatenate([e[:, :3], frames.exp(e[:, 3:])], axis=1)
+    eta = np.concatenate([e[:, :3], rotations.exp(e[:, 3:])], axis=1)
     nu, nu_dot = velocities(eta, 1 / rate, SignalSettings())
     f = np.linspace(0, rate / 2, 5000)[:-1]
     gain = 1 / (1 + (np.tan(np.pi * f / rate) / np.tan(np.pi * 5 / rate)) ** 6)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from rovsim.core.errors import BadInput
 from rovsim.effects.clocks import InputDelay
 from rovsim.effects.fluid_memory import FluidMemory
 from rovsim.effects.thrusters import ThrusterLag, VoltageSag
-from rovsim.errors import BadInput
 from rovsim.replay import ReplaySettings, trajectories
 from rovsim.residual.learner import learner_settings, train
 from rovsim.residual.storage import Residual

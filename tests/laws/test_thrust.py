@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rovsim.core.errors import BadInput
 from rovsim.effects.clocks import ClockDrift, InputDelay
 from rovsim.effects.thrusters import (
     AdvanceLoss,
@@ -15,7 +16,6 @@ from rovsim.effects.thrusters import (
     ThrusterLag,
     VoltageSag,
 )  # fmt: skip
-from rovsim.errors import BadInput
 from rovsim.model import nominal
 from rovsim.recording.recording import Commands
 from rovsim.vehicle import Vehicle

@@ -5,8 +5,8 @@ import json
 import numba
 import pytest
 
+from rovsim.core.files import read_yaml
 from rovsim.diagnosis.content import SCHEMA
-from rovsim.files import read_yaml
 from rovsim.hidden.asking import diagnosis
 from rovsim.hidden.flight import fly
 from rovsim.hidden.suites import combination, nothing

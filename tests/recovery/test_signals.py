@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rovsim import frames
+from rovsim.core import rotations
 from rovsim.recording.recording import Commands, Recording, RunInfo, Site
 from rovsim.signals.chain import SignalSettings, clean
 from rovsim.signals.outliers import Hampel, VelocityGate, find_outliers
@@ -22,13 +22,13 @@ def truth(t, speed=0.6, rate=1.5, hz=0.25):
     c, s = np.cos(yaw), np.sin(yaw)
     v = np.stack([c * p_dot[:, 0] + s * p_dot[:, 1], c * p_dot[:, 1] - s * p_dot[:, 0]], axis=1)
     nu = np.column_stack([v, p_dot[:, 2], 0 * t, 0 * t, yaw_rate])
-    return np.concatenate([p, frames.from_euler(0 * t, 0 * t, yaw)], axis=1), nu
+    return np.concatenate([p, rotations.from_euler(0 * t, 0 * t, yaw)], axis=1), nu
 
 
 def noisy(eta, rng):
-    turn = frames.exp(ANGLE_NOISE * rng.normal(size=(len(eta), 3)))
+    turn = rotations.exp(ANGLE_NOISE * rng.normal(size=(len(eta), 3)))
     position = eta[:, :3] + NOISE * rng.normal(size=(len(eta), 3))
-    return np.concatenate([position, frames.multiply(eta[:, 3:], turn)], axis=1)
+    return np.concatenate([position, rotations.multiply(eta[:, 3:], turn)], axis=1)
 
 
 def record(time, eta, found=None, nu=None):
@@ -46,7 +46,7 @@ def swap_markers(eta, at, length, size, turn, rng):
     way = rng.normal(size=(2, count, 3))
     way /= np.linalg.norm(way, axis=-1, keepdims=True)
     eta[k, :3] += size * rng.uniform(1, 1.5, (count, 1)) * way[0]
-    eta[k, 3:] = frames.multiply(eta[k, 3:], frames.exp(turn * way[1]))
+    eta[k, 3:] = rotations.multiply(eta[k, 3:], rotations.exp(turn * way[1]))
     return np.arange(at, at + count)
 
 

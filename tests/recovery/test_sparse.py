@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rovsim.core.errors import BadInput
 from rovsim.effects import catalogue, effect
-from rovsim.errors import BadInput
 from rovsim.hidden import methods
 from rovsim.hidden.library import problem, steps
 from rovsim.hidden.sparse import answered, forward, thresholded

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rovsim.campaign import load_campaign
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.model import EffectEntry, nominal
 from rovsim.quality import quality_of
 from rovsim.recording import read_run

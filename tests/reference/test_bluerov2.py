@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
+from rovsim.core.rotations import from_euler, matrix
 from rovsim.engine.at import NO_MEMORY, Inputs, Place
 from rovsim.engine.compiled import engine
-from rovsim.frames import from_euler, matrix
 from rovsim.replay import ReplaySettings, trajectories
 from rovsim.vehicle import VEHICLES
 from worlds import at_rest, model, motion

@@ -8,7 +8,7 @@ import pytest
 
 from recordings import Swim, csv_lines, write_lines, write_run
 from rovsim.campaign import CommandLog, Mocap, load_campaign
-from rovsim.frames import from_matrix, matrix, rotate
+from rovsim.core.rotations import from_matrix, matrix, rotate
 from rovsim.recording import quality_report, read_run
 from rovsim.recording.commands_csv import read_commands
 from rovsim.recording.csv import read_csv

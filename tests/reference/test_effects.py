@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import from_euler, matrix
 from rovsim.effects import catalogue
 from rovsim.effects.added_mass import AddedMassCoupling
 from rovsim.effects.coupled_damping import CoupledDamping
@@ -16,8 +18,6 @@ from rovsim.effects.rigid_body import Payload
 from rovsim.effects.tether import TetherDrag, TetherTension
 from rovsim.effects.thrusters import AdvanceLoss, PropellerTorque
 from rovsim.engine.at import NO_MEMORY, Inputs, Place
-from rovsim.errors import BadInput
-from rovsim.frames import from_euler, matrix
 from rovsim.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion
 

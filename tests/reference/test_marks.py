@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rovsim import AXES
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.marks import against, demanded, read_published
 from rovsim.recording.recording import Commands
 

@@ -8,8 +8,8 @@ import pytest
 
 from recordings import Swim, qtm_cells, qtm_columns, qtm_header, qtm_lines, write_lines
 from rovsim.campaign import Mocap, load_campaign
-from rovsim.errors import BadInput
-from rovsim.frames import matrix
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import matrix
 from rovsim.recording import quality_report, read_run
 from rovsim.recording.qtm_tsv import read_qtm
 

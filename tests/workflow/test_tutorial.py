@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rovsim.cli import main
-from rovsim.files import read_json, read_yaml
+from rovsim.core.files import read_json, read_yaml
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.files import read_json, write_json
+from rovsim.core.files import read_json, write_json
 from rovsim.jobs import job
 from rovsim.ladder import step, with_diagnosis
 from rovsim.replay import Replay

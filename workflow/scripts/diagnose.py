@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from rovsim.campaign import load_campaign
+from rovsim.core.files import write_json
+from rovsim.core.schema import checked
 from rovsim.diagnosing import Runs, diagnosed
 from rovsim.diagnosis.settings import DiagnosisSettings
-from rovsim.files import write_json
 from rovsim.jobs import job
 from rovsim.model import nominal
-from rovsim.strict import checked
 from rovsim.vehicle import campaign_vehicle
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rovsim.files import read_json
+from rovsim.core.files import read_json
+from rovsim.core.schema import checked
 from rovsim.jobs import job
 from rovsim.signals.chain import SignalSettings, differentiated, read_stage
-from rovsim.strict import checked
 
 
 def main(*, poses: Path, quality: Path, out: Path, signals: dict) -> None:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.core.files import read_json
 from rovsim.evidence import Evidence, arguments
 from rovsim.figures import kind
 from rovsim.figures.style import save
-from rovsim.files import read_json
 from rovsim.jobs import job
 
 

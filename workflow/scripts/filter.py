@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from rovsim.core.schema import checked
 from rovsim.jobs import job
 from rovsim.signals.chain import SignalSettings, filtered, read_stage
-from rovsim.strict import checked
 
 
 def main(*, source: Path, out: Path, signals: dict) -> None:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.files import write_json
+from rovsim.core.files import write_json
 from rovsim.jobs import job
 from rovsim.mistakes import SCHEMA, mistakes
 from rovsim.model import read_model

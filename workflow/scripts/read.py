@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from rovsim.campaign import load_campaign
-from rovsim.files import write_json
+from rovsim.core.files import write_json
+from rovsim.core.schema import checked
 from rovsim.jobs import job
 from rovsim.quality import quality_of
 from rovsim.recording import read_run
 from rovsim.signals.chain import SignalSettings
-from rovsim.strict import checked
 
 
 def main(*, campaign: Path, run: str, outliers: dict, recording: Path, quality: Path) -> None:

@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from rovsim.campaign import load_campaign
+from rovsim.core.schema import checked
 from rovsim.diagnosing import Runs
 from rovsim.diagnosis.refitted import refitted
 from rovsim.jobs import job
 from rovsim.model import nominal
 from rovsim.replay import ReplaySettings
-from rovsim.strict import checked
 from rovsim.vehicle import campaign_vehicle
 
 

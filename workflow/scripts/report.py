@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.core.files import read_json
 from rovsim.evidence import ONCE, about
-from rovsim.files import read_json
 from rovsim.jobs import job
 from rovsim.report import page
 

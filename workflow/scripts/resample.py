@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.core.schema import checked
 from rovsim.jobs import job
 from rovsim.recording.recording import Recording
 from rovsim.signals.chain import SignalSettings, resampled
-from rovsim.strict import checked
 
 
 def main(*, source: Path, out: Path, signals: dict) -> None:

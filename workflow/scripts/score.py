@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.files import write_json
+from rovsim.core.files import write_json
 from rovsim.jobs import job
 from rovsim.replay import Replay
 from rovsim.scores import score

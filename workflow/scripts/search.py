@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rovsim.campaign import load_campaign
-from rovsim.files import write_json
+from rovsim.core.files import write_json
 from rovsim.jobs import job
 from rovsim.model import load_model
 from rovsim.replay import rule_settings

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.files import read_json
+from rovsim.core.files import read_json
 from rovsim.jobs import job
 from rovsim.tables import errors_table, ladder_table
 

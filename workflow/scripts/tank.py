@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.core.schema import checked
 from rovsim.jobs import job
-from rovsim.strict import checked
 from rovsim.tank.campaign import make_campaign
 from rovsim.tank.settings import TankSettings
 

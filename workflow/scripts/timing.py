@@ -4,13 +4,13 @@ from pathlib import Path
 
 from rovsim.campaign import load_campaign
 from rovsim.config import TimingSettings
-from rovsim.files import write_json
+from rovsim.core.files import write_json
+from rovsim.core.schema import checked
 from rovsim.jobs import job
 from rovsim.latency import both_ways
 from rovsim.model import nominal, read_model
 from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
-from rovsim.strict import checked
 from rovsim.training import samples
 from rovsim.vehicle import campaign_vehicle
 

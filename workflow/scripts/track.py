@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from rovsim.config import TrackingSettings
-from rovsim.files import read_json, read_yaml, write_json
+from rovsim.core.files import read_json, read_yaml, write_json
+from rovsim.core.schema import checked
 from rovsim.jobs import job
-from rovsim.strict import checked
 from rovsim.tracking import track, track_diagnosis
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rovsim.adding import added, read_diagnosis
 from rovsim.config import Settings
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.provenance import provenance
 from rovsim.saying import say
 

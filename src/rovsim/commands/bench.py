@@ -19,7 +19,7 @@ from rovsim.bench.machine import machine
 from rovsim.bench.page import write_page
 from rovsim.bench.replay import replay_speeds
 from rovsim.config import Settings
-from rovsim.files import write_json
+from rovsim.core.files import write_json
 from rovsim.loading import measured
 from rovsim.model import Model, nominal
 from rovsim.residual.features import FeatureSettings

@@ -12,8 +12,8 @@ from pathlib import Path
 from rovsim.answering import compare
 from rovsim.budget import totals
 from rovsim.config import Settings
+from rovsim.core.files import write_json
 from rovsim.evidence import PER_RUN, Evidence
-from rovsim.files import write_json
 from rovsim.ladder import step
 from rovsim.loading import measured, models, results_folder
 from rovsim.provenance import provenance

@@ -11,11 +11,11 @@ from pathlib import Path
 
 from rovsim.answering import diagnose
 from rovsim.config import Settings
+from rovsim.core.files import write_json
+from rovsim.core.progress import reported
 from rovsim.diagnosing import Diagnosed
 from rovsim.evidence import Evidence
-from rovsim.files import write_json
 from rovsim.loading import Measured, measured, models, results_folder
-from rovsim.progress import reported
 from rovsim.provenance import provenance
 from rovsim.report import terminal
 from rovsim.saying import say

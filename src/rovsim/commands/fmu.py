@@ -9,7 +9,7 @@ in the Python that its FMI tool loads (docs/elsewhere.md). Needs the extra rovsi
 from pathlib import Path
 
 from rovsim.config import Settings
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.fmi.unit import write_unit
 from rovsim.model import BUILT_IN, load_model
 from rovsim.vehicle import load_vehicle

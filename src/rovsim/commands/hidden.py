@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from rovsim.config import Settings
-from rovsim.files import write_json
+from rovsim.core.files import write_json
+from rovsim.core.progress import reported
 from rovsim.hidden.methods import chosen
 from rovsim.hidden.page import tables
 from rovsim.hidden.run import answers
 from rovsim.hidden.run import run as run_cases
 from rovsim.hidden.suites import suite
 from rovsim.hidden.summary import judged, summary
-from rovsim.progress import reported
 from rovsim.report.marked import replace_tables
 from rovsim.saying import say
 

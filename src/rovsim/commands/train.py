@@ -8,10 +8,10 @@ an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 contr
 
 from rovsim.answering import replayed, scored, train
 from rovsim.config import Settings
-from rovsim.errors import BadInput
-from rovsim.files import write_json
+from rovsim.core.errors import BadInput
+from rovsim.core.files import write_json
+from rovsim.core.progress import reported
 from rovsim.loading import measured, models, results_folder
-from rovsim.progress import reported
 from rovsim.saying import say
 from rovsim.tracking import track
 

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import Sequence
 
+from rovsim.core.errors import BadInput
 from rovsim.diagnosis.hypothesis import Term
 from rovsim.diagnosis.watch import Watch
 from rovsim.effects import catalogue
 from rovsim.effects.base import Effect
-from rovsim.errors import BadInput
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import frames
+from rovsim.core import rotations
 from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import SECONDS, differences
@@ -80,13 +80,13 @@ def _noisy(watch: Watch, noise: Noise, signals: SignalSettings, random) -> Array
         return state
     pad = round(PAD / watch.period)
     kicks = noise.reading * random.normal(size=(len(state) + 2 * pad, 6))
-    poses = np.hstack([kicks[:, :3], frames.exp(kicks[:, 3:])])  # about a vehicle at rest
+    poses = np.hstack([kicks[:, :3], rotations.exp(kicks[:, 3:])])  # about a vehicle at rest
     inside = slice(pad, len(poses) - pad)
     poses, nu = (
         filter_eta(poses, watch.period, signals.filter),
         velocities(poses, watch.period, signals)[0],
     )
-    state[:, :3] += frames.rotate(state[:, 3:7], poses[inside, :3])
-    state[:, 3:7] = frames.multiply(state[:, 3:7], poses[inside, 3:])
+    state[:, :3] += rotations.rotate(state[:, 3:7], poses[inside, :3])
+    state[:, 3:7] = rotations.multiply(state[:, 3:7], poses[inside, 3:])
     state[:, 7:] += nu[inside]
     return state

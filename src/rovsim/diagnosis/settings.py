@@ -4,9 +4,9 @@ from typing import Annotated
 
 from pydantic import Field, PositiveInt
 
+from rovsim.core.schema import Section
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
-from rovsim.strict import Section
 
 
 class SearchSettings(Section):

@@ -8,9 +8,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Iterable, Sequence
 
+from rovsim.core.errors import BadInput, nearest
 from rovsim.effects.base import Effect
 from rovsim.effects.own import checked_effects, read_effects
-from rovsim.errors import BadInput, nearest
 
 _named: dict[str, type[Effect]] = {}  # of the files that `use_effect_files` was given last
 

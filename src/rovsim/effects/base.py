@@ -22,10 +22,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.body import Body
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.rotations import Rigid
 from rovsim.effects.parameters import Parameter, Signature
 from rovsim.engine.at import At, Vector6
-from rovsim.errors import BadInput, nearest
-from rovsim.frames import Rigid
 from rovsim.recording.recording import CommandKind, Site
 
 

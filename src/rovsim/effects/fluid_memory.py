@@ -3,9 +3,9 @@
 import numpy as np
 
 from rovsim.body import Body
+from rovsim.core.errors import BadInput
 from rovsim.effects.base import Coefficients, Parameter
 from rovsim.effects.parameters import Signature
-from rovsim.errors import BadInput
 
 ARM = 0.02  # kappa, m2: square of the arm at which rotation meets the water (contract, section 2)
 WEIGHTS = np.array([1.0, 1.0, 1.0, ARM, ARM, ARM])

@@ -7,10 +7,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.errors import BadInput
 from rovsim.effects.base import Autopilot, Parameter, Wrench
 from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import inlined
-from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Site
 
 SPEEDS = ("m/s", "rad/s")

@@ -13,9 +13,9 @@ from typing import Any, Mapping
 
 import numpy as np
 
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text
 from rovsim.effects.base import Effect, Parameter, Wrench
-from rovsim.errors import BadInput
-from rovsim.files import read_text
 
 GUIDE = "docs/your_own_effect.md shows a complete one."
 TEXTS = ("equation", "neglects", "source")

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from rovsim.core.rotations import Rigid
 from rovsim.effects.base import Parameter, Sensing
 from rovsim.effects.parameters import Signature
-from rovsim.frames import Rigid
 
 
 class MarkerOffset(Sensing):

@@ -2,10 +2,10 @@
 
 from math import sqrt
 
+from rovsim.core.errors import BadInput
 from rovsim.effects.base import Parameter, Wrench
 from rovsim.effects.parameters import Signature
 from rovsim.engine.vectors import cross, dot3, inlined, into_body
-from rovsim.errors import BadInput
 from rovsim.recording.recording import CommandKind, Site
 
 ATTACHMENT = tuple(

@@ -18,7 +18,7 @@ import numba
 from filelock import FileLock
 from platformdirs import user_cache_path
 
-from rovsim.files import write_text
+from rovsim.core.files import write_text
 
 FOLDER = Path(__file__).parent
 PARTS = "integration", "observer"  # what uses the equation

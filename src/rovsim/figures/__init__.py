@@ -13,7 +13,7 @@ from typing import Callable
 
 from matplotlib.figure import Figure
 
-from rovsim.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, nearest
 
 SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "quality")
 

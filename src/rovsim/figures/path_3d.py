@@ -8,11 +8,11 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy import ndarray as Array
 
+from rovsim.core.rotations import HALF_TURN_X
 from rovsim.figures.marks import legend, lines, listed, note
 from rovsim.figures.palette import looks
 from rovsim.figures.series import broken, masked
 from rovsim.figures.style import sheet, styled
-from rovsim.frames import HALF_TURN_X
 
 SECTION = "compare"
 CAPTION = (

@@ -16,11 +16,11 @@ from numpy import ndarray as Array
 from PIL import Image
 
 from rovsim import AXES
+from rovsim.core.files import appearing
 from rovsim.effects.parameters import Signature
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.palette import FAMILIES
 from rovsim.figures.style import MM, WIDTH, styled
-from rovsim.files import appearing
 from rovsim.where.bins import Table
 
 HEIGHT = 56.0  # mm

@@ -13,8 +13,8 @@ from typing import Any, Iterator
 import matplotlib
 from matplotlib.figure import Figure
 
-from rovsim.errors import BadInput
-from rovsim.files import appearing
+from rovsim.core.errors import BadInput
+from rovsim.core.files import appearing
 
 WIDTH = 150.0  # mm: text width of an A4 page with 30 mm margins
 FONT_SIZE = 9.0  # pt: one step below 11 pt body text

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from rovsim.errors import BadInput
-from rovsim.files import appearing, read_yaml
+from rovsim.core.errors import BadInput
+from rovsim.core.files import appearing, read_yaml
 from rovsim.model import Model
 
 SLAVE, MODEL = "slave.py", "model.yaml"

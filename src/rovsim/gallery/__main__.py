@@ -3,12 +3,12 @@
 import sys
 from pathlib import Path
 
+from rovsim.core.files import write_text
+from rovsim.core.progress import reported
 from rovsim.effects import built_in
 from rovsim.figures.signature import signature, write
-from rovsim.files import write_text
 from rovsim.gallery.flight import seen, settings
 from rovsim.gallery.page import PAGE, PICTURES, page
-from rovsim.progress import reported
 
 
 def main(docs: Path, names: list[str]) -> None:

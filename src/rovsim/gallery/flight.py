@@ -7,9 +7,9 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.campaign import load_campaign
+from rovsim.core.errors import BadInput, nearest
 from rovsim.effects.base import Autopilot, Effect
 from rovsim.effects.parameters import Signature
-from rovsim.errors import BadInput, nearest
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.signature import Seen
 from rovsim.model import EffectEntry, nominal

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.hidden.case import Case
 from rovsim.tank.campaign import SEALED, make_campaign
 from rovsim.tank.simulate import LeftTank

@@ -13,8 +13,8 @@ from typing import Iterator, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
 from rovsim.effects.base import Effect
-from rovsim.errors import BadInput
 from rovsim.model import Model
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings

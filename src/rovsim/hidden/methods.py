@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Callable, Sequence
 
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 
 Answer = Callable[[Path, Path], dict[str, Any]]
 

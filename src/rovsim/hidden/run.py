@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Iterator, Sequence
 
-from rovsim.errors import RovsimError
-from rovsim.files import read_json, write_json
+from rovsim.core.errors import RovsimError
+from rovsim.core.files import read_json, write_json
 from rovsim.hidden.case import Case
 from rovsim.hidden.flight import fly
 from rovsim.hidden.methods import Method

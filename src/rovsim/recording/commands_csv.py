@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.campaign import AXES, CommandLog
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.recording.csv import csv_lines
 from rovsim.recording.readers import CommandExport, command_reader, finite_rows
 from rovsim.recording.recording import CommandKind

@@ -6,9 +6,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.campaign import Mocap
-from rovsim.errors import BadInput
-from rovsim.files import read_text
-from rovsim.frames import from_euler, normalized
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text
+from rovsim.core.rotations import from_euler, normalized
 from rovsim.recording.readers import Export, finite_rows, mocap_reader
 from rovsim.recording.table import (
     Lines,

@@ -7,9 +7,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.campaign import Mocap
-from rovsim.errors import BadInput, nearest
-from rovsim.files import read_text
-from rovsim.frames import from_matrix
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import read_text
+from rovsim.core.rotations import from_matrix
 from rovsim.recording.readers import Export, finite_rows, mocap_reader
 from rovsim.recording.table import Lines, numbers, split_lines, times, without_cut_line
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.campaign import AXES
-from rovsim.frames import conjugate, continuous, log, multiply, normalized, unrotate
+from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
 from rovsim.recording.reading import Anomalies, measured_rate
 from rovsim.recording.recording import Recording
 from rovsim.recording.remarks import remarks

@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.campaign import CommandLog, Mocap
-from rovsim.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, nearest
 from rovsim.recording.recording import CommandKind
 
 # Named in the campaign format but not readable yet, and the way around.

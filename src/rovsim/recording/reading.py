@@ -7,8 +7,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.campaign import Campaign, Mocap
-from rovsim.errors import BadInput
-from rovsim.frames import axes_signs, multiply
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import axes_signs, multiply
 from rovsim.recording.readers import (
     CommandExport,
     Export,

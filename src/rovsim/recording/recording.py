@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.files import read_arrays, write_arrays
+from rovsim.core.files import read_arrays, write_arrays
 
 CommandKind = Literal["thruster", "demand", "wrench"]
 

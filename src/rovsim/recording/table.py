@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, nearest
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 from typing import Any, Iterator, Mapping, Sequence
 
-from rovsim.errors import RovsimError
-from rovsim.files import read_json
+from rovsim.core.errors import RovsimError
+from rovsim.core.files import read_json
 from rovsim.report.marked import replace_tables, table
 from rovsim.report.published import repeated, text
 from rovsim.report.speed import timing_sentences

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any, Iterable, Mapping
 
+from rovsim.core.progress import counted
 from rovsim.evidence import Evidence, about, arguments
 from rovsim.figures import kind
 from rovsim.figures.style import save
-from rovsim.progress import counted
 from rovsim.report import page
 
 Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once

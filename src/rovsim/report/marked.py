@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Iterable, Sequence
 
-from rovsim.errors import BadInput
-from rovsim.files import read_text, write_text
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text, write_text
 
 BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
 

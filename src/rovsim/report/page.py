@@ -9,11 +9,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from latex2mathml.converter import convert
 from markupsafe import Markup
 
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
+from rovsim.core.files import write_text
 from rovsim.figures import SECTIONS, kind
 from rovsim.figures.inference_time import RATES
 from rovsim.figures.marks import AXES, number, significant
-from rovsim.files import write_text
 from rovsim.provenance import leaves
 from rovsim.report.published import repeated, said
 from rovsim.report.sentences import summary

@@ -7,7 +7,7 @@ from typing import Any, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.residual.features import FeatureSettings, blocks_code, feature_names
 from rovsim.residual.layout import (
     BLOCKS,

@@ -7,9 +7,9 @@ from numba import njit
 from numpy import ndarray as Array
 from pydantic import field_validator
 
-from rovsim.frames import unrotate
+from rovsim.core.rotations import unrotate
+from rovsim.core.schema import Section
 from rovsim.residual.layout import BLOCKS
-from rovsim.strict import Section
 
 Block = Literal["velocity", "wrench", "acceleration", "gravity"]
 

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 from scipy.spatial import cKDTree
 
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 from rovsim.residual.export import export_neighbours
 from rovsim.residual.layout import MOST_NEIGHBOURS
 from rovsim.residual.learner import (

@@ -10,12 +10,12 @@ import numpy as np
 from numpy import ndarray as Array
 
 import rovsim.residual
-from rovsim.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.schema import Section, checked
 from rovsim.residual.export import AXES
 from rovsim.residual.features import FeatureSettings, feature_names
 from rovsim.residual.layout import EXPANSION, KIND
 from rovsim.residual.predictor import evaluate_many, posterior_many
-from rovsim.strict import Section, checked
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
 Posterior = Callable[[Array], tuple[Array, Array]]  # the same -> mean and variance, (n, 6) each

@@ -9,8 +9,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.errors import BadInput
-from rovsim.files import plain, read_arrays, write_arrays
+from rovsim.core.errors import BadInput
+from rovsim.core.files import plain, read_arrays, write_arrays
+from rovsim.core.schema import Section, checked
 from rovsim.residual.export import check_exported
 from rovsim.residual.features import Block, FeatureSettings
 from rovsim.residual.layout import POINTS
@@ -24,7 +25,6 @@ from rovsim.residual.learner import (
     posterior,
 )
 from rovsim.residual.predictor import evaluate_many
-from rovsim.strict import Section, checked
 
 Control = Literal["3dof", "6dof", "all"]  # runs a residual learns from
 LIBRARY = "library."  # prefix of the arrays from which the library's own model is rebuilt

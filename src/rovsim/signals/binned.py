@@ -8,8 +8,8 @@ import numpy as np
 import scipy
 from numpy import ndarray as Array
 
-from rovsim import frames
-from rovsim.errors import BadInput
+from rovsim.core import rotations
+from rovsim.core.errors import BadInput
 from rovsim.recording.recording import Recording
 from rovsim.signals.clock import stretches
 from rovsim.signals.motion import Motion
@@ -96,9 +96,9 @@ def _states(recording: Recording, nu: Array, edges: Array, usable: Array) -> tup
     attitude = recording.attitude.copy()
     state = np.concatenate([recording.position, attitude, nu], axis=1)
     for first, last in stretches(usable):
-        state[first:last, 3:7] = frames.continuous(attitude[first:last])
+        state[first:last, 3:7] = rotations.continuous(attitude[first:last])
         state[first:last] = edge_values(edges[first : last + 1], state[first:last])
     eta = state[:, :7]
     eta[~np.isfinite(eta).all(axis=1)] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
-    eta[:, 3:] = frames.continuous(frames.normalized(eta[:, 3:]))
+    eta[:, 3:] = rotations.continuous(rotations.normalized(eta[:, 3:]))
     return eta, state[:, 7:]

@@ -9,7 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.files import read_arrays
+from rovsim.core.files import read_arrays
+from rovsim.core.schema import Section
 from rovsim.recording.recording import Recording
 from rovsim.signals.binned import bin_motion
 from rovsim.signals.clock import stretches, time_step, without_margins
@@ -27,7 +28,6 @@ from rovsim.signals.filter import (
 from rovsim.signals.motion import Motion, Poses
 from rovsim.signals.outliers import Outliers, VelocityGate
 from rovsim.signals.resample import Linear, Resampling, resample
-from rovsim.strict import Section
 
 # What a stage hands on: poses, or a binned recording that passes unchanged.
 Stage: TypeAlias = Poses | Recording

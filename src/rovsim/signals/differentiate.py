@@ -7,9 +7,9 @@ import scipy
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim import frames
+from rovsim.core import rotations
+from rovsim.core.schema import Section
 from rovsim.signals.filter import odd_window
-from rovsim.strict import Section
 
 
 class _Margin(Section):
@@ -80,7 +80,7 @@ def differentiate_eta(eta: Array, dt: float, settings: Differentiation) -> tuple
         return nothing, nothing.copy()
     first, second = settings.derivatives(eta, dt)
     q = eta[..., 3:]
-    v, omega = frames.unrotate(q, first[..., :3]), frames.body_rates(q, first[..., 3:])
-    v_dot = frames.unrotate(q, second[..., :3]) - np.cross(omega, v)
-    omega_dot = frames.body_rate_derivative(q, second[..., 3:])
+    v, omega = rotations.unrotate(q, first[..., :3]), rotations.body_rates(q, first[..., 3:])
+    v_dot = rotations.unrotate(q, second[..., :3]) - np.cross(omega, v)
+    omega_dot = rotations.body_rate_derivative(q, second[..., 3:])
     return np.concatenate([v, omega], axis=-1), np.concatenate([v_dot, omega_dot], axis=-1)

@@ -8,11 +8,11 @@ import scipy
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim import frames
-from rovsim.errors import BadInput
+from rovsim.core import rotations
+from rovsim.core.errors import BadInput
+from rovsim.core.schema import Section
 from rovsim.signals.clock import stretches, time_step
 from rovsim.signals.motion import Poses
-from rovsim.strict import Section
 
 # The extension at either end and the stretch its parabola is fitted to, in periods of the cut-off
 # frequency. Four periods let the filter settle (below 1e-6 at order 3). A longer fit is calmer but
@@ -98,7 +98,7 @@ def filter_eta(eta: Array, dt: float, settings: Filter) -> Array:
         BadInput: the filter cannot work at this sampling rate.
     """
     smooth = np.array(settings.smoothed(np.asarray(eta, dtype=float), dt))
-    smooth[..., 3:] = frames.normalized(smooth[..., 3:])
+    smooth[..., 3:] = rotations.normalized(smooth[..., 3:])
     return smooth
 
 

@@ -6,9 +6,9 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim import frames
+from rovsim.core import rotations
+from rovsim.core.schema import Section
 from rovsim.recording.recording import Recording
-from rovsim.strict import Section
 
 # How far back the gate looks for a stretch to continue from; bounds the work on hopeless runs.
 LOOK_BACK = 1000
@@ -67,7 +67,7 @@ class Hampel(Section):
     def rejected(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
         """Mask (n,) of the found frames that differ from the median of their neighbours."""
         # Rotation matrices have no sign to agree on; |R1 - R2| / sqrt(2) is the angle when small.
-        rotation = frames.matrix(attitude).reshape(len(time), 9) / np.sqrt(2.0)
+        rotation = rotations.matrix(attitude).reshape(len(time), 9) / np.sqrt(2.0)
         kept = np.arange(len(time))
         while len(kept) > 2:
             far = self._far(time[kept], position[kept], self.noise)

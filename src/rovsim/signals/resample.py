@@ -7,12 +7,12 @@ import scipy
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim import frames
+from rovsim.core import rotations
+from rovsim.core.schema import Section
 from rovsim.recording.recording import Recording
 from rovsim.signals.clock import uniform_clock, without_short
 from rovsim.signals.motion import Poses
 from rovsim.signals.outliers import Outliers, find_outliers
-from rovsim.strict import Section
 
 # A sample this close to a recorded frame is that frame: MoCap stamps resolve 10 microseconds.
 SAME_INSTANT = 2e-5
@@ -37,8 +37,8 @@ class Linear(_Clock):
         i = np.clip(np.searchsorted(time, wanted, side="right") - 1, 0, len(time) - 2)
         part = ((wanted - time[i]) / (time[i + 1] - time[i]))[:, None]
         position = (1 - part) * eta[i, :3] + part * eta[i + 1, :3]
-        turn = frames.log(frames.multiply(frames.conjugate(eta[i, 3:]), eta[i + 1, 3:]))
-        attitude = frames.multiply(eta[i, 3:], frames.exp(part * turn))
+        turn = rotations.log(rotations.multiply(rotations.conjugate(eta[i, 3:]), eta[i + 1, 3:]))
+        attitude = rotations.multiply(eta[i, 3:], rotations.exp(part * turn))
         return np.concatenate([position, attitude], axis=1)
 
 
@@ -71,12 +71,12 @@ def resample(recording: Recording, settings: Resampling, outlier_settings: Outli
     if np.count_nonzero(believed) < 2:
         return _nothing_usable(recording, rate)
     time = recording.time[believed]
-    attitude = frames.continuous(recording.attitude[believed])
+    attitude = rotations.continuous(recording.attitude[believed])
     clock = uniform_clock(time[0], time[-1], rate)
     eta = settings.between(
         time, np.concatenate([recording.position[believed], attitude], axis=1), clock
     )
-    eta[:, 3:] = frames.continuous(frames.normalized(eta[:, 3:]))
+    eta[:, 3:] = rotations.continuous(rotations.normalized(eta[:, 3:]))
     usable = _bridged(time, clock, settings.max_gap)
     usable = without_short(usable, round(settings.min_segment * rate))
     return Poses(recording.run, recording.site, clock, eta, usable, recording.commands)

@@ -9,10 +9,10 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.core.files import write_text, write_yaml
+from rovsim.core.rotations import HALF_TURN_X
 from rovsim.effects.base import Effect
-from rovsim.errors import BadInput
-from rovsim.files import write_text, write_yaml
-from rovsim.frames import HALF_TURN_X
 from rovsim.model import Model
 from rovsim.tank.exports import BODY, commands_csv, qtm_tsv
 from rovsim.tank.settings import TankRun, TankSettings

@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.frames import HALF_TURN_X, exp, matrix, multiply, to_euler
+from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.tank.settings import Camera, Log
 from rovsim.tank.simulate import Truth
 from rovsim.view import View

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.frames import to_euler, unrotate
+from rovsim.core.rotations import to_euler, unrotate
 
 REACTION = 0.2  # s, human visual reaction time
 WANDER_TIME = 1.5  # s, how long a stick movement lasts

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import HALF_TURN_X
 from rovsim.engine.at import Inputs, Place
-from rovsim.errors import BadInput
-from rovsim.frames import HALF_TURN_X
 from rovsim.model import Model
 from rovsim.recording.recording import CommandKind, Commands, Site
 from rovsim.tank.pilot import Pilot

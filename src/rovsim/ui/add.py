@@ -6,8 +6,8 @@ from typing import Any
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.core.errors import RovsimError
 from rovsim.effects import catalogue
-from rovsim.errors import RovsimError
 from rovsim.figures.marks import significant
 from rovsim.gallery.page import unit
 from rovsim.model import Model

@@ -13,7 +13,7 @@ from nicegui import ui
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from rovsim.config import Settings, compose
-from rovsim.errors import RovsimError
+from rovsim.core.errors import RovsimError
 from rovsim.ui import HOST
 
 SCREENS = ("compare", "where", "why", "add", "ladder", "data")

@@ -6,8 +6,8 @@ import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.core.rotations import HALF_TURN_X
 from rovsim.figures.marks import VELOCITY_UNITS
-from rovsim.frames import HALF_TURN_X
 from rovsim.ui import path
 from rovsim.ui.charts import styles
 from rovsim.ui.parts import Slider, cell, chart, computed, heading, onward, section, table, text

@@ -5,8 +5,8 @@ from typing import Any, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.rotations import HALF_TURN_X
 from rovsim.figures.palette import Look
-from rovsim.frames import HALF_TURN_X
 from rovsim.ui.charts import LINE, POINTS, SOFT, line_style
 
 WIDE = 1.6  # width over height of the picture (.path in style.css)

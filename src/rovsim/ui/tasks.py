@@ -6,11 +6,11 @@ from typing import Any
 
 from rovsim.answering import compare, diagnose, train
 from rovsim.config import Settings
+from rovsim.core.files import write_json
+from rovsim.core.progress import reported
 from rovsim.effects import use_effect_files
 from rovsim.evidence import PER_RUN
-from rovsim.files import write_json
 from rovsim.loading import measured, models
-from rovsim.progress import reported
 from rovsim.provenance import provenance
 from rovsim.tank.campaign import make_campaign
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from typing import Any, Callable
 
-from rovsim.errors import RovsimError
-from rovsim.progress import heard_by
+from rovsim.core.errors import RovsimError
+from rovsim.core.progress import heard_by
 
 FEWEST = 0.1  # share that must be done before anybody can tell how long the rest takes
 

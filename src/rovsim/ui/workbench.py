@@ -9,8 +9,8 @@ from typing import Any, Mapping
 
 from rovsim.adding import read_diagnosis
 from rovsim.config import Settings, compose
-from rovsim.errors import BadInput, RovsimError
-from rovsim.files import read_json
+from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.files import read_json
 from rovsim.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.loading import Measured, measured, models
 from rovsim.model import BUILT_IN, Model, read_model, zero_acceleration

@@ -15,7 +15,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.frames import to_euler
+from rovsim.core.rotations import to_euler
 from rovsim.signals.motion import Motion
 from rovsim.training import Samples
 

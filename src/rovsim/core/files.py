@@ -13,7 +13,7 @@ from typing import Any, Iterator, Mapping
 import numpy as np
 import yaml
 
-from rovsim.errors import BadInput
+from rovsim.core.errors import BadInput
 
 
 @contextmanager

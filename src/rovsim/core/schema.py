@@ -5,7 +5,7 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
 
-from rovsim.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, nearest
 
 
 class Section(BaseModel):
