@@ -5,12 +5,12 @@ from pathlib import Path
 from rovsim.campaign import load_campaign
 from rovsim.diagnosing import Runs
 from rovsim.diagnosis.watch import Watch
-from rovsim.model import Model, nominal
+from rovsim.dynamics.model import Model, nominal
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.recording import read_run
 from rovsim.signals.chain import SignalSettings, differentiated, filtered, resampled
 from rovsim.tank.campaign import make_campaign
 from rovsim.tank.settings import TankRun, TankSettings
-from rovsim.vehicle import campaign_vehicle
 
 
 def watched(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[Watch]]:

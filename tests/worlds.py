@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rovsim.effects.base import Effect
-from rovsim.model import Model, nominal
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model, nominal
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.recording.recording import Commands, RunInfo, Site
 from rovsim.signals.motion import Motion
-from rovsim.vehicle import load_vehicle
 
 SHARED = Path(os.environ.get("ROVSIM_DATA", Path(__file__).parents[2] / "shared" / "data")).parent
 

@@ -8,7 +8,7 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_json
 from rovsim.core.schema import checked
 from rovsim.diagnosis.content import SCHEMA
-from rovsim.model import EffectEntry, Model, load_model, model_of
+from rovsim.dynamics.model import EffectEntry, Model, load_model, model_of
 
 
 def read_diagnosis(path: Path) -> dict[str, Any]:

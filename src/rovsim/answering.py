@@ -8,12 +8,12 @@ from rovsim.config import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted, reported, staged
 from rovsim.diagnosing import STAGES, Diagnosed, diagnosed
+from rovsim.dynamics.learned.residual import write_residual
+from rovsim.dynamics.model import Model, read_model
 from rovsim.evidence import Evidence
 from rovsim.loading import Measured
-from rovsim.model import Model, read_model
 from rovsim.provenance import provenance
 from rovsim.replay import Replay, replay
-from rovsim.residual.storage import write_residual
 from rovsim.scores import comparison, growth, score
 from rovsim.signals.motion import Motion
 from rovsim.training import samples, train_residual, training_runs

@@ -18,9 +18,9 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.files import read_arrays, write_arrays
-from rovsim.effects.base import Effect
-from rovsim.engine.at import Inputs
-from rovsim.model import Model
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.engine.types import Inputs
+from rovsim.dynamics.model import Model
 from rovsim.replay import ReplaySettings
 from rovsim.signals.motion import Motion
 from rovsim.training import Samples, accelerations, at_samples

@@ -54,7 +54,7 @@ def _main(words: list[str]) -> None:
     else:
         from rovsim.config import compose
         from rovsim.core.progress import heard_by
-        from rovsim.effects import use_effect_files
+        from rovsim.dynamics.effects import use_effect_files
 
         settings = compose([f"command={command}", *overrides])
         use_effect_files(settings.effect_files)

@@ -9,8 +9,8 @@ from rovsim.diagnosis.diagnose import Diagnosis, diagnose
 from rovsim.diagnosis.floor import noise_floor
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.watch import Watch, watch
+from rovsim.dynamics.model import Model
 from rovsim.ladder import floor_step, ladder, step
-from rovsim.model import Model
 from rovsim.replay import replay
 from rovsim.signals.chain import Stage, read_stage
 from rovsim.signals.motion import Motion

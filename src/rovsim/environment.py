@@ -13,9 +13,9 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy import ndarray as Array
 
-from rovsim.model import Model, load_model
+from rovsim.dynamics.model import Model, load_model
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.stepping import Stepper
-from rovsim.vehicle import load_vehicle
 
 ID = "rovsim/Vehicle-v0"
 

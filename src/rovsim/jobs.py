@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Iterator
 
 from rovsim.core.errors import RovsimError
-from rovsim.effects import use_effect_files
+from rovsim.dynamics.effects import use_effect_files
 
 
 @contextmanager

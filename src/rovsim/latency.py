@@ -90,7 +90,7 @@ def both_ways(
     residual: Any, queries: Array, calls: int, warmup: int, seconds: float
 ) -> dict[str, Any]:
     """Latency of a trained residual's library call and of its exported predictor, side by side."""
-    from rovsim.residual.predictor import evaluate_many
+    from rovsim.dynamics.learned.predictor import evaluate_many
 
     data, points = residual.data, residual.points
     ways = {"library": residual.library(), "exported": lambda x: evaluate_many(data, x)}

@@ -10,12 +10,12 @@ from rovsim.config import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.diagnosing import Runs
-from rovsim.model import Model, load_model
+from rovsim.dynamics.model import Model, load_model
+from rovsim.dynamics.vehicle import Vehicle, campaign_vehicle
 from rovsim.quality import quality_of
 from rovsim.recording import read_run, usable_reason
 from rovsim.signals.chain import Stage, differentiated, filtered, resampled
 from rovsim.signals.motion import Motion
-from rovsim.vehicle import Vehicle, campaign_vehicle
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from typing import Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.model import Model
+from rovsim.dynamics.model import Model
 from rovsim.replay import OPEN_LOOP, ReplaySettings, replay
 from rovsim.residual.learner import LearnerSettings, Trained, train
 from rovsim.scores import errors, normalised, rms

@@ -30,7 +30,7 @@ def digest(*names: str, effects: Sequence[Path] = ()) -> str:
     for package in _discovered(wanted):
         wanted |= graph.find_descendants(package)
     content = hashlib.sha256()
-    outside = effects if "rovsim.effects" in wanted else ()
+    outside = effects if "rovsim.dynamics.effects" in wanted else ()
     for path in (*map(_file, sorted(wanted)), *outside):
         content.update(path.read_bytes())
     return content.hexdigest()[:16]
@@ -46,7 +46,7 @@ def own_digest(package: str) -> str:
 
 def _discovered(modules: set[str]) -> set[str]:
     """Packages whose members are found by looking into their folder."""
-    found = {"rovsim.effects", "rovsim.recording", "rovsim.residual"}
+    found = {"rovsim.dynamics.effects", "rovsim.recording", "rovsim.residual"}
     return {package for package in found if package in modules}
 
 

@@ -15,15 +15,15 @@ from pydantic import PositiveFloat
 from rovsim.core.files import read_arrays, write_arrays
 from rovsim.core.rotations import normalized
 from rovsim.core.schema import Section, checked
-from rovsim.engine.at import Inputs, Jobs, Place
-from rovsim.engine.cores import run_jobs
+from rovsim.dynamics.actuation import Between, Thrust
+from rovsim.dynamics.engine.parallel import run_jobs
+from rovsim.dynamics.engine.types import Inputs, Jobs, Place
+from rovsim.dynamics.model import Model
 from rovsim.memory import measured_memory
-from rovsim.model import Model
 from rovsim.recording.recording import RunInfo
 from rovsim.signals.binned import backward_difference, bin_means
 from rovsim.signals.chain import SignalSettings, velocities
 from rovsim.signals.motion import Motion
-from rovsim.thrust import Between, Thrust
 
 OPEN_LOOP = "open_loop"
 

@@ -14,11 +14,11 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.body import packed
 from rovsim.core.errors import BadInput
-from rovsim.engine.at import Jobs, Place
-from rovsim.engine.cores import run_jobs
-from rovsim.model import Model
+from rovsim.dynamics.body import packed
+from rovsim.dynamics.engine.parallel import run_jobs
+from rovsim.dynamics.engine.types import Jobs, Place
+from rovsim.dynamics.model import Model
 from rovsim.recording.recording import CommandKind, Commands, Site
 from rovsim.replay import packed_inputs, residual_data, stacked
 

@@ -8,7 +8,7 @@ from typing import Any, Mapping
 from rovsim.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.config import Settings, compose
 from rovsim.core.errors import BadInput
-from rovsim.effects import use_effect_files
+from rovsim.dynamics.effects import use_effect_files
 from rovsim.evidence import PER_RUN
 from rovsim.ladder import EFFECTS
 from rovsim.provenance import digest, own_digest, provenance

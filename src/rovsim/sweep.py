@@ -8,7 +8,7 @@ from typing import Any
 from rovsim.config import settings_of
 from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
-from rovsim.effects import use_effect_files
+from rovsim.dynamics.effects import use_effect_files
 
 
 def job(composed: Any) -> None:

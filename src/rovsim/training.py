@@ -10,9 +10,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.engine.at import Inputs
+from rovsim.dynamics.engine.types import Inputs
+from rovsim.dynamics.learned.features import FeatureSettings, assemble
+from rovsim.dynamics.model import Model
 from rovsim.memory import measured_memory
-from rovsim.model import Model
 from rovsim.replay import (
     ReplaySettings,
     as_true,
@@ -23,7 +24,6 @@ from rovsim.replay import (
     state_at,
     trajectories,
 )
-from rovsim.residual.features import FeatureSettings, assemble
 from rovsim.residual.learner import LearnerSettings, Progress, Trained, train
 from rovsim.signals.binned import backward_difference, bin_means
 from rovsim.signals.chain import SignalSettings

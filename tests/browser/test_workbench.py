@@ -9,7 +9,7 @@ from chromium import DESK, started
 from rovsim import AXES
 from rovsim.adding import read_diagnosis
 from rovsim.cli import main
-from rovsim.model import read_model
+from rovsim.dynamics.model import read_model
 from rovsim.ui.traces import HORIZONS
 
 pytestmark = pytest.mark.browser

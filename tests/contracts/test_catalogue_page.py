@@ -6,15 +6,15 @@ import pytest
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.effects import built_in
+from rovsim.dynamics.effects import built_in
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.figures.signature import signature, write
 from rovsim.gallery.flight import blocks, fly, found, seen, settings
 from rovsim.gallery.page import PAGE, PICTURES, entry, page
-from rovsim.model import nominal
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
 from rovsim.training import samples
-from rovsim.vehicle import load_vehicle
 
 DOCS = Path(__file__).parents[2] / "docs"
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
-from rovsim.effects import built_in, effect
-from rovsim.effects.base import Autopilot, Coefficients, Wrench
-from rovsim.model import read_model
+from rovsim.dynamics.effects import built_in, effect
+from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wrench
+from rovsim.dynamics.model import read_model
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion, some, sticks, tank
@@ -119,9 +119,9 @@ def test_it_pushes_the_right_way(name, parameter):
 
 
 def test_lift_and_tether_by_hand():
-    from rovsim.effects.lift import Lift
-    from rovsim.effects.tether import TetherTension
-    from rovsim.engine.at import At
+    from rovsim.dynamics.effects.lift import Lift
+    from rovsim.dynamics.effects.tether import TetherTension
+    from rovsim.dynamics.engine.types import At
 
     level = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     nu = (0.5, 0.2, -0.1, 0.0, 0.0, 0.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rovsim.cli import main
-from rovsim.effects.thrusters import ThrusterLag
+from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.stepping import Stepper
 from worlds import at_rest, model, sticks
 

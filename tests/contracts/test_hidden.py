@@ -5,7 +5,8 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
-from rovsim.effects import catalogue
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.model import EffectEntry
 from rovsim.hidden.case import SEEDS, Case, Unlisted, seed_of
 from rovsim.hidden.flight import fly
 from rovsim.hidden.methods import Method
@@ -16,7 +17,6 @@ from rovsim.hidden.run import answers, place, run
 from rovsim.hidden.score import matching, score
 from rovsim.hidden.suites import FAMILIES, suite
 from rovsim.hidden.summary import detection_limit, judged, summary
-from rovsim.model import EffectEntry
 from rovsim.report.marked import BEGIN, END, replace_tables
 
 SHORT = {

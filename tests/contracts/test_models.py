@@ -5,8 +5,8 @@ import yaml
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_yaml
-from rovsim.model import read_model
-from rovsim.vehicle import VEHICLES, load_vehicle
+from rovsim.dynamics.model import read_model
+from rovsim.dynamics.vehicle import VEHICLES, load_vehicle
 from worlds import SHARED, needed
 
 NOMINAL = VEHICLES / "bluerov2_heavy.yaml"

@@ -9,7 +9,7 @@ import pytest
 
 from rovsim.cli import main
 from rovsim.core.errors import BadInput
-from rovsim.effects import catalogue, effect, use_effect_files
+from rovsim.dynamics.effects import catalogue, effect, use_effect_files
 from rovsim.study import Study
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")
@@ -78,7 +78,7 @@ def test_the_study_takes_it_and_sees_edits():
 
 
 COMPLETE = """
-from rovsim.effects.base import Coefficients, Parameter, Wrench
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Wrench
 
 class Hose(Wrench):
     "A hose drags behind."

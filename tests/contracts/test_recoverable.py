@@ -9,11 +9,11 @@ from rovsim.diagnosis.diagnose import FIRST_NOISE
 from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.fit import fit
 from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.effects import built_in
+from rovsim.dynamics.effects import built_in
+from rovsim.dynamics.model import nominal
 from rovsim.hidden.flight import fly
 from rovsim.hidden.suites import hiding
 from rovsim.loading import measured
-from rovsim.model import nominal
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 

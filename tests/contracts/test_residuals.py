@@ -12,12 +12,12 @@ import yaml
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_arrays, write_arrays
-from rovsim.residual.features import FEATURES, FeatureSettings, feature_names
-from rovsim.residual.layout import BLOCKS, COUNT, POINTS
+from rovsim.dynamics.learned.features import FEATURES, FeatureSettings, feature_names
+from rovsim.dynamics.learned.layout import BLOCKS, COUNT, POINTS
+from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
+from rovsim.dynamics.learned.residual import read_residual, write_residual
 from rovsim.residual.learner import learner, learner_settings, learners, spread_rows, train
-from rovsim.residual.predictor import evaluate, evaluate_many
 from rovsim.residual.spectrum import EXACT
-from rovsim.residual.storage import read_residual, write_residual
 
 # the fewest rounds with which a learner still learns: these tests are about promises, not skill
 QUICK = {

@@ -14,8 +14,8 @@ from rovsim.cli import main
 from rovsim.config import compose
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
-from rovsim.effects import catalogue
-from rovsim.model import read_model
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.model import read_model
 from rovsim.ui import charts, path, tasks
 from rovsim.ui.draft import Draft, reach
 from rovsim.ui.work import Work

@@ -5,8 +5,8 @@ import pytest
 
 from rovsim.budget import RESTORING, Budget, budget
 from rovsim.core.rotations import exp
-from rovsim.effects import catalogue
-from rovsim.effects.base import Autopilot
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.effects.base import Autopilot
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
 from rovsim.training import accelerations, at_samples, samples
@@ -60,7 +60,7 @@ def test_the_missing_force_is_the_one_that_was_left_out():
     """A push the model lacks comes back as missing, newton for newton."""
     from dataclasses import replace
 
-    from rovsim.effects.constant_wrench import ConstantWrench
+    from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 
     measured, world = run(), model()
     pushed = model(ConstantWrench(surge=3.0, yaw=-1.0))

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.engine.cores import on_cores
+from rovsim.dynamics.engine.parallel import on_cores
 
 
 def on(cores):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
-from rovsim.effects.current import Current
-from rovsim.effects.damping import LinearDamping
-from rovsim.effects.fluid_memory import ARM, FluidMemory
+from rovsim.dynamics.effects.current import Current
+from rovsim.dynamics.effects.damping import LinearDamping
+from rovsim.dynamics.effects.fluid_memory import ARM, FluidMemory
 from rovsim.memory import lag_of_lines, measured_memory
 from rovsim.replay import ReplaySettings, replay, trajectories
 from rovsim.signals.chain import SignalSettings

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from flown import watched
+from rovsim.dynamics.model import EffectEntry
 from rovsim.mistakes import MISTAKES, SAID, mistakes, on_wrong_clock
-from rovsim.model import EffectEntry
 from rovsim.replay import ReplaySettings
 from rovsim.residual.learner import learner_settings
 from rovsim.signals.chain import SignalSettings

@@ -8,14 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from rovsim.body import Body, cross_matrix, inertia_at, packed
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import exp, multiply, rotate
-from rovsim.effects.added_mass import AddedMass, AddedMassCoupling
-from rovsim.effects.current import Current
-from rovsim.effects.proximity import SurfaceProximity, WallProximity
-from rovsim.engine.equation import coriolis
-from rovsim.engine.vectors import matrix6
+from rovsim.dynamics.body import Body, cross_matrix, inertia_at, packed
+from rovsim.dynamics.effects.added_mass import AddedMass, AddedMassCoupling
+from rovsim.dynamics.effects.current import Current
+from rovsim.dynamics.effects.proximity import SurfaceProximity, WallProximity
+from rovsim.dynamics.engine.equation import coriolis
+from rovsim.dynamics.engine.vectors import matrix6
 from rovsim.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion, sticks, tank
 

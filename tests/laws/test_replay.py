@@ -13,14 +13,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from rovsim.body import Body, packed
 from rovsim.core.rotations import from_euler, matrix, rotate, unrotate
-from rovsim.effects.buoyancy import NetBuoyancy
-from rovsim.effects.damping import QuadraticDamping
-from rovsim.engine.at import Inputs, Jobs, Place
-from rovsim.engine.compiled import engine
-from rovsim.engine.cores import run_jobs
-from rovsim.model import zero_acceleration
+from rovsim.dynamics.body import Body, packed
+from rovsim.dynamics.effects.buoyancy import NetBuoyancy
+from rovsim.dynamics.effects.damping import QuadraticDamping
+from rovsim.dynamics.engine.compiled import engine
+from rovsim.dynamics.engine.parallel import run_jobs
+from rovsim.dynamics.engine.types import Inputs, Jobs, Place
+from rovsim.dynamics.model import zero_acceleration
 from rovsim.replay import Replay, ReplaySettings, replay, trajectories, windows
 from rovsim.scores import score
 from rovsim.signals.chain import SignalSettings
@@ -181,7 +181,7 @@ def test_another_process_uses_the_compiled_engine():
 
 
 KERNEL = """
-from rovsim.effects.base import Parameter, Wrench
+from rovsim.dynamics.effects.base import Parameter, Wrench
 class Push(Wrench):
     id, listed, equation, neglects, source = "push", False, "-", "-", "test"
     parameters = (Parameter("force", "N", "F", scale=1.0),)

@@ -9,9 +9,8 @@ from numba import njit
 from scipy.linalg import eigh
 
 from rovsim.core import rotations
-from rovsim.engine.cores import on_cores
-from rovsim.residual.export import Kernel, check_exported, export_expansion, export_neighbours
-from rovsim.residual.features import (
+from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.dynamics.learned.features import (
     COLUMNS,
     FEATURES,
     FeatureSettings,
@@ -20,9 +19,10 @@ from rovsim.residual.features import (
     blocks_code,
     feature_names,
 )
-from rovsim.residual.lanes import exponentials
-from rovsim.residual.layout import BLOCKS, HEADER
-from rovsim.residual.predictor import evaluate, evaluate_many
+from rovsim.dynamics.learned.layout import BLOCKS, HEADER
+from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
+from rovsim.dynamics.learned.simd import exponentials
+from rovsim.residual.export import Kernel, check_exported, export_expansion, export_neighbours
 from rovsim.residual.scaling import fit_scaling
 from rovsim.residual.spectrum import EXACT, ROUGH, of_exact, rbf
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from rovsim.core.rotations import exp, log, matrix, multiply, normalized
-from rovsim.effects.sensing import MarkerMisalignment, MarkerOffset, WorldTilt
+from rovsim.dynamics.effects.sensing import MarkerMisalignment, MarkerOffset, WorldTilt
 from rovsim.replay import ReplaySettings, replay, trajectories
 from rovsim.signals.chain import SignalSettings, velocities
 from rovsim.signals.filter import Butterworth

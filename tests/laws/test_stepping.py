@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
-from rovsim.effects.clocks import InputDelay
-from rovsim.effects.fluid_memory import FluidMemory
-from rovsim.effects.thrusters import ThrusterLag, VoltageSag
+from rovsim.dynamics.effects.clocks import InputDelay
+from rovsim.dynamics.effects.fluid_memory import FluidMemory
+from rovsim.dynamics.effects.thrusters import ThrusterLag, VoltageSag
+from rovsim.dynamics.learned.residual import Residual
 from rovsim.replay import ReplaySettings, trajectories
 from rovsim.residual.learner import learner_settings, train
-from rovsim.residual.storage import Residual
 from rovsim.stepping import Stepper, rollouts
 from worlds import at_rest, model, motion, sticks
 

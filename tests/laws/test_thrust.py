@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rovsim.core.errors import BadInput
-from rovsim.effects.clocks import ClockDrift, InputDelay
-from rovsim.effects.thrusters import (
+from rovsim.dynamics.effects.clocks import ClockDrift, InputDelay
+from rovsim.dynamics.effects.thrusters import (
     AdvanceLoss,
     PropellerTorque,
     ThrustAsymmetry,
@@ -16,9 +16,9 @@ from rovsim.effects.thrusters import (
     ThrusterLag,
     VoltageSag,
 )  # fmt: skip
-from rovsim.model import nominal
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import Vehicle
 from rovsim.recording.recording import Commands
-from rovsim.vehicle import Vehicle
 from worlds import model, sticks
 
 EDGES = np.linspace(0.0, 2.0, 201)

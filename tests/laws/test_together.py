@@ -10,9 +10,9 @@ from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.nominal import uncertain
 from rovsim.diagnosis.together import known_together
-from rovsim.effects import effect
-from rovsim.model import nominal
-from rovsim.vehicle import load_vehicle
+from rovsim.dynamics.effects import effect
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import load_vehicle
 
 TERMS = ("linear_damping", "net_buoyancy")  # surge … yaw, and a force
 NOISE = Noise(np.ones(6), np.ones(6), np.ones(6))

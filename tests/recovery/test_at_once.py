@@ -15,7 +15,7 @@ from rovsim.diagnosis.library import library
 from rovsim.diagnosis.replayed import Replays, replayed
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.together import known_together
-from rovsim.model import EffectEntry
+from rovsim.dynamics.model import EffectEntry
 from rovsim.tank.settings import Log
 
 GAIN = dict(zip(AXES, (0.9, 0.8, 0.7, 2.0, 2.0, 2.0), strict=True))

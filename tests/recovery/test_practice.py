@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from rovsim.campaign import load_campaign
-from rovsim.model import nominal
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.recording import read_run
 from rovsim.replay import ReplaySettings, replay
 from rovsim.scores import errors, pooled, rms, score
 from rovsim.signals.chain import SignalSettings, clean
 from rovsim.training import samples
-from rovsim.vehicle import campaign_vehicle
 from worlds import SHARED, needed
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from flown import watched
 from rovsim.diagnosis.refitted import refitted
-from rovsim.model import EffectEntry
+from rovsim.dynamics.model import EffectEntry
 
 
 def train(folder, effects, control="6dof", duration=25.0):

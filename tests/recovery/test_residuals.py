@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from rovsim.residual.features import assemble
+from rovsim.dynamics.learned.features import assemble
 from rovsim.residual.learner import learner_settings, learners, train
 
 # the share of the hidden residual's RMS that may remain per axis on a held-out run. In 12

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
-from rovsim.effects import catalogue, effect
+from rovsim.dynamics.effects import catalogue, effect
 from rovsim.hidden import methods
 from rovsim.hidden.library import problem, steps
 from rovsim.hidden.sparse import answered, forward, thresholded

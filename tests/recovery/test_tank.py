@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.campaign import load_campaign
 from rovsim.core.errors import BadInput
-from rovsim.model import EffectEntry, nominal
+from rovsim.dynamics.model import EffectEntry, nominal
 from rovsim.quality import quality_of
 from rovsim.recording import read_run
 from rovsim.replay import ReplaySettings, replay

@@ -15,10 +15,10 @@ from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
 from rovsim.core.rotations import from_euler, matrix
-from rovsim.engine.at import NO_MEMORY, Inputs, Place
-from rovsim.engine.compiled import engine
+from rovsim.dynamics.engine.compiled import engine
+from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
+from rovsim.dynamics.vehicle import VEHICLES
 from rovsim.replay import ReplaySettings, trajectories
-from rovsim.vehicle import VEHICLES
 from worlds import at_rest, model, motion
 
 FILE = yaml.safe_load((VEHICLES / "bluerov2_heavy.yaml").read_text(encoding="utf-8"))

@@ -5,19 +5,19 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, matrix
-from rovsim.effects import catalogue
-from rovsim.effects.added_mass import AddedMassCoupling
-from rovsim.effects.coupled_damping import CoupledDamping
-from rovsim.effects.current import Current
-from rovsim.effects.damping import LinearDamping
-from rovsim.effects.fluid_memory import FluidMemory
-from rovsim.effects.lift import Lift
-from rovsim.effects.onboard_control import OnboardControl
-from rovsim.effects.proximity import SurfaceProximity, WallProximity
-from rovsim.effects.rigid_body import Payload
-from rovsim.effects.tether import TetherDrag, TetherTension
-from rovsim.effects.thrusters import AdvanceLoss, PropellerTorque
-from rovsim.engine.at import NO_MEMORY, Inputs, Place
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.effects.added_mass import AddedMassCoupling
+from rovsim.dynamics.effects.coupled_damping import CoupledDamping
+from rovsim.dynamics.effects.current import Current
+from rovsim.dynamics.effects.damping import LinearDamping
+from rovsim.dynamics.effects.fluid_memory import FluidMemory
+from rovsim.dynamics.effects.lift import Lift
+from rovsim.dynamics.effects.onboard_control import OnboardControl
+from rovsim.dynamics.effects.proximity import SurfaceProximity, WallProximity
+from rovsim.dynamics.effects.rigid_body import Payload
+from rovsim.dynamics.effects.tether import TetherDrag, TetherTension
+from rovsim.dynamics.effects.thrusters import AdvanceLoss, PropellerTorque
+from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
 from rovsim.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion
 

@@ -98,7 +98,7 @@ rule fold:
         f"{F}/benchmarks/fold.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("scores", "effects"),
+        code=study.code("scores", "dynamics.effects"),
     script:
         "../scripts/fold.py"
 
@@ -142,6 +142,6 @@ if chapter.mistakes:
         params:
             settings=study.section("replay", "signals"),
             learners={kind: study.learner(kind) for kind in ("knn", "gp")},
-            code=study.code("mistakes", "effects", "residual"),
+            code=study.code("mistakes", "dynamics.effects", "residual"),
         script:
             "../scripts/mistakes.py"

@@ -18,7 +18,7 @@ rule replay:
         f"{R}/benchmarks/replay/{{model}}/{{run}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("replay", "effects"),
+        code=study.code("replay", "dynamics.effects"),
     script:
         "../scripts/replay.py"
 
@@ -37,7 +37,7 @@ rule search:
         f"{R}/benchmarks/search/{{model}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("where", "effects"),
+        code=study.code("where", "dynamics.effects"),
     script:
         "../scripts/search.py"
 
@@ -55,7 +55,7 @@ rule budget:
         f"{R}/benchmarks/budget/{{run}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("budget", "effects"),
+        code=study.code("budget", "dynamics.effects"),
     script:
         "../scripts/budget.py"
 

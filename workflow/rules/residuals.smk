@@ -16,7 +16,7 @@ rule train:
     params:
         settings=study.section("replay", "signals", "seed"),
         residual=lambda w: study.learner(w.residual),
-        code=study.code("training", "effects", "residual"),
+        code=study.code("training", "dynamics.effects", "residual"),
     script:
         "../scripts/train.py"
 

@@ -4,12 +4,12 @@ from pathlib import Path
 
 from rovsim.budget import budget
 from rovsim.campaign import load_campaign
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
-from rovsim.model import nominal
 from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
 from rovsim.training import samples
-from rovsim.vehicle import campaign_vehicle
 
 
 def main(*, motion: Path, campaign: Path, out: Path, settings: dict) -> None:

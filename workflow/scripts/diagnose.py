@@ -7,9 +7,9 @@ from rovsim.core.files import write_json
 from rovsim.core.schema import checked
 from rovsim.diagnosing import Runs, diagnosed
 from rovsim.diagnosis.settings import DiagnosisSettings
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
-from rovsim.model import nominal
-from rovsim.vehicle import campaign_vehicle
 
 
 def main(

@@ -4,13 +4,13 @@ from pathlib import Path
 
 from rovsim.campaign import load_campaign
 from rovsim.core.files import write_json
+from rovsim.dynamics.model import load_model, read_model
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
-from rovsim.model import load_model, read_model
 from rovsim.replay import replay, rule_settings
 from rovsim.scores import comparison, score
 from rovsim.signals.motion import Motion
 from rovsim.study import BASELINES
-from rovsim.vehicle import campaign_vehicle
 
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:

@@ -6,10 +6,10 @@ from rovsim.campaign import load_campaign
 from rovsim.core.schema import checked
 from rovsim.diagnosing import Runs
 from rovsim.diagnosis.refitted import refitted
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
-from rovsim.model import nominal
 from rovsim.replay import ReplaySettings
-from rovsim.vehicle import campaign_vehicle
 
 
 def main(

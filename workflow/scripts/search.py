@@ -4,11 +4,11 @@ from pathlib import Path
 
 from rovsim.campaign import load_campaign
 from rovsim.core.files import write_json
+from rovsim.dynamics.model import load_model
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
-from rovsim.model import load_model
 from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
-from rovsim.vehicle import campaign_vehicle
 from rovsim.where import content, judged
 
 

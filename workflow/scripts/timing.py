@@ -6,13 +6,13 @@ from rovsim.campaign import load_campaign
 from rovsim.config import TimingSettings
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
+from rovsim.dynamics.model import nominal, read_model
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.latency import both_ways
-from rovsim.model import nominal, read_model
 from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
 from rovsim.training import samples
-from rovsim.vehicle import campaign_vehicle
 
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 from rovsim.campaign import load_campaign
+from rovsim.dynamics.learned.residual import write_residual
+from rovsim.dynamics.model import load_model
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
-from rovsim.model import load_model
 from rovsim.replay import rule_settings
 from rovsim.residual.learner import learner_settings
-from rovsim.residual.storage import write_residual
 from rovsim.signals.motion import Motion
 from rovsim.training import train_residual
-from rovsim.vehicle import campaign_vehicle
 
 
 def main(

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.dynamics.learned.features import FeatureSettings
+from rovsim.dynamics.learned.layout import SURE
+from rovsim.dynamics.learned.residual import Residual
 from rovsim.residual.export import Kernel, export_expansion, export_neighbours
-from rovsim.residual.features import FeatureSettings
-from rovsim.residual.layout import SURE
 from rovsim.residual.learner import learner_settings, train
 from rovsim.residual.scaling import fit_scaling
-from rovsim.residual.storage import Residual
 
 SEED = 5  # of the rows that are drawn
 NEIGHBOURS = 5

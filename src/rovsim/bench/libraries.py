@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.dynamics.learned.residual import Residual
 from rovsim.residual.learner import Predict, learner
 from rovsim.residual.scaling import Scaling
-from rovsim.residual.storage import Residual
 
 Ways = dict[str, Predict]
 

@@ -8,11 +8,11 @@ from typing import Any, Callable, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import body as bodies
-from rovsim.engine.at import Inputs, Jobs, Place
-from rovsim.engine.cores import run_jobs
-from rovsim.model import Model
-from rovsim.residual.storage import Residual
+from rovsim.dynamics import body as bodies
+from rovsim.dynamics.engine.parallel import run_jobs
+from rovsim.dynamics.engine.types import Inputs, Jobs, Place
+from rovsim.dynamics.learned.residual import Residual
+from rovsim.dynamics.model import Model
 
 STEP = 0.01  # s
 REPEATS = 15  # the best of so many: what the machine can do when nothing else runs

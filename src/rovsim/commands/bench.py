@@ -20,9 +20,9 @@ from rovsim.bench.page import write_page
 from rovsim.bench.replay import replay_speeds
 from rovsim.config import Settings
 from rovsim.core.files import write_json
+from rovsim.dynamics.learned.features import FeatureSettings
+from rovsim.dynamics.model import Model, nominal
 from rovsim.loading import measured
-from rovsim.model import Model, nominal
-from rovsim.residual.features import FeatureSettings
 from rovsim.saying import say
 from rovsim.tank.campaign import make_campaign
 from rovsim.training import samples

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from rovsim.config import Settings
 from rovsim.core.errors import BadInput
+from rovsim.dynamics.model import BUILT_IN, load_model
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.fmi.unit import write_unit
-from rovsim.model import BUILT_IN, load_model
-from rovsim.vehicle import load_vehicle
 
 
 def run(settings: Settings) -> None:

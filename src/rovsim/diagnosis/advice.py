@@ -3,7 +3,7 @@
 from typing import Sequence
 
 from rovsim.diagnosis.diagnose import Diagnosis
-from rovsim.effects import effect
+from rovsim.dynamics.effects import effect
 
 
 def next_experiment(

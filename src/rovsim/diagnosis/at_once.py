@@ -17,8 +17,8 @@ from rovsim.diagnosis.fit import REACH, Fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.nominal import DRAG, uncertain
 from rovsim.diagnosis.search import Rival, without_parameters
-from rovsim.effects.onboard_control import EVERY_AXIS, OnboardControl
-from rovsim.model import Model
+from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
+from rovsim.dynamics.model import Model
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
 ACTUATION = ("thruster_gain", "onboard_control")  # ways in which commands could act

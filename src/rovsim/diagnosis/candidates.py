@@ -6,8 +6,8 @@ from typing import Sequence
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.hypothesis import Term
 from rovsim.diagnosis.watch import Watch
-from rovsim.effects import catalogue
-from rovsim.effects.base import Effect
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.effects.base import Effect
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,9 +32,9 @@ from rovsim.diagnosis.search import Rival, matters, search
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.stretched import unstretched
 from rovsim.diagnosis.watch import Watch
-from rovsim.model import Model
+from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.model import Model
 from rovsim.recording.quality import EXCITED
-from rovsim.thrust import Between
 
 Stages = Callable[[str], None]
 

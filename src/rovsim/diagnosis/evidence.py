@@ -12,8 +12,8 @@ from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise, Tuning, fit_noise, tuning, whitened
 from rovsim.diagnosis.observe import damping_rates, observe
 from rovsim.diagnosis.watch import Watch
-from rovsim.model import Model
-from rovsim.thrust import Between
+from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.model import Model
 
 STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
 

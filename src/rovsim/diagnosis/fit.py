@@ -10,7 +10,7 @@ from rovsim.diagnosis.evidence import Observatory
 from rovsim.diagnosis.gram import inner_products, solved
 from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
-from rovsim.model import Model
+from rovsim.dynamics.model import Model
 
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see

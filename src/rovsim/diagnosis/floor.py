@@ -15,12 +15,12 @@ from rovsim.core import rotations
 from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import SECONDS, differences
-from rovsim.model import Model
+from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.model import Model
 from rovsim.replay import windows
 from rovsim.scores import normalised, rms
 from rovsim.signals.chain import SignalSettings, velocities
 from rovsim.signals.filter import filter_eta
-from rovsim.thrust import Between
 
 DRAWS = 8
 PAD = 1.0  # s before and after, so that the filter has settled

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.effects.base import Effect, Parameter
-from rovsim.model import Model
+from rovsim.dynamics.effects.base import Effect, Parameter
+from rovsim.dynamics.model import Model
 
 
 @dataclass(frozen=True, eq=False)

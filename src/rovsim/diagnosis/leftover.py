@@ -20,7 +20,7 @@ from rovsim.diagnosis.kalman import AxisFilter
 from rovsim.diagnosis.noise import Noise, Tuning
 from rovsim.diagnosis.shapes import shapes
 from rovsim.diagnosis.watch import Watch
-from rovsim.thrust import ThrustPath
+from rovsim.dynamics.actuation import ThrustPath
 
 FALSE_ALARM = 0.002  # of all looks together, for each of the three kinds
 MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score

@@ -7,9 +7,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.hypothesis import Term
-from rovsim.effects import effect
-from rovsim.effects.base import Effect
-from rovsim.model import Model
+from rovsim.dynamics.effects import effect
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model
 
 DRAG = ("linear_damping", "quadratic_damping")
 PER_AXIS = (*DRAG, "added_mass", "constant_wrench")

@@ -7,19 +7,19 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.body import packed
 from rovsim.diagnosis.noise import Tuning
 from rovsim.diagnosis.strangers import STRANGERS
 from rovsim.diagnosis.watch import Watch
-from rovsim.effects import catalogue
-from rovsim.effects.base import Wrench
-from rovsim.engine.at import NO_MEMORY, Inputs, Jobs
-from rovsim.engine.compiled import engine
-from rovsim.engine.cores import run_jobs
+from rovsim.dynamics.actuation import Between, Thrust
+from rovsim.dynamics.body import packed
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.effects.base import Wrench
+from rovsim.dynamics.engine.compiled import engine
+from rovsim.dynamics.engine.parallel import run_jobs
+from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Jobs
+from rovsim.dynamics.model import Model
 from rovsim.memory import measured_memory
-from rovsim.model import Model
 from rovsim.replay import as_true, packed_inputs, place, stacked
-from rovsim.thrust import Between, Thrust
 
 NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
 

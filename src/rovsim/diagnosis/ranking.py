@@ -12,8 +12,8 @@ from rovsim.diagnosis.hypothesis import Term
 from rovsim.diagnosis.search import Rival
 from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import window_errors
-from rovsim.model import Model
-from rovsim.thrust import Between
+from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.model import Model
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,9 +15,9 @@ from rovsim.diagnosis.fit import fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.nominal import DRAG, ONE_GAIN, kept_between, uncertain
 from rovsim.diagnosis.watch import Watch
-from rovsim.effects import effect
-from rovsim.model import Model
-from rovsim.thrust import Between
+from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.effects import effect
+from rovsim.dynamics.model import Model
 
 STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center")
 GAINS = 0.5, 2.0  # a curve measured on the bench; gain, masses and drag are known to one scale only

@@ -21,9 +21,9 @@ from rovsim.diagnosis.hypothesis import Hypothesis
 from rovsim.diagnosis.noise import Noise
 from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import differences, readings
-from rovsim.model import Model
+from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.model import Model
 from rovsim.replay import windows
-from rovsim.thrust import Between
 
 SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
 SMALLEST = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count

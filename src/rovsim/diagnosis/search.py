@@ -10,7 +10,7 @@ from rovsim.diagnosis.desk import Desk, Proposal, chance, proposals
 from rovsim.diagnosis.fit import Fit
 from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.windows import window_errors
-from rovsim.model import Model
+from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
 SURE = 6.0  # twice a log likelihood: odds of 20 to 1

@@ -3,9 +3,9 @@
 They stand beside the catalogue in a diagnosis and are never named as effects (stretched.py).
 """
 
-from rovsim.effects.base import Wrench
-from rovsim.effects.parameters import per_axis
-from rovsim.engine.vectors import inlined
+from rovsim.dynamics.effects.base import Wrench
+from rovsim.dynamics.effects.parameters import per_axis
+from rovsim.dynamics.engine.vectors import inlined
 
 
 @inlined

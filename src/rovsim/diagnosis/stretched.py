@@ -13,7 +13,7 @@ from rovsim.diagnosis.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.leftover import Structure
 from rovsim.diagnosis.search import SURE
 from rovsim.diagnosis.strangers import STRANGERS
-from rovsim.effects.base import Wrench
+from rovsim.dynamics.effects.base import Wrench
 
 IMITATORS = ("linear_damping", "quadratic_damping")
 

@@ -7,10 +7,10 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.dynamics.actuation import ThrustPath
 from rovsim.replay import clock
 from rovsim.signals.chain import Stage
 from rovsim.signals.motion import Motion, Poses
-from rovsim.thrust import ThrustPath
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
 SETTLING = 1.0  # s

@@ -9,16 +9,16 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.body import packed
 from rovsim.diagnosis.observe import batch, remembered
 from rovsim.diagnosis.watch import Watch
-from rovsim.engine.at import Jobs
-from rovsim.engine.cores import run_jobs
-from rovsim.model import Model
+from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.body import packed
+from rovsim.dynamics.engine.parallel import run_jobs
+from rovsim.dynamics.engine.types import Jobs
+from rovsim.dynamics.model import Model
 from rovsim.replay import place, windows
 from rovsim.scores import normalised, rms
 from rovsim.signals.binned import bin_means
-from rovsim.thrust import Between
 
 SECONDS = 2.0  # contract, section 3
 

@@ -17,7 +17,7 @@ from PIL import Image
 
 from rovsim import AXES
 from rovsim.core.files import appearing
-from rovsim.effects.parameters import Signature
+from rovsim.dynamics.effects.parameters import Signature
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.palette import FAMILIES
 from rovsim.figures.style import MM, WIDTH, styled

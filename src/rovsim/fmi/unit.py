@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import appearing, read_yaml
-from rovsim.model import Model
+from rovsim.dynamics.model import Model
 
 SLAVE, MODEL = "slave.py", "model.yaml"
 

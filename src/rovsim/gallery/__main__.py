@@ -5,7 +5,7 @@ from pathlib import Path
 
 from rovsim.core.files import write_text
 from rovsim.core.progress import reported
-from rovsim.effects import built_in
+from rovsim.dynamics.effects import built_in
 from rovsim.figures.signature import signature, write
 from rovsim.gallery.flight import seen, settings
 from rovsim.gallery.page import PAGE, PICTURES, page

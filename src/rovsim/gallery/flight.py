@@ -8,11 +8,11 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.campaign import load_campaign
 from rovsim.core.errors import BadInput, nearest
-from rovsim.effects.base import Autopilot, Effect
-from rovsim.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Autopilot, Effect
+from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.model import EffectEntry, nominal
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.signature import Seen
-from rovsim.model import EffectEntry, nominal
 from rovsim.recording import read_run
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings, clean

@@ -6,7 +6,7 @@ from typing import Iterable, Mapping
 
 import numpy as np
 
-from rovsim.effects.base import (
+from rovsim.dynamics.effects.base import (
     Autopilot,
     Clock,
     Coefficients,
@@ -18,7 +18,7 @@ from rovsim.effects.base import (
     Strength,
     Wrench,
 )
-from rovsim.effects.parameters import Signature
+from rovsim.dynamics.effects.parameters import Signature
 
 PAGE, PICTURES = "catalogue.md", "images/effects"
 LONG = 8  # rows of a table that is folded away

@@ -5,8 +5,8 @@ from typing import Any
 
 from rovsim.config import compose
 from rovsim.diagnosing import diagnosed
+from rovsim.dynamics.model import nominal
 from rovsim.loading import measured
-from rovsim.model import nominal
 
 
 def diagnosis(campaign: Path, out: Path) -> dict[str, Any]:

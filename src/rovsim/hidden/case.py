@@ -7,11 +7,11 @@ import numpy as np
 from pydantic import Field
 
 from rovsim.core.schema import Section
-from rovsim.effects import effect
-from rovsim.effects.base import Effect
+from rovsim.dynamics.effects import effect
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import EffectEntry, Value
 from rovsim.hidden.outside import OUTSIDE
 from rovsim.hidden.recipes import RECIPES
-from rovsim.model import EffectEntry, Value
 from rovsim.tank.settings import TankSettings
 
 # First and last seed of each range. Whoever builds or tunes a method looks at development cases

@@ -14,8 +14,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.effects.base import Effect
-from rovsim.model import Model
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings

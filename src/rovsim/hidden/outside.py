@@ -9,7 +9,7 @@ from math import cos, exp, floor, pi, sin, tanh
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.effects.base import Effect, Parameter, Response, Wrench
+from rovsim.dynamics.effects.base import Effect, Parameter, Response, Wrench
 
 
 class SquareWave(Wrench):

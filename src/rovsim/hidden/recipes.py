@@ -11,9 +11,9 @@ from typing import Any, Mapping
 
 import numpy as np
 
-from rovsim.effects import effect
-from rovsim.effects.base import Parameter
-from rovsim.model import EffectEntry, Value
+from rovsim.dynamics.effects import effect
+from rovsim.dynamics.effects.base import Parameter
+from rovsim.dynamics.model import EffectEntry, Value
 
 Range = tuple[float, float]
 

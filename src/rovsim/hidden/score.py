@@ -9,7 +9,7 @@ counted, so that an answer cannot win by calling everything alike.
 from dataclasses import asdict, dataclass
 from typing import Any, Mapping, Sequence
 
-from rovsim.effects import effect
+from rovsim.dynamics.effects import effect
 from rovsim.hidden.case import Case
 
 Diagnosis = Mapping[str, Any]

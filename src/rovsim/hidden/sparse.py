@@ -16,12 +16,12 @@ from scipy.linalg import LinAlgWarning
 from sklearn.exceptions import ConvergenceWarning
 
 from rovsim.campaign import load_campaign
-from rovsim.effects import catalogue, effect
+from rovsim.dynamics.effects import catalogue, effect
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.hidden.library import Problem, problem
-from rovsim.model import nominal
 from rovsim.recording import read_run
 from rovsim.signals.chain import SignalSettings, clean
-from rovsim.vehicle import campaign_vehicle
 
 Regression = Callable[[Array, Array], Array]
 

@@ -15,12 +15,12 @@ from typing import Any, Iterator, Mapping, Sequence
 import numpy as np
 
 from rovsim import AXES
+from rovsim.dynamics.model import EffectEntry, Value
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.hidden.case import Case, Range, Unlisted, merged, random_of, seed_of
 from rovsim.hidden.outside import OUTSIDE, drawn_outside
 from rovsim.hidden.recipes import RECIPES, drawn
-from rovsim.model import EffectEntry, Value
 from rovsim.tank.settings import Camera
-from rovsim.vehicle import load_vehicle
 
 CALM = Camera()
 NOISY: Mapping[str, Any] = {

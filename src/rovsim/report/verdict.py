@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
-from rovsim.effects import catalogue
+from rovsim.dynamics.effects import catalogue
 from rovsim.figures.marks import listed, number, significant
 
 VERDICTS = {

@@ -1,4 +1,4 @@
-"""Trained residuals laid out for the kernels of `rovsim.residual.predictor`, and checked."""
+"""Trained residuals laid out for the kernels of `rovsim.dynamics.learned.predictor`, and checked."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -8,8 +8,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.residual.features import FeatureSettings, blocks_code, feature_names
-from rovsim.residual.layout import (
+from rovsim.dynamics.learned.features import FeatureSettings, blocks_code, feature_names
+from rovsim.dynamics.learned.layout import (
     BLOCKS,
     COUNT,
     DISTANCE,

@@ -8,10 +8,10 @@ from numpy import ndarray as Array
 from pydantic import Field
 from scipy.linalg import eigh
 
+from rovsim.dynamics.learned.layout import MOST_POINTS
 from rovsim.residual import gaussian
 from rovsim.residual.determinism import seeded_torch
 from rovsim.residual.export import AXES
-from rovsim.residual.layout import MOST_POINTS
 from rovsim.residual.learner import (
     Learner,
     Posterior,

@@ -9,8 +9,8 @@ from pydantic import Field
 from scipy.spatial import cKDTree
 
 from rovsim.core.errors import BadInput
+from rovsim.dynamics.learned.layout import MOST_NEIGHBOURS
 from rovsim.residual.export import export_neighbours
-from rovsim.residual.layout import MOST_NEIGHBOURS
 from rovsim.residual.learner import (
     Learner,
     LearnerSettings,

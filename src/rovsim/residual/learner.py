@@ -12,10 +12,10 @@ from numpy import ndarray as Array
 import rovsim.residual
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import Section, checked
+from rovsim.dynamics.learned.features import FeatureSettings, feature_names
+from rovsim.dynamics.learned.layout import EXPANSION, KIND
+from rovsim.dynamics.learned.predictor import evaluate_many, posterior_many
 from rovsim.residual.export import AXES
-from rovsim.residual.features import FeatureSettings, feature_names
-from rovsim.residual.layout import EXPANSION, KIND
-from rovsim.residual.predictor import evaluate_many, posterior_many
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
 Posterior = Callable[[Array], tuple[Array, Array]]  # the same -> mean and variance, (n, 6) each

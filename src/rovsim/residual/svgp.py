@@ -7,10 +7,10 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
 
+from rovsim.dynamics.learned.layout import MOST_POINTS
 from rovsim.residual import gaussian
 from rovsim.residual.determinism import seeded_torch
 from rovsim.residual.export import AXES
-from rovsim.residual.layout import MOST_POINTS
 from rovsim.residual.learner import (
     Learner,
     Posterior,

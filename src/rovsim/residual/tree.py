@@ -1,4 +1,4 @@
-"""A packed tree of bounding boxes around points, as `rovsim.residual.neighbours` searches it.
+"""A packed tree of bounding boxes around points, as `rovsim.dynamics.learned.neighbours` searches it.
 
 Points are halved along their widest feature, at whole subtrees (White & Jain 1996, the VAMSplit
 R-tree): all leaves but the last are full, and no pointers are needed.
@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.residual.layout import LANES, PASS, filled, tree_levels
+from rovsim.dynamics.learned.layout import LANES, PASS, filled, tree_levels
 
 
 @dataclass(frozen=True, eq=False)

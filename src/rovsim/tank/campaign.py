@@ -12,12 +12,12 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text, write_yaml
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.effects.base import Effect
-from rovsim.model import Model
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.tank.exports import BODY, commands_csv, qtm_tsv
 from rovsim.tank.settings import TankRun, TankSettings
 from rovsim.tank.simulate import simulate
-from rovsim.vehicle import load_vehicle
 
 SEALED = "truth.yaml"  # nothing that reads a campaign may open it
 

@@ -7,9 +7,9 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
+from rovsim.dynamics.mocap_view import View
 from rovsim.tank.settings import Camera, Log
 from rovsim.tank.simulate import Truth
-from rovsim.view import View
 
 BODY = "BlueROV2"
 COLUMNS = (

@@ -7,9 +7,9 @@ from typing import Any, Mapping
 import numpy as np
 
 from rovsim.adding import entries_of, extended
-from rovsim.effects import catalogue
-from rovsim.effects.parameters import Parameter
-from rovsim.model import EffectEntry, Model, Value
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.effects.parameters import Parameter
+from rovsim.dynamics.model import EffectEntry, Model, Value
 
 SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
 

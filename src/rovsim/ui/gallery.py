@@ -6,9 +6,9 @@ from pathlib import Path
 
 from nicegui import ui
 
-from rovsim.effects import catalogue
-from rovsim.effects.base import Effect
-from rovsim.effects.parameters import Signature
+from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.parameters import Signature
 from rovsim.gallery.page import PICTURES, chaptered, unit
 from rovsim.ui.parts import computed, formula, heading, section, table, text, words
 from rovsim.ui.workbench import Workbench

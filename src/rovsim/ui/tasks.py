@@ -8,7 +8,7 @@ from rovsim.answering import compare, diagnose, train
 from rovsim.config import Settings
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
-from rovsim.effects import use_effect_files
+from rovsim.dynamics.effects import use_effect_files
 from rovsim.evidence import PER_RUN
 from rovsim.loading import measured, models
 from rovsim.provenance import provenance

@@ -11,9 +11,9 @@ from rovsim.adding import read_diagnosis
 from rovsim.config import Settings, compose
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json
+from rovsim.dynamics.model import BUILT_IN, Model, read_model, zero_acceleration
 from rovsim.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.loading import Measured, measured, models
-from rovsim.model import BUILT_IN, Model, read_model, zero_acceleration
 from rovsim.provenance import digest, provenance
 from rovsim.replay import OPEN_LOOP, Prediction, Replay, replay
 from rovsim.scores import errors, metrics

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Sequence
 
-from rovsim.model import Model
+from rovsim.dynamics.model import Model
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion

@@ -1,0 +1,142 @@
+"""The thrust path: logged commands to the mean force of each thruster over each step.
+
+Order (contract, section 2): clock -> mixer (demands only) -> deadband -> force curve -> gain,
+asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happens in the engine.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Literal, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.dynamics.effects.base import Autopilot, Clock, Effect, Response, Shaping, Strength
+from rovsim.dynamics.vehicle import Thrusters
+from rovsim.recording.recording import CommandKind, Commands
+
+Between = Literal["held", "linear"]
+
+
+@dataclass(frozen=True, eq=False)
+class Thrust:
+    """Means over steps: `force` (k, n) N, `wrench` (k, 6) given directly, `demand` (k, 6)."""
+
+    force: Array
+    wrench: Array
+    demand: Array
+
+
+class ThrustPath:
+    """Thrusters and the effects between a logged command and their force."""
+
+    def __init__(self, thrusters: Thrusters, effects: Sequence[Effect]) -> None:
+        ranked = sorted(effects, key=lambda effect: effect.rank)
+        self.thrusters = thrusters
+        self.clocks = [e for e in ranked if isinstance(e, Clock)]
+        self.autopilots = [e for e in ranked if isinstance(e, Autopilot)]
+        self.shapings = [e for e in ranked if isinstance(e, Shaping)]
+        self.strengths = [e for e in ranked if isinstance(e, Strength)]
+        self.responses = [e for e in ranked if isinstance(e, Response)]
+
+    @property
+    def key(self) -> tuple:
+        """Equal where the same commands make the same thrust, whatever autopilots do beside it."""
+        left = [autopilot.mixed(np.eye(6)).tobytes() for autopilot in self.autopilots]
+        acting = (*self.clocks, *self.shapings, *self.strengths, *self.responses)
+        return (*left, *((e.id, e.values.tobytes()) for e in acting))
+
+    def arrival(self, time: Array) -> Array:
+        """Instants at which lines logged at `time` take effect."""
+        for clock in self.clocks:
+            time = clock.arrival(time)
+        return time
+
+    def thruster_commands(self, value: Array, kind: CommandKind) -> Array:
+        """Thruster commands (m, n) of logged values (m, c)."""
+        if kind == "demand":
+            for autopilot in self.autopilots:
+                value = autopilot.mixed(value)
+        return thruster_commands(value, kind, self.thrusters)
+
+    def static(self, command: Array, t: Array, duration: float) -> Array:
+        """Static forces (m, n) in N of thruster commands (m, n) at times t (m,)."""
+        for shaping in self.shapings:
+            command = shaping.shaped(command)
+        force = self.thrusters.static_force(command)
+        for strength in self.strengths:
+            force = strength.scaled(force, t, duration)
+        return force
+
+    def respond(self, force: Array, h: float, states: list | None) -> tuple[Array, list]:
+        """Dynamic mean forces over steps, and the states to go on from."""
+        after = []
+        for i, response in enumerate(self.responses):
+            force, state = response.respond(force, h, states[i] if states else None)
+            after.append(state)
+        return force, after
+
+    def over_steps(self, commands: Commands, edges: Array, between: Between = "held") -> Thrust:
+        """Mean thrust over each step between `edges` (k+1,), s on the MoCap clock.
+
+        Before the first line its command holds, after the last one too. The mean is exact for held
+        commands wherever a line falls inside a step.
+        """
+        arrival = edges[0] + self.arrival(commands.time - edges[0])  # clocks agree at the start
+        duration = float(edges[-1] - edges[0])
+        lines = Commands(arrival, commands.value, commands.kind)
+        static = self.arrived(lines, edges, float(edges[0]), duration, between)
+        force, _ = self.respond(static.force, float(edges[1] - edges[0]), None)
+        return replace(static, force=force)
+
+    def arrived(
+        self, lines: Commands, edges: Array, start: float, duration: float, between: Between
+    ) -> Thrust:
+        """Static mean thrust over each step, of lines by the time at which they take effect.
+
+        `start` s and `duration` s are those of the recording.
+        """
+        arrival, value = lines.time, lines.value
+        pieces = np.union1d(edges, arrival[(arrival > edges[0]) & (arrival < edges[-1])])
+        middle = 0.5 * (pieces[1:] + pieces[:-1])
+        at_middle = _between(arrival, value, middle, between)
+        width = np.diff(pieces)[:, None]
+        first = np.searchsorted(pieces, edges[:-1])
+
+        def mean(x: Array) -> Array:
+            return np.add.reduceat(x * width, first, axis=0) / np.diff(edges)[:, None]
+
+        count, steps = len(self.thrusters.spin), len(edges) - 1
+        none = np.full((steps, 6), np.nan)
+        if lines.kind == "wrench":
+            return Thrust(np.zeros((steps, count)), mean(at_middle), none)
+        command = self.thruster_commands(at_middle, lines.kind)
+        static = mean(self.static(command, middle - start, duration))
+        demand = mean(at_middle) if lines.kind == "demand" else none
+        return Thrust(static, np.zeros((steps, 6)), demand)
+
+
+def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
+    """Values (m, c) logged at `time`, at the instants `at`."""
+    if between == "held":
+        return value[np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)]
+    return np.stack([np.interp(at, time, column) for column in value.T], axis=1)
+
+
+def thruster_commands(value: Array, kind: CommandKind, thrusters: Thrusters) -> Array:
+    """Thruster commands (m, n) of logged values (m, c); demands go through the mixer, clipped.
+
+    Raises:
+        BadInput: the number of columns does not fit the vehicle.
+    """
+    expected = 6 if kind == "demand" else len(thrusters.spin)
+    if value.shape[1] != expected:
+        raise BadInput(
+            f"{value.shape[1]} command columns",
+            where="commands.columns in campaign.yaml",
+            expected=f"{expected} for commands of the kind '{kind}' on this vehicle",
+            remedy="Name one column per thruster, or the six axes for demands.",
+        )
+    if kind == "demand":
+        return np.clip(value @ thrusters.mixing.T, -1.0, 1.0)
+    return value

@@ -1,0 +1,108 @@
+"""The constants of Fossen's equation, filled in by effects, then packed for the engine."""
+
+from dataclasses import dataclass, field
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.dynamics.engine.types import Constants
+
+
+def cross_matrix(r: Array) -> Array:
+    """S(r) with S(r) x = r x x (Fossen 2021, eq. 2.10)."""
+    x, y, z = r
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def inertia_at(mass: float, r: Array, inertia: Array) -> Array:
+    """Inertia (6, 6) at CO of a mass at r with its own inertia (3, 3) (Fossen 2021, eq. 3.49)."""
+    S = cross_matrix(r)
+    top = np.hstack([mass * np.eye(3), -mass * S])
+    return np.vstack([top, np.hstack([mass * S, inertia - mass * S @ S])])
+
+
+@dataclass
+class Body:
+    """An empty body in still water; effects add to it.
+
+    SI, FRD at CO: `M_RB`, `M_A` (6, 6); `linear`, `quadratic` (6,) damping, positive = drag;
+    `weight` N and `weight_moment` (3,) sum of weight times place, N m; `buoyancy` N at
+    `center_of_buoyancy` (3,) m; `current` (3,) m/s NED; `B` (6, n) wrench per thruster force and
+    `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m; `coupling`
+    (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column), never
+    changed by walls; `memory` (6,) force per remembered velocity; `forgets` 1/s, 0 = no memory.
+    """
+
+    gravity: float
+    M_RB: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    M_A: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    linear: Array = field(default_factory=lambda: np.zeros(6))
+    quadratic: Array = field(default_factory=lambda: np.zeros(6))
+    weight: float = 0.0
+    weight_moment: Array = field(default_factory=lambda: np.zeros(3))
+    buoyancy: float = 0.0
+    center_of_buoyancy: Array = field(default_factory=lambda: np.zeros(3))
+    current: Array = field(default_factory=lambda: np.zeros(3))
+    B: Array = field(default_factory=lambda: np.zeros((6, 0)))
+    directions: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    spin: Array = field(default_factory=lambda: np.zeros(0))
+    advance: float = 0.0
+    coupling: Array = field(default_factory=lambda: np.zeros((2, 6, 6)))
+    memory: Array = field(default_factory=lambda: np.zeros(6))
+    forgets: float = 0.0
+
+    def add_mass(self, mass: float, place: Array, inertia: Array) -> None:
+        """Add a mass in kg at a place (3,), with its own inertia (3, 3), and its weight."""
+        self.M_RB += inertia_at(mass, place, inertia)
+        self.weight += mass * self.gravity
+        self.weight_moment += mass * self.gravity * place
+
+    @property
+    def least_inertia(self) -> float:
+        """Smallest eigenvalue of the total inertia: of a body that can exist it is positive."""
+        M = self.M_RB + self.M_A
+        return float(np.linalg.eigvalsh(0.5 * (M + M.T))[0])
+
+    @property
+    def M(self) -> Array:
+        """Total inertia (6, 6).
+
+        Raises:
+            BadInput: it is not positive definite, so no such body exists.
+        """
+        M, lowest = self.M_RB + self.M_A, self.least_inertia
+        if lowest > 0:
+            return M
+        raise BadInput(
+            f"the inertia matrix has the eigenvalue {lowest:.3g}",
+            where="model",
+            expected="a positive definite M = M_RB + M_A",
+            remedy="Check the mass, inertia and added mass (all positive), and their changes.",
+        )
+
+
+def packed(bodies: Sequence[Body]) -> Constants:
+    """Constants of several parameter sets of one vehicle, stacked for the engine."""
+
+    def stack(value) -> Array:
+        return np.ascontiguousarray(np.stack([np.asarray(value(b), dtype=float) for b in bodies]))
+
+    return Constants(
+        M_RB=stack(lambda b: b.M_RB),
+        M_A=stack(lambda b: b.M_A),
+        M_inv=stack(lambda b: np.linalg.inv(b.M)),
+        linear=stack(lambda b: b.linear),
+        quadratic=stack(lambda b: b.quadratic),
+        heaviness=stack(lambda b: b.weight - b.buoyancy),
+        righting=stack(lambda b: b.weight_moment - b.buoyancy * b.center_of_buoyancy),
+        current=stack(lambda b: b.current),
+        advance=stack(lambda b: b.advance),
+        coupled=stack(lambda b: np.any(b.coupling)),
+        coupling=stack(lambda b: b.coupling),
+        memory=stack(lambda b: b.memory),
+        forgets=stack(lambda b: b.forgets),
+        B=stack(lambda b: b.B),
+        directions=np.ascontiguousarray(bodies[0].directions, dtype=float),
+    )

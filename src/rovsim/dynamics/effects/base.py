@@ -1,0 +1,196 @@
+"""What an effect is: one declaration that simulates, fits, is reported and documented.
+
+An effect acts at one place of the equation of motion; the base class says which, and asks for one
+method. Effects are immutable and add: a model is a list of them.
+
+    base class      acts on                                    method
+    Coefficients    the constants of Fossen's equation         enter(body)
+    Wrench          the forces at one instant (compiled)       wrench(at, p) -> 6 numbers
+    Clock           when a logged command takes effect         arrival(time) -> time
+    Autopilot       the demand before the mixer                mixed(demand) -> demand; asked(...)
+    Shaping         the thruster command                       shaped(command) -> command
+    Strength        the static thruster force                  scaled(force, t, duration) -> force
+    Response        the dynamic thruster force                 respond(force, h, state) -> ...
+    Sensing         what the motion capture reports            transforms() -> two rigid transforms
+"""
+
+from abc import ABC, abstractmethod
+from collections import namedtuple
+from typing import Any, ClassVar, Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.rotations import Rigid
+from rovsim.dynamics.body import Body
+from rovsim.dynamics.effects.parameters import Parameter, Signature
+from rovsim.dynamics.engine.types import At, Vector6
+from rovsim.recording.recording import CommandKind, Site
+
+
+class Effect(ABC):
+    """A physical effect with values for its parameters; those not given have their default.
+
+    Raises:
+        BadInput: an unknown parameter, a value that is not a number or outside its range.
+    """
+
+    id: ClassVar[str]
+    equation: ClassVar[str]
+    neglects: ClassVar[str]
+    source: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    starts: ClassVar[tuple[dict[str, float], ...]] = ({},)  # where fits begin; {} = the defaults
+    cause: ClassVar[str] = ""  # what in a laboratory makes it happen, one sentence
+    revealed_by: ClassVar[str] = ""  # what to record to be sure of it, one sentence
+    signature: ClassVar[Signature | None] = None  # how the catalogue page shows it
+    listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
+    rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
+
+    def __init__(self, **values: float) -> None:
+        known = [p.name for p in self.parameters]
+        for name in values:
+            if name not in known:
+                raise BadInput(
+                    f"unknown parameter '{name}'",
+                    where=f"effect {self.id}",
+                    expected=f"one of {', '.join(known)}",
+                    remedy=nearest(name, known),
+                )
+        numbers = [
+            self._checked(p, values[p.name]) if p.name in values else p.default
+            for p in self.parameters
+        ]
+        self.values: Array = np.array(numbers, dtype=float)
+        self.values.setflags(write=False)
+
+    def _checked(self, parameter: Parameter, value: Any) -> float:
+        is_number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
+        if is_number and parameter.low <= value <= parameter.high and np.isfinite(value):
+            return float(value)
+        raise BadInput(
+            f"{parameter.name} is {value!r}",
+            where=f"effect {self.id}",
+            expected=f"a number from {parameter.low:g} to {parameter.high:g} {parameter.unit}",
+            remedy="Correct that value.",
+        )
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.values[[p.name for p in self.parameters].index(name)])
+
+    def __repr__(self) -> str:
+        given = ", ".join(f"{k}={v:g}" for k, v in self.given().items())
+        return f"{type(self).__name__}({given})"
+
+    def given(self) -> dict[str, float]:
+        """The values that differ from their default, by name."""
+        return {
+            p.name: float(v)
+            for p, v in zip(self.parameters, self.values, strict=True)
+            if v != p.default and np.isfinite(v)
+        }
+
+    def with_values(self, values: Mapping[str, float]) -> "Effect":
+        """The same effect with some values replaced."""
+        return type(self)(**self.given() | dict(values))
+
+    @classmethod
+    def starts_at(cls, site: Site) -> tuple[dict[str, float], ...]:
+        """Values from which fits begin at this site; more than one where zero is a flat place."""
+        return cls.starts
+
+    @classmethod
+    def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:
+        """Parameters that a fit from these values may change."""
+        return tuple(p.name for p in cls.parameters if p.fitted)
+
+    def check(self, site: Site, kind: CommandKind) -> None:  # noqa: B027 - most need nothing
+        """Refuse a run that lacks what this effect needs.
+
+        Raises:
+            BadInput: no tank is known, or the commands are of another kind.
+        """
+
+
+class Coefficients(Effect):
+    """Changes the constants of Fossen's equation: inertia, damping, buoyancy, current, …"""
+
+    @abstractmethod
+    def enter(self, body: Body) -> None:
+        """Add this effect's contribution to the constants."""
+
+
+class Wrench(Effect):
+    """Pushes the vehicle: a wrench that depends on the state and on time."""
+
+    @staticmethod
+    @abstractmethod
+    def wrench(at: At, p: Any) -> Vector6:
+        """Wrench on the vehicle at CO, FRD, N and N m. Compiled: plain arithmetic on floats.
+
+        `p` has the parameters by name.
+        """
+
+    @classmethod
+    def named_parameters(cls) -> type:
+        """The named tuple type in which the compiled kernel gets its parameters."""
+        return namedtuple(f"{cls.__name__}Parameters", [p.name for p in cls.parameters])
+
+
+class Clock(Effect):
+    """Moves the instants at which logged commands take effect."""
+
+    @abstractmethod
+    def arrival(self, time: Array) -> Array:
+        """Instants (m,) in s, increasing, at which lines logged at `time` (m,) take effect."""
+
+
+class Autopilot(Effect):
+    """Acts on some axes itself: their demands do not reach the mixer."""
+
+    @abstractmethod
+    def mixed(self, demand: Array) -> Array:
+        """Demands (m, 6) in [-1, 1] that are left to the mixer."""
+
+    @abstractmethod
+    def asked(self, demand: Array, inertia: Array) -> Array:
+        """Wrench (m, 6) for the demands (m, 6) it took; `inertia` (6,) diagonal of the whole M.
+
+        What it does about the vehicle's motion is its `wrench`.
+        """
+
+
+class Shaping(Effect):
+    """Changes the thruster command before the force curve."""
+
+    @abstractmethod
+    def shaped(self, command: Array) -> Array:
+        """Commands (m, n) in [-1, 1] as the propellers see them."""
+
+
+class Strength(Effect):
+    """Changes the static thruster force after the force curve."""
+
+    @abstractmethod
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Forces (m, n) in N at times t (m,) s into a recording of that duration."""
+
+
+class Response(Effect):
+    """Gives the thruster force dynamics of its own."""
+
+    @abstractmethod
+    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
+        """Mean forces (k, n) over steps of h s that follow static mean forces (k, n).
+
+        `state` is what an earlier call returned; None starts at rest at the first force.
+        """
+
+
+class Sensing(Effect):
+    """Changes what the motion capture reports of a motion, never the motion itself."""
+
+    @abstractmethod
+    def transforms(self) -> tuple[Rigid, Rigid]:
+        """World side and body side: measured pose = world o true pose o body."""

@@ -1,0 +1,181 @@
+"""What happens between a command that has arrived and a thruster's force."""
+
+import numpy as np
+import scipy
+from numpy import ndarray as Array
+
+from rovsim.dynamics.body import Body
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Response, Shaping, Strength
+from rovsim.dynamics.effects.parameters import STAMP, Signature
+
+THRUSTERS = tuple(f"t{i}" for i in range(1, 9))
+
+
+class ThrusterDeadband(Shaping):
+    """A thruster that does not start below a small command; above it the curve is unchanged."""
+
+    id = "thruster_deadband"
+    equation = r"F = 0 \text{ for } |c| \le w"
+    neglects = "hysteresis between starting and stopping"
+    source = "definition"
+    cause = "The speed controllers do not turn the propellers at small commands."
+    revealed_by = (
+        "Ramp one axis slowly through zero and back, up to a tenth of full thrust: inside a dead "
+        "band nothing happens at all, a low gain answers weakly from the very start."
+    )
+    signature = Signature({"width": 0.15}, "surge", "surge thrust")
+    # two steps of a log in whole microseconds, of 400 us: between them no command changes sides
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, grain=2 / 400),)
+    starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
+
+    def shaped(self, command: Array) -> Array:
+        """Commands inside the band become zero."""
+        return np.where(np.abs(command) <= self["width"], 0.0, command)
+
+
+class ThrusterGain(Strength):
+    """Thrusters stronger or weaker than the published curve; negative means reversed wiring."""
+
+    id = "thruster_gain"
+    equation = r"F_i \to g\,g_i\,F_i"
+    neglects = "a change of the curve's shape"
+    source = "definition"
+    cause = (
+        "A propeller is fouled, damaged or of another kind, the battery has another voltage, or a "
+        "thruster is wired the wrong way round."
+    )
+    revealed_by = (
+        "Push with one axis, better one thruster, at a time for 3 s and then coast: a gain shows "
+        "only under thrust, drag while coasting as well, and added mass only while the speed "
+        "changes."
+    )
+    signature = Signature({"all": 0.7}, "surge", "surge thrust")
+    parameters = tuple(
+        Parameter(name, "1", f"g_{{{name}}}", default=1.0, scale=0.1)
+        for name in (*THRUSTERS, "all")
+    )
+
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Forces times each thruster's gain and the common one."""
+        each, own = np.ones(force.shape[1]), self.values[: len(THRUSTERS)][: force.shape[1]]
+        each[: len(own)] = own
+        return force * (self["all"] * each)
+
+
+class ThrustAsymmetry(Strength):
+    """Propellers push less backwards than forwards."""
+
+    id = "thrust_asymmetry"
+    rank = 1
+    equation = r"F \to a F \text{ where } F < 0"
+    neglects = "a ratio that depends on speed"
+    source = "definition"
+    cause = "The blades are shaped for one direction, or the frame stands in the backward jet."
+    revealed_by = (
+        "Hold equal thrust forwards and backwards on each axis until the speed is steady: only an "
+        "asymmetry makes the two speeds differ at every heading, a current does so at one."
+    )
+    signature = Signature({"ratio": 0.7}, "heave", "heave thrust")
+    parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0, scale=0.1),)
+
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Negative forces times the ratio."""
+        return np.where(force < 0.0, self["ratio"] * force, force)
+
+
+class VoltageSag(Strength):
+    """The battery empties: thrust fades over the run."""
+
+    id = "voltage_sag"
+    rank = 2
+    equation = r"F \to F\,(1 - s\,t/T_\text{run})"
+    neglects = "recovery at rest and sag under load"
+    source = "definition"
+    cause = "The battery empties during the run, and nothing corrects the commands for it."
+    revealed_by = (
+        "Repeat one manoeuvre at the start, in the middle and at the end of a run, and coast each "
+        "time: sag weakens the thrust more and more, a gain is off from the start, and neither "
+        "shows while coasting."
+    )
+    signature = Signature({"fraction": 0.4}, "sway", "time in the run", size=True)
+    parameters = (Parameter("fraction", "1", "s", high=1.0, scale=0.1),)
+
+    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+        """Forces that fade linearly with time."""
+        return force * (1.0 - self["fraction"] * t / duration)[:, None]
+
+
+class ThrusterLag(Response):
+    """Propellers take time to spin up: first order on the force."""
+
+    id = "thruster_lag"
+    equation = r"T \dot F + F = F_\text{static}"
+    neglects = "that spinning up and down differ"
+    source = "Fossen 2021, sec. 9.4 (first-order actuator)"
+    cause = "The propellers take time to spin up, or their controllers smooth the command."
+    revealed_by = (
+        "Step one axis at a time between thrust levels and hold 3 s: a lag delays the whole "
+        "response by its time constant at any step size, added mass only slows the rise."
+    )
+    signature = Signature({"time_constant": 0.2}, "surge", "change of surge thrust")
+    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1, grain=STAMP),)
+    starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
+
+    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
+        """Exact response to forces that are constant over each step, and its mean over it."""
+        T = self["time_constant"]
+        start = force[0] if state is None else state
+        if T == 0.0:
+            return force, force[-1]
+        decay = np.exp(-h / T)
+        ends, _ = scipy.signal.lfilter(
+            [1.0 - decay], [1.0, -decay], force, axis=0, zi=decay * start[None]
+        )
+        begins = np.vstack([start[None], ends[:-1]])
+        return force + (begins - force) * (T / h) * (1.0 - decay), ends[-1]
+
+
+class AdvanceLoss(Coefficients):
+    """A propeller that advances through the water pushes less; opposing inflow raises thrust."""
+
+    id = "advance_loss"
+    equation = r"F \to F\,(1 - c\,\mathrm{sign}(F)\,d_i \cdot v_r)"
+    neglects = "the velocity of the thruster relative to CO"
+    source = "Fossen 2021, sec. 9.4 (linear in the advance speed)"
+    cause = (
+        "A propeller that moves along its own jet finds the water moving already; the published "
+        "curve was measured at rest."
+    )
+    revealed_by = (
+        "At full speed go on thrusting, then coast, then thrust backwards: the loss changes sign "
+        "with the thrust and ends with it, drag of the hull does neither."
+    )
+    signature = Signature({"coefficient": 0.6}, "surge", "surge speed")
+    parameters = (Parameter("coefficient", "s/m", "c", scale=0.2),)
+
+    def enter(self, body: Body) -> None:
+        """Add to the loss per speed of advance."""
+        body.advance += self["coefficient"]
+
+
+class PropellerTorque(Coefficients):
+    """The reaction moment of each propeller about its axis."""
+
+    id = "propeller_torque"
+    equation = r"\tau_\text{rotation} \mathrel{+}= q\,s_i F_i d_i"
+    neglects = "the torque of spinning up"
+    source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"
+    cause = (
+        "Each propeller turns the vehicle the other way, and a wrong pairing of left- and "
+        "right-handed propellers leaves a rest."
+    )
+    revealed_by = (
+        "Thrust one axis at a time from rest, 1 s at several levels: the torque of propellers is "
+        "there at once and grows with the thrust, coupled damping needs speed first."
+    )
+    signature = Signature({"ratio": 0.03}, "roll", "yaw thrust")
+    parameters = (Parameter("ratio", "m", "q", scale=0.01),)
+
+    def enter(self, body: Body) -> None:
+        """Add each propeller's moment to its column of the allocation."""
+        body.B[3:] += self["ratio"] * (body.spin[:, None] * body.directions).T

@@ -1,0 +1,154 @@
+"""A user's own effects: read from a file, and checked before anything is simulated with them."""
+
+import hashlib
+import inspect
+import keyword
+import re
+import sys
+import traceback
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Mapping
+
+import numpy as np
+
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text
+from rovsim.dynamics.effects.base import Effect, Parameter, Wrench
+
+GUIDE = "docs/your_own_effect.md shows a complete one."
+TEXTS = ("equation", "neglects", "source")
+
+
+def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]]:
+    """Effects that a file declares, by id.
+
+    Raises:
+        BadInput: it cannot be read or run, declares no effect, or an id that is taken.
+    """
+    path = path.expanduser().resolve()
+    return checked_effects(vars(_run(path, read_text(path))), path, taken)
+
+
+@cache
+def _run(path: Path, text: str) -> ModuleType:
+    """The module that this text makes; never from a stale byte-code file.
+
+    Called after its content: an engine compiled for it remembers the name, wherever the file lies.
+    """
+    module = ModuleType(f"rovsim_own_{hashlib.sha256(text.encode()).hexdigest()[:12]}")
+    module.__file__ = str(path)
+    sys.modules[module.__name__] = module  # where Python looks for the source of a class
+    try:
+        exec(compile(text, str(path), "exec"), vars(module))
+    except SyntaxError as error:
+        raise _refused(f"{error.msg}", f"{path}, line {error.lineno}", "valid Python") from None
+    except Exception as error:
+        lines = [
+            f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)
+        ]
+        found = f"{type(error).__name__}: {error}"
+        raise _refused(found, f"{path}, line {lines[-1]}", "a file that runs by itself") from None
+    return module
+
+
+def checked_effects(
+    content: Mapping[str, Any], where: object, taken: Mapping[str, Any]
+) -> dict[str, type[Effect]]:
+    """The effects that stand in a module, complete and with new ids.
+
+    Raises:
+        BadInput: there is none, or one is incomplete or cannot be compiled.
+    """
+    name = content.get("__name__")
+    classes = [
+        value
+        for value in content.values()
+        if inspect.isclass(value) and issubclass(value, Effect) and name in (None, value.__module__)
+    ]
+    if not classes:
+        raise _refused("declares no effect", where, "a class on top of Wrench or another kind")
+    found: dict[str, type[Effect]] = {}
+    for cls in classes:
+        _check(cls, f"{where}, class {cls.__name__}", {**taken, **found})
+        found[cls.id] = cls
+    return found
+
+
+def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
+    missing = [name for name in ("id", *TEXTS) if not isinstance(getattr(cls, name, None), str)]
+    missing += [] if cls.__doc__ else ["docstring"]
+    missing += [] if getattr(cls, "parameters", ()) else ["parameters"]
+    missing += sorted(cls.__abstractmethods__)
+    if missing:
+        what = ", ".join(f"'{name}'" for name in missing)
+        raise _refused(f"has no {what}", where, "a docstring, id, equation, neglects, source, "
+                       "parameters and the method of its kind")  # fmt: skip
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", cls.id):
+        raise _refused(f"the id is '{cls.id}'", where, "lower-case letters, digits and _")
+    if cls.id in taken:
+        raise _refused(f"the id '{cls.id}' is taken", where, "an id that no other effect has")
+    _check_parameters(cls, where)
+    if issubclass(cls, Wrench):
+        _check_kernel(cls, where)
+
+
+def _check_parameters(cls: type[Effect], where: str) -> None:
+    if not all(isinstance(p, Parameter) for p in cls.parameters):
+        raise _refused(
+            "'parameters' holds something else",
+            where,
+            "a tuple of Parameter(name, unit, symbol, …)",
+        )
+    names = [p.name for p in cls.parameters]
+    for p in cls.parameters:
+        usable = p.name.isidentifier() and not keyword.iskeyword(p.name) and p.name[0] != "_"
+        inside = np.isnan(p.default) or p.low <= p.default <= p.high
+        if not (usable and inside and p.scale > 0) or names.count(p.name) > 1:
+            raise _refused(
+                f"parameter '{p.name}' is {p}", where,
+                "a name of its own, low <= default <= high, and a scale above 0",
+            )  # fmt: skip
+    for start in cls.starts:
+        cls(**start)
+
+
+def _check_kernel(cls: type[Wrench], where: str) -> None:
+    """Compile the kernel alone: its errors are then short, and not those of the whole engine."""
+    from numba import types
+    from numba.core.errors import NumbaError
+
+    from rovsim.dynamics.engine.types import EXAMPLE
+    from rovsim.dynamics.engine.vectors import inlined
+
+    wrench = inspect.getattr_static(cls, "wrench")
+    if not isinstance(wrench, staticmethod):
+        raise _refused("'wrench' has no @staticmethod", where, "@staticmethod def wrench(at, p)")
+    p = cls.named_parameters()(*(0.0 for _ in cls.parameters))
+    kernel = inlined(cls.wrench)
+    try:
+        kernel(EXAMPLE, p)
+    except (NumbaError, TypeError) as error:
+        raise _refused(
+            f"'wrench' does not compile: {_reason(str(error))}", where,
+            "arithmetic on the numbers of `at` and `p`, functions of math, and if",
+        ) from None  # fmt: skip
+    made = kernel.nopython_signatures[0].return_type
+    numbers = [isinstance(part, types.Number) for part in getattr(made, "types", ())]
+    if len(numbers) != 6 or not all(numbers):
+        raise _refused(f"'wrench' returns {made}", where, "six numbers: X, Y, Z, K, M, N")
+
+
+def _reason(text: str) -> str:
+    """What Numba found, and in which line, without its report."""
+    plain = [line.strip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines()]
+    told = [
+        line for line in plain if line and not line.startswith(("Failed in", "- ", ">>>", "Th"))
+    ]
+    line = re.search(r", line (\d+)", text)
+    return (told[0].rstrip(":.") if told else plain[0]) + (f" (line {line[1]})" if line else "")
+
+
+def _refused(found: str, where: object, expected: str) -> BadInput:
+    return BadInput(found, where=where, expected=expected, remedy=GUIDE)

@@ -1,0 +1,170 @@
+"""Fossen's equation of motion, compiled by Numba. With `integration` this file is a template.
+
+`rovsim.dynamics.engine.compiled` writes a copy of both in which `extra` calls the wrench kernels of one
+model, so that LLVM inlines them and Numba caches the result on disk.
+
+    M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r + g(eta)
+        = tau_thrust + tau_extra                                      (Fossen 2021, eq. 6.1, 10.135)
+
+State: position NED, quaternion body to world, body velocity. SI, float64, FRD at CO.
+"""
+
+import numpy as np
+
+from rovsim.dynamics.engine.types import At, State
+from rovsim.dynamics.engine.vectors import (
+    add3,
+    add6,
+    called,
+    cross,
+    dot3,
+    into_body,
+    into_world,
+    times6,
+    vector3,
+    vector6,
+    woven,
+)  # fmt: skip
+
+# <extra>
+
+
+@woven
+def extra(at, p):
+    """Wrench of the model's further effects, parameters p (k,)."""
+    return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+
+
+# </extra>
+
+
+@woven
+def rotation(q):
+    """Rotation matrix body to world, by rows (Fossen 2021, eq. 2.73).
+
+    Homogeneous in q: where a Runge-Kutta stage has stretched it, all of R is stretched alike, and
+    no direction of the world is preferred.
+    """
+    w, i, j, k = q
+    return (
+        (w * w + i * i - j * j - k * k, 2 * (i * j - w * k), 2 * (i * k + w * j)),
+        (2 * (i * j + w * k), w * w - i * i + j * j - k * k, 2 * (j * k - w * i)),
+        (2 * (i * k - w * j), 2 * (j * k + w * i), w * w - i * i - j * j + k * k),
+    )
+
+
+@woven
+def quaternion_rate(q, nu):
+    """Rate of the quaternion under body rates (Fossen 2021, eq. 2.78)."""
+    a, b, c = 0.5 * nu[3], 0.5 * nu[4], 0.5 * nu[5]
+    return (
+        -q[1] * a - q[2] * b - q[3] * c,
+        q[0] * a + q[2] * c - q[3] * b,
+        q[0] * b + q[3] * a - q[1] * c,
+        q[0] * c + q[1] * b - q[2] * a,
+    )
+
+
+@woven
+def coriolis(M, v):
+    """C(v) v of a body with inertia M (6, 6), from its momentum (Fossen 2021, eq. 6.43).
+
+    Written as cross products it can do no work: v' C(v) v = 0 whatever M is.
+    """
+    h = times6(M, v)
+    force = cross(v[3:], h[:3])
+    moment = add3(cross(v[:3], h[:3]), 1.0, cross(v[3:], h[3:]))
+    return force[0], force[1], force[2], moment[0], moment[1], moment[2]
+
+
+@woven
+def flow(current, R, nu):
+    """Velocity through the water, and the rate of change of the current seen in body axes."""
+    c = into_body(R, current)
+    rate = cross(c, nu[3:])  # d/dt (R' v_c) = -omega x (R' v_c)
+    nu_r = (nu[0] - c[0], nu[1] - c[1], nu[2] - c[2], nu[3], nu[4], nu[5])
+    return nu_r, (rate[0], rate[1], rate[2], 0.0, 0.0, 0.0)
+
+
+@woven
+def damping_term(linear, quadratic, v):
+    """Damping force of one axis."""
+    return -(linear + quadratic * abs(v)) * v
+
+
+@woven
+def damping(a, b, v):
+    """Linear (a) and quadratic (b) diagonal damping (Fossen 2021, eq. 6.75)."""
+    return (
+        damping_term(a[0], b[0], v[0]), damping_term(a[1], b[1], v[1]),
+        damping_term(a[2], b[2], v[2]), damping_term(a[3], b[3], v[3]),
+        damping_term(a[4], b[4], v[4]), damping_term(a[5], b[5], v[5]),
+    )  # fmt: skip
+
+
+@woven
+def restoring(heaviness, righting, R):
+    """Weight and buoyancy; the world's down in body axes is the last row of R."""
+    d, m = R[2], cross(righting, R[2])
+    return heaviness * d[0], heaviness * d[1], heaviness * d[2], m[0], m[1], m[2]
+
+
+@called
+def coupled_damping(coupling, v):
+    """Damping of each axis by motion along the others: linear, then quadratic matrix."""
+    tau = np.zeros(6)
+    for i in range(6):
+        for j in range(6):
+            tau[i] -= (coupling[0, i, j] + coupling[1, i, j] * abs(v[j])) * v[j]
+    return vector6(tau)
+
+
+@called
+def thrust_loss(force, advance, B, directions, nu_r):
+    """Change of the thruster wrench with inflow: F -> F (1 - c sign(F) d.v_r)."""
+    tau = np.zeros(6)
+    for n in range(force.size):
+        inflow = dot3(vector3(directions[n]), nu_r)
+        for i in range(6):
+            tau[i] -= advance * abs(force[n]) * inflow * B[i, n]
+    return vector6(tau)
+
+
+@woven
+def accelerate(at, body, p, thrust, force):
+    """Body acceleration under a thruster wrench (6,) made of thruster forces (n,)."""
+    tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
+    tau = add6(tau, -1.0, coriolis(body.M_A, at.nu_r))
+    tau = add6(tau, 1.0, at.drag)
+    tau = add6(tau, 1.0, restoring(body.heaviness, body.righting, at.R))
+    tau = add6(tau, 1.0, times6(body.M_A, at.nu_c_dot))
+    tau = add6(tau, 1.0, extra(at, p))
+    if body.coupled != 0.0:
+        tau = add6(tau, 1.0, coupled_damping(body.coupling, at.nu_r))
+    if body.advance != 0.0:
+        loss = thrust_loss(force, body.advance, body.B, body.directions, at.nu_r)
+        tau = add6(tau, 1.0, loss)
+    return times6(body.M_inv, tau)
+
+
+@woven
+def diagonal(a, b):
+    """Diagonal of the sum of two matrices."""
+    return (
+        a[0][0] + b[0][0], a[1][1] + b[1][1], a[2][2] + b[2][2],
+        a[3][3] + b[3][3], a[4][4] + b[4][4], a[5][5] + b[5][5],
+    )  # fmt: skip
+
+
+@woven
+def slope(t, x, body, p, step, correction, site):
+    """Rate of change of the state at time t; `correction` (6,) adds to the acceleration."""
+    thrust, force, demand, duration = step
+    R = rotation(x.attitude)
+    nu_r, nu_c_dot = flow(body.current, R, x.nu)
+    drag, inertia = damping(body.linear, body.quadratic, nu_r), diagonal(body.M_RB, body.M_A)
+    at = At(
+        t, duration, x.position, R, x.nu, nu_r, nu_c_dot, drag, inertia, demand, site[0], site[1]
+    )
+    nu_dot = add6(accelerate(at, body, p, thrust, force), 1.0, correction)
+    return State(into_world(R, x.nu), quaternion_rate(x.attitude, x.nu), nu_dot)

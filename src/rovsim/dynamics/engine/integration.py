@@ -1,0 +1,241 @@
+"""Integration of the equation of motion. With `equation` this file is a template.
+
+`rovsim.dynamics.engine.compiled` writes both into one module, where these functions meet the `slope` of one
+model instead of the imported one.
+"""
+
+from math import exp, sqrt
+
+import numpy as np
+
+# <equation>
+from rovsim.dynamics.engine.equation import flow, rotation, slope
+from rovsim.dynamics.engine.types import Constants, State
+
+# </equation>
+from rovsim.dynamics.engine.vectors import (
+    add3,
+    add4,
+    add6,
+    called,
+    compiled,
+    each6,
+    matrix6,
+    times6,
+    vector3,
+    vector6,
+    woven,
+)
+from rovsim.dynamics.learned.features import FEATURES, assemble_one
+from rovsim.dynamics.learned.predictor import evaluate
+
+ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@woven
+def moved(x, h, dx):
+    """x + h dx."""
+    return State(
+        add3(x.position, h, dx.position),
+        add4(x.attitude, h, dx.attitude),
+        add6(x.nu, h, dx.nu),
+    )
+
+
+@woven
+def renormalised(x):
+    """The state with its quaternion scaled to unit length."""
+    w, i, j, k = x.attitude
+    length = sqrt(w * w + i * i + j * j + k * k)
+    return State(x.position, (w / length, i / length, j / length, k / length), x.nu)
+
+
+@woven
+def runge_kutta(t, x, h, body, p, step, correction, site):
+    """One classical Runge-Kutta 4 step."""
+    k1 = slope(t, x, body, p, step, correction, site)
+    k2 = slope(t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)
+    k3 = slope(t + 0.5 * h, moved(x, 0.5 * h, k2), body, p, step, correction, site)
+    k4 = slope(t + h, moved(x, h, k3), body, p, step, correction, site)
+    x = moved(moved(x, h / 6.0, k1), h / 3.0, k2)
+    return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
+
+
+@woven
+def through_water(x, body):
+    """Velocity through the water."""
+    return flow(body.current, rotation(x.attitude), x.nu)[0]
+
+
+@woven
+def lagged(memory, nu_r, time):
+    """What is remembered after a time, in time constants, of going at nu_r."""
+    kept = exp(-time)
+    return add6(add6(ZERO6, kept, memory), 1.0 - kept, nu_r)
+
+
+@woven
+def memory_push(body, memory):
+    """Acceleration by the water that still moves as the vehicle did."""
+    return times6(body.M_inv, each6(body.memory, memory))
+
+
+@called
+def push_over_step(x, memory, h, body):
+    """The same at the middle of a step that begins at x; held, it is of second order."""
+    ahead = lagged(memory, through_water(x, body), 0.5 * h * body.forgets)
+    return memory_push(body, ahead)
+
+
+@called
+def memory_after(memory, x, after, h, body):
+    """Memory after a step from one state to another."""
+    mean = add6(through_water(x, body), 1.0, through_water(after, body))
+    return lagged(memory, add6(ZERO6, 0.5, mean), h * body.forgets)
+
+
+@called
+def learned(t, x, body, p, step, push, data, site, features, a_res):
+    """Learned acceleration error at x. tau_res = M a_res, so it simply adds to nu_dot."""
+    base = slope(t, x, body, p, step, push, site)
+    assemble_one(data, x.nu, base.nu, step[0], rotation(x.attitude), features)
+    evaluate(data, features, a_res)
+    return vector6(a_res)
+
+
+@woven
+def constants_of(bodies, m):
+    """Constants of parameter set m alone, as tuples."""
+    return Constants(
+        matrix6(bodies.M_RB[m]), matrix6(bodies.M_A[m]), matrix6(bodies.M_inv[m]),
+        vector6(bodies.linear[m]), vector6(bodies.quadratic[m]), bodies.heaviness[m],
+        vector3(bodies.righting[m]), vector3(bodies.current[m]), bodies.advance[m],
+        bodies.coupled[m], bodies.coupling[m], vector6(bodies.memory[m]), bodies.forgets[m],
+        bodies.B[m], bodies.directions,
+    )  # fmt: skip
+
+
+@woven
+def step_of(inputs, row, k):
+    """Commands of step k: thruster wrench, thruster forces, demand, duration of the recording."""
+    return (
+        vector6(inputs.wrench[row, k]), inputs.force[row, k], vector6(inputs.demand[k]),
+        inputs.duration[k],
+    )  # fmt: skip
+
+
+@woven
+def state_of(a):
+    """State of an array (13,)."""
+    return State((a[0], a[1], a[2]), (a[3], a[4], a[5], a[6]), vector6(a[7:]))
+
+
+@woven
+def store(x, out):
+    """Write a state into an array (13,)."""
+    for i in range(3):
+        out[i] = x.position[i]
+    for i in range(4):
+        out[3 + i] = x.attitude[i]
+    for i in range(6):
+        out[7 + i] = x.nu[i]
+
+
+@woven
+def site_of(site):
+    """Walls (low, high per world axis) and MoCap axes as tuples."""
+    tank = site.tank
+    walls = ((tank[0, 0], tank[0, 1]), (tank[1, 0], tank[1, 1]), (tank[2, 0], tank[2, 1]))
+    return walls, vector3(site.axes)
+
+
+@woven
+def stepped(t, x, memory, h, body, own, step, data, place, features, a_res):
+    """State and memory one step later; a learned residual is held over the step."""
+    push = ZERO6
+    if body.forgets != 0.0:
+        push = push_over_step(x, memory, h, body)
+    if data.size:
+        a_learned = learned(t, x, body, own, step, push, data, place, features, a_res)
+        push = add6(push, 1.0, a_learned)
+    after = runge_kutta(t, x, h, body, own, step, push, place)
+    if body.forgets != 0.0:
+        memory = memory_after(memory, x, after, h, body)
+    return after, memory
+
+
+@compiled
+def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
+    """Integrate the jobs; after every `stride` steps a state goes into the next row of out."""
+    place, features, a_res = site_of(site), np.empty(FEATURES), np.empty(6)
+    for job in range(jobs.first.size):
+        m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
+        x, body, own, left = state_of(jobs.state[job]), constants_of(bodies, m), p[m], stride
+        memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
+        for n in range(jobs.steps[job]):
+            step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
+            x, memory = stepped(t, x, memory, h, body, own, step, data, place, features, a_res)
+            left -= 1
+            if left == 0:
+                store(x, out[row])
+                row, left = row + 1, stride
+
+
+@compiled
+def advance(state, memory, t, h, bodies, inputs, p, data, site):
+    """Move state (13,) and memory (6,) on over all steps of the inputs, in place."""
+    x, body, place, m = state_of(state), constants_of(bodies, 0), site_of(site), vector6(memory)
+    features, a_res = np.empty(FEATURES), np.empty(6)
+    for n in range(inputs.duration.size):
+        step = step_of(inputs, 0, n)
+        x, m = stepped(t + n * h, x, m, h, body, p[0], step, data, place, features, a_res)
+    store(x, state)
+    for i in range(6):
+        memory[i] = m[i]
+
+
+@compiled
+def heun(state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
+    """Heun's method over the steps of the inputs, each with an extra acceleration pushes (k, 6).
+
+    For the synthetic tank, whose truth must not share the replay's integrator. What the water
+    remembers, memory (6,), is integrated with the state and written back.
+    """
+    x, body, place = state_of(state), constants_of(bodies, 0), site_of(site)
+    features, a_res, m = np.empty(FEATURES), np.empty(6), vector6(memory)
+    for n in range(pushes.shape[0]):
+        step, now, push = step_of(inputs, 0, n), t + n * h, vector6(pushes[n])
+        if data.size:
+            recalled = memory_push(body, m)
+            a_learned = learned(now, x, body, p, step, recalled, data, place, features, a_res)
+            push = add6(push, 1.0, a_learned)
+        k1 = slope(now, x, body, p, step, add6(push, 1.0, memory_push(body, m)), place)
+        m1 = add6(through_water(x, body), -1.0, m)
+        x1, ahead = moved(x, h, k1), add6(m, h * body.forgets, m1)
+        k2 = slope(now + h, x1, body, p, step, add6(push, 1.0, memory_push(body, ahead)), place)
+        m2 = add6(through_water(x1, body), -1.0, ahead)
+        x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
+        m = add6(m, 0.5 * h * body.forgets, add6(m1, 1.0, m2))
+        store(x, out[n])
+    for i in range(6):
+        memory[i] = m[i]
+
+
+@compiled
+def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
+    """nu_dot (n, 6) of parameter set 0 at each state (n, 13) under the commands of step n.
+
+    `memory` (n, 6) is what the water remembers then; empty: nothing.
+    """
+    body, own, place = constants_of(bodies, 0), p[0], site_of(site)
+    features, a_res = np.empty(FEATURES), np.empty(6)
+    for n in range(times.size):
+        x, step, push = state_of(states[n]), step_of(inputs, inputs.row[0], n), ZERO6
+        if memory.size:
+            push = memory_push(body, vector6(memory[n]))
+        if data.size:
+            a_learned = learned(times[n], x, body, own, step, push, data, place, features, a_res)
+            push = add6(push, 1.0, a_learned)
+        nu_dot = slope(times[n], x, body, own, step, push, place).nu
+        for i in range(6):
+            out[n, i] = nu_dot[i]

@@ -1,0 +1,116 @@
+"""One-step prediction errors: a model that runs along a measurement and is corrected by it.
+
+A part of the engine's template, like `integration`.
+
+    x_dot = f(x, u) + a,   a_dot = -a / T + white noise,   reading = pose or mean velocity + noise
+
+A steady-state Kalman filter per axis; its innovations are what the model could not foresee.
+"""
+
+# <equation>
+from rovsim.dynamics.engine.equation import rotation
+from rovsim.dynamics.engine.integration import (
+    ZERO6,
+    constants_of,
+    memory_after,
+    push_over_step,
+    renormalised,
+    runge_kutta,
+    site_of,
+    state_of,
+    step_of,
+)
+from rovsim.dynamics.engine.types import State
+
+# </equation>
+from rovsim.dynamics.engine.vectors import (
+    add3,
+    add6,
+    compiled,
+    each6,
+    into_body,
+    into_world,
+    vector6,
+    woven,
+)
+
+
+@woven
+def turned(q, v):
+    """q followed by a small rotation vector v in body axes; the length is restored later."""
+    w, i, j, k = q
+    a, b, c = 0.5 * v[0], 0.5 * v[1], 0.5 * v[2]
+    return (
+        w - i * a - j * b - k * c, i + w * a + j * c - k * b,
+        j + w * b + k * a - i * c, k + w * c + i * b - j * a,
+    )  # fmt: skip
+
+
+@woven
+def pose_error(x, y):
+    """Measured pose y (7,) minus the predicted one, in body axes: m and rad."""
+    moved = (y[0] - x.position[0], y[1] - x.position[1], y[2] - x.position[2])
+    d = into_body(rotation(x.attitude), moved)
+    w, i, j, k = x.attitude
+    real = w * y[3] + i * y[4] + j * y[5] + k * y[6]
+    two = 2.0 if real >= 0.0 else -2.0
+    return (
+        d[0], d[1], d[2],
+        two * (w * y[4] - i * y[3] - j * y[6] + k * y[5]),
+        two * (w * y[5] + i * y[6] - j * y[3] - k * y[4]),
+        two * (w * y[6] - i * y[5] + j * y[4] - k * y[3]),
+    )  # fmt: skip
+
+
+@woven
+def velocity_error(mean, y):
+    """Measured mean velocity, in y (13,) behind the pose, minus the predicted one."""
+    return (
+        y[7] - mean[0], y[8] - mean[1], y[9] - mean[2],
+        y[10] - mean[3], y[11] - mean[4], y[12] - mean[5],
+    )  # fmt: skip
+
+
+@woven
+def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
+    """The state after a reading; where velocities are read, poses are taken as measured."""
+    nu = add6(x.nu, 1.0, each6(gain_nu, e))
+    if by_velocity:
+        return State((y[0], y[1], y[2]), (y[3], y[4], y[5], y[6]), nu)
+    k = each6(gain_pose, e)
+    position = add3(x.position, 1.0, into_world(rotation(x.attitude), k[:3]))
+    return State(position, turned(x.attitude, k[3:]), nu)
+
+
+@compiled
+def observe(jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out):
+    """Innovations of the jobs: each from reading `first`, over the `steps` readings that follow.
+
+    `ends` (k,) steps at which the readings (r, k, 13) end, `row` (m,) which of them belong to each
+    parameter set; `gains` (3, 6) of pose, velocity and disturbance; `decay` (6,) of the
+    disturbance over one step; `out` (.., 6) innovations, m or m/s and rad or rad/s.
+    """
+    place, fade = site_of(site), vector6(decay)
+    gain_pose, gain_nu, gain_a = vector6(gains[0]), vector6(gains[1]), vector6(gains[2])
+    for job in range(jobs.first.size):
+        m, first, at, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
+        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), p[m]
+        a, n = ZERO6, ends[first]
+        memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
+        for k in range(first + 1, first + 1 + jobs.steps[job]):
+            mean, count = ZERO6, ends[k] - n
+            while n < ends[k]:
+                t, before, push = start + (n - ends[first]) * h, x, a
+                if body.forgets != 0.0:
+                    push = add6(a, 1.0, push_over_step(x, memory, h, body))
+                x = runge_kutta(t, x, h, body, own, step_of(inputs, inputs.row[m], n), push, place)
+                if body.forgets != 0.0:
+                    memory = memory_after(memory, before, x, h, body)
+                mean = add6(add6(mean, 0.5 / count, before.nu), 0.5 / count, x.nu)
+                a, n = each6(fade, a), n + 1
+            y = readings[row[m], k]
+            e = velocity_error(mean, y) if by_velocity else pose_error(x, y)
+            x = renormalised(corrected(x, y, e, gain_pose, gain_nu, by_velocity))
+            a = add6(a, 1.0, each6(gain_a, e))
+            for i in range(6):
+                out[at + k - first - 1, i] = e[i]

@@ -1,0 +1,133 @@
+"""A sum of RBF kernels around points: the mean of a Gaussian process, and how unsure it is.
+
+With k_i = exp(-|z - z_i|^2 / 2) at scaled features z, the mean is `mean` + weights k, and the
+variance, as a share of the prior variance (Rasmussen & Williams 2006, eqs. 2.25 and 2.26),
+
+    rho = 1 - identity |k|^2 - sum_j spectrum_j (v_j' k)^2
+
+is 0 where the process is certain and 1 where it has seen nothing. `rovsim.residual.spectrum` says
+how identity, spectrum and vectors come about. The correction fades: it counts fully up to the
+`limit` of rho, from there in proportion to what is known, 1 - rho, and not at all where rho = 1.
+"""
+
+from typing import Any, NamedTuple
+
+from numba import njit
+
+from rovsim.dynamics.learned.layout import (
+    COUNT,
+    HEADER,
+    LANES,
+    OUTPUTS,
+    PASS,
+    POINTS,
+    RANK,
+    SURE,
+    WIDTH,
+)
+from rovsim.dynamics.learned.simd import add_squares, exponentials, products, scaled
+
+plain = njit(error_model="numpy")
+
+
+class Part(NamedTuple):
+    """One kernel of an expansion, as `layout` orders it; its outputs are first .. first + share."""
+
+    first: int
+    share: int
+    identity: float
+    limit: float
+    prior: Any
+    scaling: int
+    points: Any
+    spectrum: Any
+    weights: Any
+    vectors: Any
+
+
+@plain
+def _part(data, part):
+    """The views of one part."""
+    d, n, m = int(data[WIDTH]), int(data[POINTS]), int(data[OUTPUTS])
+    share, rank = m // int(data[COUNT]), (int(data[RANK]) + PASS - 1) // PASS * PASS
+    wide, rows = (d + PASS - 1) // PASS * PASS, (share + PASS - 1) // PASS * PASS
+    blocks = (n + LANES - 1) // LANES
+    length = blocks * LANES
+    size = 2 + share + 2 * d + length * wide + rank + (rows + rank) * length
+    at = HEADER + m + part * size
+    prior = at + 2
+    scaling = prior + share
+    points = scaling + 2 * d
+    spectrum = points + length * wide
+    weights = spectrum + rank
+    vectors = weights + rows * length
+    return Part(
+        part * share, share, data[at], data[at + 1], data[prior:scaling], scaling,
+        data[points:spectrum].reshape((blocks, wide, LANES)), data[spectrum:weights],
+        data[weights:vectors], data[vectors : vectors + rank * length],
+    )  # fmt: skip
+
+
+@plain
+def _kernel(data, part, x, scratch):
+    """Kernel values k (n',) between features x and the points of a part."""
+    blocks, wide = part.points.shape[0], part.points.shape[1]
+    k, z = scratch[: blocks * LANES], scratch[blocks * LANES : blocks * LANES + wide]
+    scaled(data, part.scaling, int(data[WIDTH]), x, z)
+    for b in range(blocks):
+        s = k[b * LANES : (b + 1) * LANES]
+        s[:] = 0.0
+        for j in range(0, wide, PASS):
+            add_squares(part.points, b, j, z, s)
+    exponentials(k)
+    return k
+
+
+@plain
+def _mean(data, part, k, out):
+    """The mean's outputs of a part."""
+    for row in range(0, part.share, PASS):
+        four = products(part.weights, row, k)
+        for o in range(min(PASS, part.share - row)):
+            out[part.first + row + o] = data[HEADER + part.first + row + o] + four[o]
+
+
+@plain
+def _unsure(part, k, n, rank):
+    """rho, from the first `rank` vectors; n points are real."""
+    known = 0.0
+    if part.identity != 0.0:
+        for i in range(n):
+            known += k[i] * k[i]
+    known *= part.identity
+    for row in range(0, rank, PASS):
+        a, b, c, d = products(part.vectors, row, k)
+        s = part.spectrum
+        known += (s[row] * a * a + s[row + 1] * b * b) + (s[row + 2] * c * c + s[row + 3] * d * d)
+    return min(max(1.0 - known, 0.0), 1.0) if known == known else known
+
+
+@plain
+def faded(data, x, scratch, out):
+    """Mean out (m,), faded if the residual has a SURE rank."""
+    for number in range(int(data[COUNT])):
+        part = _part(data, number)
+        k = _kernel(data, part, x, scratch)
+        _mean(data, part, k, out)
+        if data[SURE] > 0.0:
+            known = 1.0 - _unsure(part, k, int(data[POINTS]), int(data[SURE]))
+            share = min(known / max(1.0 - part.limit, 1e-300), 1.0)
+            for o in range(part.first, part.first + part.share):
+                out[o] *= share
+
+
+@plain
+def posterior(data, x, scratch, mean, variance):
+    """Mean (m,) and variance (m,) of the process itself: nothing fades."""
+    for number in range(int(data[COUNT])):
+        part = _part(data, number)
+        k = _kernel(data, part, x, scratch)
+        _mean(data, part, k, mean)
+        rho = _unsure(part, k, int(data[POINTS]), int(data[RANK]))
+        for o in range(part.share):
+            variance[part.first + o] = part.prior[o] * rho

@@ -1,0 +1,161 @@
+"""Trained residuals on disk: arrays in an `.npz`, everything else in the model file. No pickle."""
+
+import zipfile
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.files import plain, read_arrays, write_arrays
+from rovsim.core.schema import Section, checked
+from rovsim.dynamics.learned.features import Block, FeatureSettings
+from rovsim.dynamics.learned.layout import POINTS
+from rovsim.dynamics.learned.predictor import evaluate_many
+from rovsim.residual.export import check_exported
+from rovsim.residual.learner import (
+    LearnerSettings,
+    Predict,
+    Trained,
+    checked_rows,
+    learner,
+    learner_settings,
+    posterior,
+)
+
+Control = Literal["3dof", "6dof", "all"]  # runs a residual learns from
+LIBRARY = "library."  # prefix of the arrays from which the library's own model is rebuilt
+
+
+class StoredResidual(Section):
+    """The residual's part of a model file."""
+
+    kind: str
+    control: Control  # runs it was trained on
+    file: str  # arrays, beside the model file
+    sha256: str  # of that file
+    features: tuple[Block, ...]
+    scaling: Literal["standard", "range", "none"]
+    settings: dict[str, Any]  # hyperparameters
+    info: dict[str, Any]  # what training reported
+
+
+@dataclass(frozen=True, eq=False)
+class Residual:
+    """A trained residual, as a model holds it.
+
+    `data` goes into the compiled replay. `arrays` rebuild the library's own model.
+    """
+
+    control: str
+    settings: LearnerSettings
+    data: Array
+    arrays: dict[str, Array]
+    info: dict[str, Any]
+
+    @property
+    def kind(self) -> str:
+        """Name of the learner."""
+        return self.settings.kind
+
+    @property
+    def features(self) -> FeatureSettings:
+        """Features it sees."""
+        return self.settings.features
+
+    @property
+    def points(self) -> int:
+        """Points a prediction looks at."""
+        return int(self.data[POINTS])
+
+    def predict(self, X: Array) -> Array:
+        """Residual acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
+        return evaluate_many(self.data, checked_rows(X, self.features))
+
+    def posterior(self, X: Array) -> tuple[Array, Array]:
+        """Mean and variance of a process. See `rovsim.residual.learner.posterior`."""
+        return posterior(self.data, X, self.features)
+
+    def library(self) -> Predict:
+        """The library's own prediction, rebuilt from the stored arrays."""
+        return learner(self.kind).library_from(self.arrays, self.settings)
+
+
+def write_residual(
+    folder: Path, trained: Trained, control: Control, name: str = "residual.npz"
+) -> dict[str, Any]:
+    """Write the arrays to `folder/name`; returns the plain description for the model file."""
+    library = {LIBRARY + key: array for key, array in trained.arrays.items()}
+    write_arrays(folder / name, data=trained.data, **library)
+    settings = trained.settings.model_dump(mode="json", exclude={"kind", "features"})
+    return plain(
+        {
+            "kind": trained.kind,
+            "control": control,
+            "file": name,
+            "sha256": _digest(folder / name),
+            "features": trained.features.blocks,
+            "scaling": trained.features.scaling,
+            "settings": settings,
+            "info": trained.info,
+        }
+    )
+
+
+def read_residual(description: Any, folder: Path, where: object = "residual") -> Residual:
+    """Read back what `write_residual` described.
+
+    Args:
+        description: the residual's part of a model file.
+        folder: folder of that model file.
+        where: the model file, for messages.
+
+    Raises:
+        BadInput: unknown kind or key, missing, damaged or altered file, arrays that do not fit.
+    """
+    stored = checked(StoredResidual, description, str(where))
+    features = {"blocks": stored.features, "scaling": stored.scaling}
+    content = stored.settings | {"kind": stored.kind, "features": features}
+    settings = learner_settings(content, f"{where}, settings")
+    path = folder / stored.file
+    _refuse_altered(path, stored.sha256)
+    arrays = read_arrays(path)
+    data = check_exported(arrays.pop("data", None), settings.features, path)
+    library = {key.removeprefix(LIBRARY): _finite(a, key, path) for key, a in arrays.items()}
+    return Residual(stored.control, settings, data, library, stored.info)
+
+
+def _digest(path: Path) -> str:
+    return sha256(path.read_bytes()).hexdigest()
+
+
+def _refuse_altered(path: Path, digest: str) -> None:
+    """Refuse a file that is missing, is not an archive or is not the one the model names."""
+    if not path.is_file():
+        found = "no such file"
+    elif _digest(path) != digest:
+        found = "not the file this model was saved with (its sha256 differs)"
+    elif not zipfile.is_zipfile(path):
+        found = "not an .npz archive"
+    else:
+        return
+    raise BadInput(
+        found,
+        where=path,
+        expected="the arrays of the trained residual",
+        remedy="Keep the .npz beside its model file, unchanged, or train the residual again.",
+    )
+
+
+def _finite(array: Array, name: str, path: Path) -> Array:
+    if array.dtype == np.float64 and np.isfinite(array).all():
+        return array
+    raise BadInput(
+        f"array '{name}' holds {array.dtype} or numbers that are not finite",
+        where=path,
+        expected="finite float64 numbers",
+        remedy="Train the residual again.",
+    )
