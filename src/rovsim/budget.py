@@ -21,9 +21,9 @@ from rovsim.core.files import read_arrays, write_arrays
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.engine.types import Inputs
 from rovsim.dynamics.model import Model
+from rovsim.learning.pairs import Samples, accelerations, at_samples
 from rovsim.replay import ReplaySettings
 from rovsim.signals.motion import Motion
-from rovsim.training import Samples, accelerations, at_samples
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
 RESIDUAL, MISSING = "learned residual", "missing"

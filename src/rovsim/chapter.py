@@ -8,9 +8,9 @@ from rovsim.campaign import Campaign
 from rovsim.core.errors import BadInput
 from rovsim.evidence import ONCE
 from rovsim.ladder import EFFECTS
-from rovsim.residual.learner import learner
+from rovsim.learning.learner import learner
+from rovsim.learning.pairs import flown_with
 from rovsim.study import PHYSICS, Study
-from rovsim.training import flown_with
 
 
 @dataclass(frozen=True)

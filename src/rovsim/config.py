@@ -9,8 +9,8 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import Section, checked
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.learned.residual import Control
+from rovsim.learning.learner import LearnerSettings, learner_settings
 from rovsim.replay import ReplaySettings
-from rovsim.residual.learner import LearnerSettings, learner_settings
 from rovsim.signals.chain import SignalSettings
 from rovsim.tank.settings import TankSettings
 

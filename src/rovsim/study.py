@@ -11,10 +11,10 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import use_effect_files
 from rovsim.evidence import PER_RUN
 from rovsim.ladder import EFFECTS
+from rovsim.learning.learner import learner
+from rovsim.learning.pairs import flown_with
 from rovsim.provenance import digest, own_digest, provenance
-from rovsim.residual.learner import learner
 from rovsim.tank.campaign import SEALED, describe
-from rovsim.training import flown_with
 
 BASELINES = ("zero_acceleration", "nominal")
 PHYSICS = ("refitted", EFFECTS)

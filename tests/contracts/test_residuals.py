@@ -16,8 +16,8 @@ from rovsim.dynamics.learned.features import FEATURES, FeatureSettings, feature_
 from rovsim.dynamics.learned.layout import BLOCKS, COUNT, POINTS
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.residual import read_residual, write_residual
-from rovsim.residual.learner import learner, learner_settings, learners, spread_rows, train
-from rovsim.residual.spectrum import EXACT
+from rovsim.learning.learner import learner, learner_settings, learners, spread_rows, train
+from rovsim.learning.posterior_variance import EXACT
 
 # the fewest rounds with which a learner still learns: these tests are about promises, not skill
 QUICK = {

@@ -7,9 +7,9 @@ from rovsim.budget import RESTORING, Budget, budget
 from rovsim.core.rotations import exp
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Autopilot
+from rovsim.learning.pairs import accelerations, at_samples, samples
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
-from rovsim.training import accelerations, at_samples, samples
 from worlds import at_rest, model, motion, some, sticks, tank
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rovsim.residual.gaussian import GaussianSettings, tempered
-from rovsim.residual.knn import best_k
+from rovsim.learning.gaussian import GaussianSettings, tempered
+from rovsim.learning.knn import best_k
 
 
 def rows(noise, count=600, seed=3):

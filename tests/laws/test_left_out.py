@@ -5,9 +5,9 @@ import pytest
 from scipy.linalg import eigh
 from scipy.signal import lfilter
 
-from rovsim.residual import left_out
-from rovsim.residual.left_out import FACTORS, noise_factor, stretches
-from rovsim.residual.spectrum import rbf
+from rovsim.learning import left_out
+from rovsim.learning.cross_validation import FACTORS, noise_factor, stretches
+from rovsim.learning.posterior_variance import rbf
 
 
 @pytest.fixture

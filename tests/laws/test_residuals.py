@@ -22,9 +22,9 @@ from rovsim.dynamics.learned.features import (
 from rovsim.dynamics.learned.layout import BLOCKS, HEADER
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.simd import exponentials
-from rovsim.residual.export import Kernel, check_exported, export_expansion, export_neighbours
-from rovsim.residual.scaling import fit_scaling
-from rovsim.residual.spectrum import EXACT, ROUGH, of_exact, rbf
+from rovsim.learning.export import Kernel, check_exported, export_expansion, export_neighbours
+from rovsim.learning.posterior_variance import EXACT, ROUGH, of_exact, rbf
+from rovsim.learning.scaling import fit_scaling
 
 BLOCK_SETS = st.sets(st.sampled_from(list(COLUMNS)), min_size=1).map(tuple)
 SEEDS = st.integers(0, 2**32 - 1)

@@ -8,8 +8,8 @@ from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
 from rovsim.dynamics.effects.thrusters import ThrusterLag, VoltageSag
 from rovsim.dynamics.learned.residual import Residual
+from rovsim.learning.learner import learner_settings, train
 from rovsim.replay import ReplaySettings, trajectories
-from rovsim.residual.learner import learner_settings, train
 from rovsim.stepping import Stepper, rollouts
 from worlds import at_rest, model, motion, sticks
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from rovsim.dynamics.learned.features import assemble
-from rovsim.residual.learner import learner_settings, learners, train
+from rovsim.learning.learner import learner_settings, learners, train
 
 # the share of the hidden residual's RMS that may remain per axis on a held-out run. In 12
 # dimensions the nearest neighbours are far; a Gaussian process sees which features matter.

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rovsim import AXES
+from rovsim.learning.pairs import samples
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
-from rovsim.training import samples
 from rovsim.where import blocks, explain, judged
 from rovsim.where.bins import binned, stretches, table
 from rovsim.where.conditions import BLOCK

@@ -142,6 +142,6 @@ if chapter.mistakes:
         params:
             settings=study.section("replay", "signals"),
             learners={kind: study.learner(kind) for kind in ("knn", "gp")},
-            code=study.code("mistakes", "dynamics.effects", "residual"),
+            code=study.code("mistakes", "dynamics.effects", "learning"),
         script:
             "../scripts/mistakes.py"

@@ -16,7 +16,7 @@ rule train:
     params:
         settings=study.section("replay", "signals", "seed"),
         residual=lambda w: study.learner(w.residual),
-        code=study.code("training", "dynamics.effects", "residual"),
+        code=study.code("learning.pairs", "dynamics.effects", "learning"),
     script:
         "../scripts/train.py"
 
@@ -36,6 +36,6 @@ rule timing:
     threads: workflow.cores
     params:
         settings=study.section("replay", "signals", "timing"),
-        code=study.code("latency", "training", "residual"),
+        code=study.code("latency", "learning.pairs", "learning"),
     script:
         "../scripts/timing.py"

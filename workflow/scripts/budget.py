@@ -7,9 +7,9 @@ from rovsim.campaign import load_campaign
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
+from rovsim.learning.pairs import samples
 from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
-from rovsim.training import samples
 
 
 def main(*, motion: Path, campaign: Path, out: Path, settings: dict) -> None:

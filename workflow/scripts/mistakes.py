@@ -5,9 +5,9 @@ from pathlib import Path
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import read_model
 from rovsim.jobs import job
+from rovsim.learning.learner import learner_settings
 from rovsim.mistakes import SCHEMA, mistakes
 from rovsim.replay import rule_settings
-from rovsim.residual.learner import learner_settings
 from rovsim.signals.motion import Motion
 
 

@@ -10,9 +10,9 @@ from rovsim.dynamics.model import nominal, read_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.latency import both_ways
+from rovsim.learning.pairs import samples
 from rovsim.replay import rule_settings
 from rovsim.signals.motion import Motion
-from rovsim.training import samples
 
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:

@@ -7,10 +7,10 @@ from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import load_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
+from rovsim.learning.learner import learner_settings
+from rovsim.learning.pairs import train_residual
 from rovsim.replay import rule_settings
-from rovsim.residual.learner import learner_settings
 from rovsim.signals.motion import Motion
-from rovsim.training import train_residual
 
 
 def main(

@@ -9,9 +9,9 @@ from numpy import ndarray as Array
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.learned.layout import SURE
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.residual.export import Kernel, export_expansion, export_neighbours
-from rovsim.residual.learner import learner_settings, train
-from rovsim.residual.scaling import fit_scaling
+from rovsim.learning.export import Kernel, export_expansion, export_neighbours
+from rovsim.learning.learner import learner_settings, train
+from rovsim.learning.scaling import fit_scaling
 
 SEED = 5  # of the rows that are drawn
 NEIGHBOURS = 5

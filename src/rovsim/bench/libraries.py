@@ -7,8 +7,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.residual.learner import Predict, learner
-from rovsim.residual.scaling import Scaling
+from rovsim.learning.learner import Predict, learner
+from rovsim.learning.scaling import Scaling
 
 Ways = dict[str, Predict]
 

@@ -22,10 +22,10 @@ from rovsim.config import Settings
 from rovsim.core.files import write_json
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
+from rovsim.learning.pairs import samples
 from rovsim.loading import measured
 from rovsim.saying import say
 from rovsim.tank.campaign import make_campaign
-from rovsim.training import samples
 
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
 

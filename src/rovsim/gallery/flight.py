@@ -13,13 +13,13 @@ from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.model import EffectEntry, nominal
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.signature import Seen
+from rovsim.learning.pairs import samples
 from rovsim.recording import read_run
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings, clean
 from rovsim.signals.motion import Motion
 from rovsim.tank.campaign import make_campaign, true_model
 from rovsim.tank.settings import Box, Camera, Log, TankRun, TankSettings, Turbulence
-from rovsim.training import samples
 from rovsim.where import Blocks, blocks
 from rovsim.where.bins import binned, stretches, table
 from rovsim.where.conditions import Condition

@@ -16,11 +16,11 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
+from rovsim.learning.pairs import samples
 from rovsim.recording.recording import Site
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion
-from rovsim.training import samples
 
 EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Sequence
 
 from rovsim.dynamics.model import Model
+from rovsim.learning.pairs import Samples, samples
 from rovsim.replay import ReplaySettings
 from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion
-from rovsim.training import Samples, samples
 from rovsim.where.conditions import blocks, together
 from rovsim.where.findings import Where, explain
 

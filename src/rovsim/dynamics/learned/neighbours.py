@@ -1,6 +1,6 @@
 """The k nearest points, exactly, at any size: a search through a tree of bounding boxes.
 
-The tree has LANES children a node (`rovsim.residual.tree` builds it), so that the distances to all
+The tree has LANES children a node (`rovsim.learning.tree` builds it), so that the distances to all
 boxes of a node, and to all points of a leaf, are computed side by side. The nearest box is opened
 first; a box farther away than the k-th nearest point is not opened (Roussopoulos et al. 1995).
 

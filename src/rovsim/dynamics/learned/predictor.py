@@ -1,6 +1,6 @@
 """Evaluation of an exported residual (`layout`), one sample or many, by compiled kernels.
 
-`rovsim.residual.export` writes such arrays and checks those that come from a file: the kernels
+`rovsim.learning.export` writes such arrays and checks those that come from a file: the kernels
 trust them. They are safe to call from many threads: scratch lies on the caller's stack.
 """
 

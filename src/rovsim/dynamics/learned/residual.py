@@ -15,8 +15,8 @@ from rovsim.core.schema import Section, checked
 from rovsim.dynamics.learned.features import Block, FeatureSettings
 from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many
-from rovsim.residual.export import check_exported
-from rovsim.residual.learner import (
+from rovsim.learning.export import check_exported
+from rovsim.learning.learner import (
     LearnerSettings,
     Predict,
     Trained,
@@ -76,7 +76,7 @@ class Residual:
         return evaluate_many(self.data, checked_rows(X, self.features))
 
     def posterior(self, X: Array) -> tuple[Array, Array]:
-        """Mean and variance of a process. See `rovsim.residual.learner.posterior`."""
+        """Mean and variance of a process. See `rovsim.learning.learner.posterior`."""
         return posterior(self.data, X, self.features)
 
     def library(self) -> Predict:

@@ -33,9 +33,9 @@ from rovsim.dynamics.learned.layout import (
     filled,
     tree_levels,
 )
-from rovsim.residual.scaling import Scaling
-from rovsim.residual.spectrum import Known
-from rovsim.residual.tree import packed_tree, side_by_side
+from rovsim.learning.posterior_variance import Known
+from rovsim.learning.scaling import Scaling
+from rovsim.learning.tree import packed_tree, side_by_side
 
 AXES = 6  # outputs: surge, sway, heave, roll, pitch, yaw
 

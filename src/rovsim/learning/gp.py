@@ -9,10 +9,11 @@ from pydantic import Field
 from scipy.linalg import eigh
 
 from rovsim.dynamics.learned.layout import MOST_POINTS
-from rovsim.residual import gaussian
-from rovsim.residual.determinism import seeded_torch
-from rovsim.residual.export import AXES
-from rovsim.residual.learner import (
+from rovsim.learning import gaussian
+from rovsim.learning.cross_validation import noise_factor
+from rovsim.learning.determinism import seeded_torch
+from rovsim.learning.export import AXES
+from rovsim.learning.learner import (
     Learner,
     Posterior,
     Predict,
@@ -20,8 +21,7 @@ from rovsim.residual.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.residual.left_out import noise_factor
-from rovsim.residual.spectrum import Known, of_exact, rbf
+from rovsim.learning.posterior_variance import Known, of_exact, rbf
 
 Spectrum = tuple[Array, Array]  # eigenvalues (n,) and eigenvectors (n, n) of a kernel matrix
 
@@ -43,7 +43,7 @@ class GpSettings(gaussian.GaussianSettings):
 
 
 def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress) -> Trained:
-    """Tune on some rows, condition on more. See `rovsim.residual.learner.train`."""
+    """Tune on some rows, condition on more. See `rovsim.learning.learner.train`."""
     start, Y = perf_counter(), gaussian.tempered(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     some = rows[spread_rows(len(rows), settings.tuning_points, seed)]

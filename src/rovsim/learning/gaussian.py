@@ -13,10 +13,10 @@ from numpy import ndarray as Array
 from pydantic import Field
 from scipy.spatial import cKDTree
 
-from rovsim.residual.export import AXES, Kernel, export_expansion
-from rovsim.residual.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
-from rovsim.residual.scaling import CONSTANT, Scaling, fit_scaling
-from rovsim.residual.spectrum import Known, rbf
+from rovsim.learning.export import AXES, Kernel, export_expansion
+from rovsim.learning.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
+from rovsim.learning.posterior_variance import Known, rbf
+from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
 
 NEARBY = 20  # rows: their median's own noise is a quarter of a row's
 MAD = 1.4826  # standard deviation of a Gaussian over its median absolute deviation

@@ -10,8 +10,9 @@ from scipy.spatial import cKDTree
 
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.layout import MOST_NEIGHBOURS
-from rovsim.residual.export import export_neighbours
-from rovsim.residual.learner import (
+from rovsim.learning.cross_validation import STRETCHES, stretches
+from rovsim.learning.export import export_neighbours
+from rovsim.learning.learner import (
     Learner,
     LearnerSettings,
     Predict,
@@ -19,8 +20,7 @@ from rovsim.residual.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.residual.left_out import STRETCHES, stretches
-from rovsim.residual.scaling import CONSTANT, Scaling, fit_scaling
+from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
 
 TRIED = (3, 5, 10, 20, 30)
 
@@ -36,7 +36,7 @@ class KnnSettings(LearnerSettings):
 
 
 def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress) -> Trained:
-    """Keep the training rows. See `rovsim.residual.learner.train`."""
+    """Keep the training rows. See `rovsim.learning.learner.train`."""
     start = perf_counter()
     scaling = fit_scaling(settings.features.scaling, X)
     rows = spread_rows(len(X), settings.max_points, seed)

@@ -13,6 +13,7 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.engine.types import Inputs
 from rovsim.dynamics.learned.features import FeatureSettings, assemble
 from rovsim.dynamics.model import Model
+from rovsim.learning.learner import LearnerSettings, Progress, Trained, train
 from rovsim.memory import measured_memory
 from rovsim.replay import (
     ReplaySettings,
@@ -24,7 +25,6 @@ from rovsim.replay import (
     state_at,
     trajectories,
 )
-from rovsim.residual.learner import LearnerSettings, Progress, Trained, train
 from rovsim.signals.binned import backward_difference, bin_means
 from rovsim.signals.chain import SignalSettings
 from rovsim.signals.motion import Motion

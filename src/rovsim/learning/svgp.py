@@ -8,10 +8,10 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim.dynamics.learned.layout import MOST_POINTS
-from rovsim.residual import gaussian
-from rovsim.residual.determinism import seeded_torch
-from rovsim.residual.export import AXES
-from rovsim.residual.learner import (
+from rovsim.learning import gaussian
+from rovsim.learning.determinism import seeded_torch
+from rovsim.learning.export import AXES
+from rovsim.learning.learner import (
     Learner,
     Posterior,
     Predict,
@@ -19,7 +19,7 @@ from rovsim.residual.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.residual.spectrum import Known, of_quadratic
+from rovsim.learning.posterior_variance import Known, of_quadratic
 
 
 class SvgpSettings(gaussian.GaussianSettings):
@@ -35,7 +35,7 @@ class SvgpSettings(gaussian.GaussianSettings):
 
 
 def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progress) -> Trained:
-    """Maximise the evidence bound by minibatches. See `rovsim.residual.learner.train`."""
+    """Maximise the evidence bound by minibatches. See `rovsim.learning.learner.train`."""
     start, Y = perf_counter(), gaussian.tempered(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     arrays = gaussian.scalings(settings.features.scaling, X, Y)

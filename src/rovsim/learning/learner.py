@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-import rovsim.residual
+import rovsim.learning
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.learned.features import FeatureSettings, feature_names
 from rovsim.dynamics.learned.layout import EXPANSION, KIND
 from rovsim.dynamics.learned.predictor import evaluate_many, posterior_many
-from rovsim.residual.export import AXES
+from rovsim.learning.export import AXES
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
 Posterior = Callable[[Array], tuple[Array, Array]]  # the same -> mean and variance, (n, 6) each
@@ -82,8 +82,8 @@ class Learner:
 
 def learners() -> dict[str, Learner]:
     """Every learner by kind: the modules of this package that declare a `LEARNER`."""
-    names = [module.name for module in pkgutil.iter_modules(rovsim.residual.__path__)]
-    modules = [import_module(f"{rovsim.residual.__name__}.{name}") for name in names]
+    names = [module.name for module in pkgutil.iter_modules(rovsim.learning.__path__)]
+    modules = [import_module(f"{rovsim.learning.__name__}.{name}") for name in names]
     found = [module.LEARNER for module in modules if hasattr(module, "LEARNER")]
     return {learner.settings.model_fields["kind"].default: learner for learner in found}
 
