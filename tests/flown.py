@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.diagnosing import Runs
 from rovsim.diagnosis.watch import Watch
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
-from rovsim.recording import read_run
-from rovsim.signals.chain import SignalSettings, differentiated, filtered, resampled
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings, differentiated, filtered, resampled
 from rovsim.tank.campaign import make_campaign
 from rovsim.tank.settings import TankRun, TankSettings
 

@@ -9,8 +9,8 @@ import pytest
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.recording.recording import Commands, RunInfo, Site
-from rovsim.signals.motion import Motion
+from rovsim.measurement.recording.recording import Commands, RunInfo, Site
+from rovsim.measurement.signals.motion import Motion
 
 SHARED = Path(os.environ.get("ROVSIM_DATA", Path(__file__).parents[2] / "shared" / "data")).parent
 

@@ -13,10 +13,10 @@ from rovsim.dynamics.model import Model, read_model
 from rovsim.evidence import Evidence
 from rovsim.learning.pairs import samples, train_residual, training_runs
 from rovsim.loading import Measured
+from rovsim.measurement.signals.motion import Motion
 from rovsim.provenance import provenance
 from rovsim.replay import Replay, replay
 from rovsim.scores import comparison, growth, score
-from rovsim.signals.motion import Motion
 from rovsim.where import content, judged
 
 

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from rovsim.campaign import Campaign
 from rovsim.core.errors import BadInput
 from rovsim.evidence import ONCE
 from rovsim.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
+from rovsim.measurement.campaign import Campaign
 from rovsim.study import PHYSICS, Study
 
 

@@ -11,9 +11,9 @@ from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.watch import Watch, watch
 from rovsim.dynamics.model import Model
 from rovsim.ladder import floor_step, ladder, step
+from rovsim.measurement.signals.chain import Stage, read_stage
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import replay
-from rovsim.signals.chain import Stage, read_stage
-from rovsim.signals.motion import Motion
 from rovsim.where import content as where_content
 from rovsim.where import judged
 

@@ -6,8 +6,8 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 
 from rovsim.budget import Budget
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import OPEN_LOOP, Replay
-from rovsim.signals.motion import Motion
 
 SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
 

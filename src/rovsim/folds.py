@@ -3,8 +3,8 @@
 from dataclasses import replace
 from typing import TypeVar
 
-from rovsim.recording.recording import Recording
-from rovsim.signals.motion import Motion, Poses
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.motion import Motion, Poses
 
 Run = TypeVar("Run", Motion, Poses, Recording)
 

@@ -5,17 +5,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rovsim.campaign import Campaign, load_campaign
 from rovsim.config import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.diagnosing import Runs
 from rovsim.dynamics.model import Model, load_model
 from rovsim.dynamics.vehicle import Vehicle, campaign_vehicle
-from rovsim.quality import quality_of
-from rovsim.recording import read_run, usable_reason
-from rovsim.signals.chain import Stage, differentiated, filtered, resampled
-from rovsim.signals.motion import Motion
+from rovsim.measurement.campaign import Campaign, load_campaign
+from rovsim.measurement.quality_report import quality_of
+from rovsim.measurement.recording import read_run, usable_reason
+from rovsim.measurement.signals.chain import Stage, differentiated, filtered, resampled
+from rovsim.measurement.signals.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)

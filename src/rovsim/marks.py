@@ -16,7 +16,7 @@ import numpy as np
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
-from rovsim.recording.recording import Commands
+from rovsim.measurement.recording.recording import Commands
 from rovsim.scores import number
 
 SCHEMA = "rovsim.marks/1"

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import unrotate
 from rovsim.dynamics.engine.types import NO_MEMORY
 from rovsim.dynamics.model import Model
-from rovsim.signals.motion import Motion
+from rovsim.measurement.signals.motion import Motion
 
 STEP = 0.01  # s; the velocity is taken as straight between two samples, for which this is exact
 

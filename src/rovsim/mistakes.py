@@ -9,11 +9,11 @@ from numpy import ndarray as Array
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import LearnerSettings, Trained, train
 from rovsim.learning.pairs import Samples, samples
+from rovsim.measurement.signals.binned import backward_difference
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import OPEN_LOOP, ReplaySettings, replay
 from rovsim.scores import errors, normalised, rms
-from rovsim.signals.binned import backward_difference
-from rovsim.signals.chain import SignalSettings
-from rovsim.signals.motion import Motion
 
 SCHEMA = "rovsim.mistakes/1"
 ERROR, SHARE = "velocity RMSE of the open loop / spread", "share of residual acceleration foretold"

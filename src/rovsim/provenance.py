@@ -46,7 +46,7 @@ def own_digest(package: str) -> str:
 
 def _discovered(modules: set[str]) -> set[str]:
     """Packages whose members are found by looking into their folder."""
-    found = {"rovsim.dynamics.effects", "rovsim.recording", "rovsim.learning"}
+    found = {"rovsim.dynamics.effects", "rovsim.measurement.recording", "rovsim.learning"}
     return {package for package in found if package in modules}
 
 

@@ -19,11 +19,11 @@ from rovsim.dynamics.actuation import Between, Thrust
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Inputs, Jobs, Place
 from rovsim.dynamics.model import Model
+from rovsim.measurement.recording.recording import RunInfo
+from rovsim.measurement.signals.binned import backward_difference, bin_means
+from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.motion import Motion
 from rovsim.memory import measured_memory
-from rovsim.recording.recording import RunInfo
-from rovsim.signals.binned import backward_difference, bin_means
-from rovsim.signals.chain import SignalSettings, velocities
-from rovsim.signals.motion import Motion
 
 OPEN_LOOP = "open_loop"
 

@@ -8,9 +8,9 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.rotations import conjugate, log, multiply
-from rovsim.recording.quality import EXCITED
+from rovsim.measurement.recording.quality import EXCITED
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import OPEN_LOOP, Prediction, Replay, windows
-from rovsim.signals.motion import Motion
 
 COMPARISON = "rovsim.comparison/1"
 

@@ -19,7 +19,7 @@ from rovsim.dynamics.body import packed
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Jobs, Place
 from rovsim.dynamics.model import Model
-from rovsim.recording.recording import CommandKind, Commands, Site
+from rovsim.measurement.recording.recording import CommandKind, Commands, Site
 from rovsim.replay import packed_inputs, residual_data, stacked
 
 LONGEST = 0.01  # s, an integration step; see `rovsim.replay.ReplaySettings`

@@ -5,7 +5,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
 
-from rovsim.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.config import Settings, compose
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import use_effect_files
@@ -13,6 +12,7 @@ from rovsim.evidence import PER_RUN
 from rovsim.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
+from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.provenance import digest, own_digest, provenance
 from rovsim.tank.campaign import SEALED, describe
 

@@ -10,9 +10,9 @@ from recordings import (
     write_lines,
     write_run,
 )
-from rovsim.campaign import load_campaign
 from rovsim.core.errors import BadInput
-from rovsim.recording import read_run
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import read_run
 
 COLUMNS = 8  # index of the column line in the QTM files written here
 

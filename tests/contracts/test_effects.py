@@ -7,7 +7,7 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import built_in, effect
 from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wrench
 from rovsim.dynamics.model import read_model
-from rovsim.recording.recording import Site
+from rovsim.measurement.recording.recording import Site
 from rovsim.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion, some, sticks, tank
 

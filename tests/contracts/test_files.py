@@ -16,7 +16,7 @@ from rovsim.core.files import (
 )
 from rovsim.core.schema import checked
 from rovsim.loading import results_folder
-from rovsim.signals.chain import SignalSettings
+from rovsim.measurement.signals.chain import SignalSettings
 
 
 class Evil:

@@ -15,10 +15,10 @@ from recordings import (
     write_lines,
     write_run,
 )
-from rovsim.campaign import load_campaign
 from rovsim.core.rotations import matrix
-from rovsim.recording import Recording, quality_report, read_run, usable_reason
-from rovsim.recording.readers import command_readers, mocap_readers
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import Recording, quality_report, read_run, usable_reason
+from rovsim.measurement.recording.readers import command_readers, mocap_readers
 
 every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
 

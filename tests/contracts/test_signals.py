@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import checked
-from rovsim.recording.recording import Commands, Recording, RunInfo, Site
-from rovsim.signals.chain import (
+from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.measurement.signals.chain import (
     SignalSettings,
     clean,
     differentiated,
@@ -23,11 +23,11 @@ from rovsim.signals.chain import (
     resampled,
     velocities,
 )
-from rovsim.signals.differentiate import Differentiation
-from rovsim.signals.filter import Filter, filter_eta
-from rovsim.signals.motion import Motion, Poses
-from rovsim.signals.outliers import KeepAll, Outliers, find_outliers
-from rovsim.signals.resample import Resampling, resample
+from rovsim.measurement.signals.differentiate import Differentiation
+from rovsim.measurement.signals.filter import Filter, filter_eta
+from rovsim.measurement.signals.motion import Motion, Poses
+from rovsim.measurement.signals.outliers import KeepAll, Outliers, find_outliers
+from rovsim.measurement.signals.resample import Resampling, resample
 
 CONF = Path(__file__).parents[2] / "conf"
 

@@ -6,11 +6,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from rovsim.campaign import Mocap
 from rovsim.core import rotations
-from rovsim.recording.readers import Export
-from rovsim.recording.reading import to_ned
-from rovsim.recording.recording import Commands, RunInfo, Site
+from rovsim.measurement.campaign import Mocap
+from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.reading import to_ned
+from rovsim.measurement.recording.recording import Commands, RunInfo, Site
 
 numbers = st.floats(-1.0, 1.0, allow_subnormal=False)
 vectors = arrays(float, 3, elements=numbers)

@@ -10,8 +10,8 @@ from rovsim.core.errors import BadInput
 from rovsim.folds import held_out
 from rovsim.learning.pairs import training_runs
 from rovsim.marks import METRICS, Published, against, standing
-from rovsim.recording.recording import Commands, RunInfo, Site
-from rovsim.signals.motion import Poses
+from rovsim.measurement.recording.recording import Commands, RunInfo, Site
+from rovsim.measurement.signals.motion import Poses
 
 errors = st.floats(1e-3, 1e3)
 six = st.lists(errors, min_size=6, max_size=6)

@@ -10,10 +10,10 @@ from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.fluid_memory import ARM, FluidMemory
 from rovsim.learning.pairs import samples
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.filter import Butterworth
 from rovsim.memory import lag_of_lines, measured_memory
 from rovsim.replay import ReplaySettings, replay, trajectories
-from rovsim.signals.chain import SignalSettings
-from rovsim.signals.filter import Butterworth
 from worlds import at_rest, model, motion, sticks
 
 OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))

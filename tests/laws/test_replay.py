@@ -21,10 +21,10 @@ from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Inputs, Jobs, Place
 from rovsim.dynamics.model import zero_acceleration
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.filter import Butterworth
 from rovsim.replay import Replay, ReplaySettings, replay, trajectories, windows
 from rovsim.scores import score
-from rovsim.signals.chain import SignalSettings
-from rovsim.signals.filter import Butterworth
 from worlds import at_rest, model, motion, sticks
 
 DOWN = np.array([0.0, 0.0, 1.0])

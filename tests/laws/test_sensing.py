@@ -11,9 +11,9 @@ from hypothesis.extra.numpy import arrays
 from rovsim.core.rotations import exp, log, matrix, multiply, normalized
 from rovsim.dynamics.effects.sensing import MarkerMisalignment, MarkerOffset, WorldTilt
 from rovsim.learning.pairs import samples
+from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.filter import Butterworth
 from rovsim.replay import ReplaySettings, replay, trajectories
-from rovsim.signals.chain import SignalSettings, velocities
-from rovsim.signals.filter import Butterworth
 from worlds import at_rest, model, motion, sticks
 
 places = arrays(float, 3, elements=st.floats(-1, 1))

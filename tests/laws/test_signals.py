@@ -7,11 +7,16 @@ from hypothesis import strategies as st
 
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
-from rovsim.signals.binned import backward_difference, bin_means, edge_values
-from rovsim.signals.chain import SignalSettings, velocities
-from rovsim.signals.differentiate import Central, SavitzkyGolay, Spline, differentiate_eta
-from rovsim.signals.filter import Butterworth, Unfiltered, filter_eta
-from rovsim.signals.filter import SavitzkyGolay as SavitzkyGolayFilter
+from rovsim.measurement.signals.binned import backward_difference, bin_means, edge_values
+from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.differentiate import (
+    Central,
+    SavitzkyGolay,
+    Spline,
+    differentiate_eta,
+)
+from rovsim.measurement.signals.filter import Butterworth, Unfiltered, filter_eta
+from rovsim.measurement.signals.filter import SavitzkyGolay as SavitzkyGolayFilter
 
 
 class Sway:

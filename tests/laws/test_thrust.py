@@ -18,7 +18,7 @@ from rovsim.dynamics.effects.thrusters import (
 )  # fmt: skip
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.recording.recording import Commands
+from rovsim.measurement.recording.recording import Commands
 from worlds import model, sticks
 
 EDGES = np.linspace(0.0, 2.0, 201)

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from rovsim.campaign import load_campaign
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.learning.pairs import samples
-from rovsim.recording import read_run
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.replay import ReplaySettings, replay
 from rovsim.scores import errors, pooled, rms, score
-from rovsim.signals.chain import SignalSettings, clean
 from worlds import SHARED, needed
 
 

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rovsim.core import rotations
-from rovsim.recording.recording import Commands, Recording, RunInfo, Site
-from rovsim.signals.chain import SignalSettings, clean
-from rovsim.signals.outliers import Hampel, VelocityGate, find_outliers
+from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.measurement.signals.chain import SignalSettings, clean
+from rovsim.measurement.signals.outliers import Hampel, VelocityGate, find_outliers
 
 RATE, NOISE, ANGLE_NOISE = 100.0, 0.5e-3, 2e-3
 

@@ -11,8 +11,8 @@ from rovsim.hidden import methods
 from rovsim.hidden.library import problem, steps
 from rovsim.hidden.sparse import answered, forward, thresholded
 from rovsim.learning.pairs import accelerations, at_samples
+from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings
 from worlds import model, motion, sticks, tank
 
 # enough to choose from, and nothing to compile

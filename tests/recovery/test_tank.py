@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from rovsim.campaign import load_campaign
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.model import EffectEntry, nominal
-from rovsim.quality import quality_of
-from rovsim.recording import read_run
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.quality_report import quality_of
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.replay import ReplaySettings, replay
 from rovsim.scores import errors, rms
-from rovsim.signals.chain import SignalSettings, clean
 from rovsim.tank.campaign import SEALED, describe, make_campaign, true_model
 from rovsim.tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from recordings import Swim, csv_lines, write_lines, write_run
-from rovsim.campaign import CommandLog, Mocap, load_campaign
 from rovsim.core.rotations import from_matrix, matrix, rotate
-from rovsim.recording import quality_report, read_run
-from rovsim.recording.commands_csv import read_commands
-from rovsim.recording.csv import read_csv
+from rovsim.measurement.campaign import CommandLog, Mocap, load_campaign
+from rovsim.measurement.recording import quality_report, read_run
+from rovsim.measurement.recording.commands_csv import read_commands
+from rovsim.measurement.recording.csv import read_csv
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("ROVSIM_DATA", ROOT / ".." / "shared" / "data"))

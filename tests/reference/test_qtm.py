@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from recordings import Swim, qtm_cells, qtm_columns, qtm_header, qtm_lines, write_lines
-from rovsim.campaign import Mocap, load_campaign
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
-from rovsim.recording import quality_report, read_run
-from rovsim.recording.qtm_tsv import read_qtm
+from rovsim.measurement.campaign import Mocap, load_campaign
+from rovsim.measurement.recording import quality_report, read_run
+from rovsim.measurement.recording.qtm_tsv import read_qtm
 
 SHARED = Path(__file__).parents[2] / ".." / "shared"
 DATA = Path(os.environ.get("ROVSIM_DATA", SHARED / "data"))

@@ -30,6 +30,6 @@ rule read:
     params:
         campaign=study.campaign_file,
         outliers=study.signal("outliers"),
-        code=study.code("recording", "campaign", "signals.outliers"),
+        code=study.code("measurement.recording", "measurement.campaign", "measurement.signals.outliers"),
     script:
         "../scripts/read.py"

@@ -10,7 +10,7 @@ rule resample:
         f"{R}/benchmarks/resample/{{run}}.tsv"
     params:
         signals=study.signal("outliers", "resample"),
-        code=study.code("signals.resample"),
+        code=study.code("measurement.signals.resample"),
     script:
         "../scripts/resample.py"
 
@@ -27,7 +27,7 @@ rule filter:
         f"{R}/benchmarks/filter/{{run}}.tsv"
     params:
         signals=study.signal("filter"),
-        code=study.code("signals.filter"),
+        code=study.code("measurement.signals.filter"),
     script:
         "../scripts/filter.py"
 
@@ -45,6 +45,6 @@ rule differentiate:
         f"{R}/benchmarks/differentiate/{{run}}.tsv"
     params:
         signals=study.signal("differentiate"),
-        code=study.code("signals.chain"),
+        code=study.code("measurement.signals.chain"),
     script:
         "../scripts/differentiate.py"

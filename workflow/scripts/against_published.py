@@ -5,7 +5,7 @@ from pathlib import Path
 from rovsim.core.files import read_json, write_json
 from rovsim.jobs import job
 from rovsim.marks import against, demanded, read_published
-from rovsim.signals.motion import Motion
+from rovsim.measurement.signals.motion import Motion
 from rovsim.tables import marks_table
 
 

@@ -3,13 +3,13 @@
 from pathlib import Path
 
 from rovsim.budget import budget
-from rovsim.campaign import load_campaign
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.learning.pairs import samples
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import rule_settings
-from rovsim.signals.motion import Motion
 
 
 def main(*, motion: Path, campaign: Path, out: Path, settings: dict) -> None:

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
 from rovsim.diagnosing import Runs, diagnosed
@@ -10,6 +9,7 @@ from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
+from rovsim.measurement.campaign import load_campaign
 
 
 def main(

@@ -8,7 +8,7 @@ import numpy as np
 from rovsim.core.files import read_json
 from rovsim.core.schema import checked
 from rovsim.jobs import job
-from rovsim.signals.chain import SignalSettings, differentiated, read_stage
+from rovsim.measurement.signals.chain import SignalSettings, differentiated, read_stage
 
 
 def main(*, poses: Path, quality: Path, out: Path, signals: dict) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rovsim.core.schema import checked
 from rovsim.jobs import job
-from rovsim.signals.chain import SignalSettings, filtered, read_stage
+from rovsim.measurement.signals.chain import SignalSettings, filtered, read_stage
 
 
 def main(*, source: Path, out: Path, signals: dict) -> None:

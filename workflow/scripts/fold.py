@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import load_model, read_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import replay, rule_settings
 from rovsim.scores import comparison, score
-from rovsim.signals.motion import Motion
 from rovsim.study import BASELINES
 
 

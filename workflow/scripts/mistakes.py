@@ -6,9 +6,9 @@ from rovsim.core.files import write_json
 from rovsim.dynamics.model import read_model
 from rovsim.jobs import job
 from rovsim.learning.learner import learner_settings
+from rovsim.measurement.signals.motion import Motion
 from rovsim.mistakes import SCHEMA, mistakes
 from rovsim.replay import rule_settings
-from rovsim.signals.motion import Motion
 
 
 def main(

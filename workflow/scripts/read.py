@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
 from rovsim.jobs import job
-from rovsim.quality import quality_of
-from rovsim.recording import read_run
-from rovsim.signals.chain import SignalSettings
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.quality_report import quality_of
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings
 
 
 def main(*, campaign: Path, run: str, outliers: dict, recording: Path, quality: Path) -> None:

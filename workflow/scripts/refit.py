@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.core.schema import checked
 from rovsim.diagnosing import Runs
 from rovsim.diagnosis.refitted import refitted
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
+from rovsim.measurement.campaign import load_campaign
 from rovsim.replay import ReplaySettings
 
 

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.dynamics.model import load_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import replay, rule_settings
-from rovsim.signals.motion import Motion
 
 
 def main(*, motion: Path, campaign: Path, file: str, name: str, out: Path, settings: dict) -> None:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from rovsim.core.schema import checked
 from rovsim.jobs import job
-from rovsim.recording.recording import Recording
-from rovsim.signals.chain import SignalSettings, resampled
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.chain import SignalSettings, resampled
 
 
 def main(*, source: Path, out: Path, signals: dict) -> None:

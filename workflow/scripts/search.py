@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import load_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import rule_settings
-from rovsim.signals.motion import Motion
 from rovsim.where import content, judged
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from rovsim.folds import held_out
 from rovsim.jobs import job
-from rovsim.signals.chain import read_stage
-from rovsim.signals.motion import Motion
+from rovsim.measurement.signals.chain import read_stage
+from rovsim.measurement.signals.motion import Motion
 
 
 def main(*, motions: list[Path], stages: list[Path], test: str, out: dict[str, list[Path]]) -> None:

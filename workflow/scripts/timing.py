@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from rovsim.campaign import load_campaign
 from rovsim.config import TimingSettings
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
@@ -11,8 +10,9 @@ from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.latency import both_ways
 from rovsim.learning.pairs import samples
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import rule_settings
-from rovsim.signals.motion import Motion
 
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:

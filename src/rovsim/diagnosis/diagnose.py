@@ -34,7 +34,7 @@ from rovsim.diagnosis.stretched import unstretched
 from rovsim.diagnosis.watch import Watch
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
-from rovsim.recording.quality import EXCITED
+from rovsim.measurement.recording.quality import EXCITED
 
 Stages = Callable[[str], None]
 

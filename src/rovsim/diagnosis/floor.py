@@ -17,10 +17,10 @@ from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import SECONDS, differences
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
+from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.filter import filter_eta
 from rovsim.replay import windows
 from rovsim.scores import normalised, rms
-from rovsim.signals.chain import SignalSettings, velocities
-from rovsim.signals.filter import filter_eta
 
 DRAWS = 8
 PAD = 1.0  # s before and after, so that the filter has settled

@@ -5,8 +5,8 @@ from typing import Annotated
 from pydantic import Field, PositiveInt
 
 from rovsim.core.schema import Section
+from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings
 
 
 class SearchSettings(Section):

@@ -16,9 +16,9 @@ from rovsim.dynamics.body import packed
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Jobs
 from rovsim.dynamics.model import Model
+from rovsim.measurement.signals.binned import bin_means
 from rovsim.replay import place, windows
 from rovsim.scores import normalised, rms
-from rovsim.signals.binned import bin_means
 
 SECONDS = 2.0  # contract, section 3
 

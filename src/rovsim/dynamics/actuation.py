@@ -13,7 +13,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.base import Autopilot, Clock, Effect, Response, Shaping, Strength
 from rovsim.dynamics.vehicle import Thrusters
-from rovsim.recording.recording import CommandKind, Commands
+from rovsim.measurement.recording.recording import CommandKind, Commands
 
 Between = Literal["held", "linear"]
 

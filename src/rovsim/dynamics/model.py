@@ -22,7 +22,7 @@ from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual, read_residual
 from rovsim.dynamics.mocap_view import View
 from rovsim.dynamics.vehicle import VEHICLES, Thrusters, Vehicle, check_layout, load_vehicle
-from rovsim.recording.recording import CommandKind, Site
+from rovsim.measurement.recording.recording import CommandKind, Site
 
 SCHEMA = "rovsim.model/1"
 

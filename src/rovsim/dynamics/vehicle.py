@@ -8,7 +8,6 @@ from numpy import ndarray as Array
 from pydantic import Field, PositiveFloat
 
 from rovsim import AXES
-from rovsim.campaign import Campaign
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_yaml
 from rovsim.core.schema import Section, checked
@@ -18,6 +17,7 @@ from rovsim.dynamics.effects.base import Coefficients, Effect
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.rigid_body import RigidBody
+from rovsim.measurement.campaign import Campaign
 
 VEHICLES = Path(__file__).parents[3] / "conf" / "vehicle"
 

@@ -6,7 +6,6 @@ from pathlib import Path
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.campaign import load_campaign
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics.effects.base import Autopilot, Effect
 from rovsim.dynamics.effects.parameters import Signature
@@ -14,10 +13,11 @@ from rovsim.dynamics.model import EffectEntry, nominal
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.signature import Seen
 from rovsim.learning.pairs import samples
-from rovsim.recording import read_run
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings, clean
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings, clean
-from rovsim.signals.motion import Motion
 from rovsim.tank.campaign import make_campaign, true_model
 from rovsim.tank.settings import Box, Camera, Log, TankRun, TankSettings, Turbulence
 from rovsim.where import Blocks, blocks

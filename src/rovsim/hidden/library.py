@@ -17,10 +17,10 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.learning.pairs import samples
-from rovsim.recording.recording import Site
+from rovsim.measurement.recording.recording import Site
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings
-from rovsim.signals.motion import Motion
 
 EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
 

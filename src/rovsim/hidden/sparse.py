@@ -15,13 +15,13 @@ from numpy import ndarray as Array
 from scipy.linalg import LinAlgWarning
 from sklearn.exceptions import ConvergenceWarning
 
-from rovsim.campaign import load_campaign
 from rovsim.dynamics.effects import catalogue, effect
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.hidden.library import Problem, problem
-from rovsim.recording import read_run
-from rovsim.signals.chain import SignalSettings, clean
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings, clean
 
 Regression = Callable[[Array, Array], Array]
 

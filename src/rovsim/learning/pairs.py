@@ -14,6 +14,9 @@ from rovsim.dynamics.engine.types import Inputs
 from rovsim.dynamics.learned.features import FeatureSettings, assemble
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import LearnerSettings, Progress, Trained, train
+from rovsim.measurement.signals.binned import backward_difference, bin_means
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.motion import Motion
 from rovsim.memory import measured_memory
 from rovsim.replay import (
     ReplaySettings,
@@ -25,9 +28,6 @@ from rovsim.replay import (
     state_at,
     trajectories,
 )
-from rovsim.signals.binned import backward_difference, bin_means
-from rovsim.signals.chain import SignalSettings
-from rovsim.signals.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.dynamics.engine.types import Inputs, Place
 from rovsim.dynamics.model import Model
-from rovsim.recording.recording import CommandKind, Commands, Site
+from rovsim.measurement.recording.recording import CommandKind, Commands, Site
 from rovsim.tank.pilot import Pilot
 from rovsim.tank.settings import TankSettings, Turbulence
 

@@ -17,7 +17,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.rotations import to_euler
 from rovsim.learning.pairs import Samples
-from rovsim.signals.motion import Motion
+from rovsim.measurement.signals.motion import Motion
 
 BLOCK = 0.5  # s
 SEEN = 0.5  # share of a block that must have been seen

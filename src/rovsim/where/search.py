@@ -5,9 +5,9 @@ from typing import Sequence
 
 from rovsim.dynamics.model import Model
 from rovsim.learning.pairs import Samples, samples
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.motion import Motion
 from rovsim.replay import ReplaySettings
-from rovsim.signals.chain import SignalSettings
-from rovsim.signals.motion import Motion
 from rovsim.where.conditions import blocks, together
 from rovsim.where.findings import Where, explain
 

@@ -26,7 +26,7 @@ from rovsim.core.rotations import Rigid
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.parameters import Parameter, Signature
 from rovsim.dynamics.engine.types import At, Vector6
-from rovsim.recording.recording import CommandKind, Site
+from rovsim.measurement.recording.recording import CommandKind, Site
 
 
 class Effect(ABC):

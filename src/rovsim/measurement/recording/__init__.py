@@ -1,8 +1,8 @@
 """Raw exports in, recordings out: one module per format, axes converted once, quality told."""
 
-from rovsim.recording.quality import quality_report, usable_reason
-from rovsim.recording.reading import Anomalies, read_run, site
-from rovsim.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.measurement.recording.quality import quality_report, usable_reason
+from rovsim.measurement.recording.reading import Anomalies, read_run, site
+from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
 
 __all__ = [
     "Anomalies",

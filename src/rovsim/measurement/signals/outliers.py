@@ -8,7 +8,7 @@ from pydantic import Field
 
 from rovsim.core import rotations
 from rovsim.core.schema import Section
-from rovsim.recording.recording import Recording
+from rovsim.measurement.recording.recording import Recording
 
 # How far back the gate looks for a stretch to continue from; bounds the work on hopeless runs.
 LOOK_BACK = 1000

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.campaign import Mocap
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 from rovsim.core.rotations import from_euler, normalized
-from rovsim.recording.readers import Export, finite_rows, mocap_reader
-from rovsim.recording.table import (
+from rovsim.measurement.campaign import Mocap
+from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader
+from rovsim.measurement.recording.table import (
     Lines,
     column_places,
     numbers,

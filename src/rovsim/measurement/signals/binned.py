@@ -10,9 +10,9 @@ from numpy import ndarray as Array
 
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
-from rovsim.recording.recording import Recording
-from rovsim.signals.clock import stretches
-from rovsim.signals.motion import Motion
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.clock import stretches
+from rovsim.measurement.signals.motion import Motion
 
 # A bin this many median bins long has rows missing in it. Bins of 0.1 to 0.3 s occur side by side
 # in the KTH tank's recordings, where the median is 0.19 s.

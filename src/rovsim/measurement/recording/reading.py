@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.campaign import Campaign, Mocap
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import axes_signs, multiply
-from rovsim.recording.readers import (
+from rovsim.measurement.campaign import Campaign, Mocap
+from rovsim.measurement.recording.readers import (
     CommandExport,
     Export,
     command_readers,
     mocap_readers,
     reader_of,
 )
-from rovsim.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
 
 RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
 

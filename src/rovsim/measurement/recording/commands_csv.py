@@ -5,12 +5,18 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.campaign import AXES, CommandLog
 from rovsim.core.errors import BadInput
-from rovsim.recording.csv import csv_lines
-from rovsim.recording.readers import CommandExport, command_reader, finite_rows
-from rovsim.recording.recording import CommandKind
-from rovsim.recording.table import Lines, column_places, numbers, times, without_cut_line
+from rovsim.measurement.campaign import AXES, CommandLog
+from rovsim.measurement.recording.csv import csv_lines
+from rovsim.measurement.recording.readers import CommandExport, command_reader, finite_rows
+from rovsim.measurement.recording.recording import CommandKind
+from rovsim.measurement.recording.table import (
+    Lines,
+    column_places,
+    numbers,
+    times,
+    without_cut_line,
+)
 
 KIND: dict[str, CommandKind] = {
     "pwm": "thruster",

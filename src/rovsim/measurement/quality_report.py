@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from rovsim.recording import Anomalies, quality_report
-from rovsim.recording.recording import Recording
-from rovsim.signals.outliers import Outliers, find_outliers
+from rovsim.measurement.recording import Anomalies, quality_report
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.outliers import Outliers, find_outliers
 
 
 def quality_of(recording: Recording, anomalies: Anomalies, settings: Outliers) -> dict[str, Any]:

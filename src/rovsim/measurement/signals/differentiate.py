@@ -9,7 +9,7 @@ from pydantic import Field
 
 from rovsim.core import rotations
 from rovsim.core.schema import Section
-from rovsim.signals.filter import odd_window
+from rovsim.measurement.signals.filter import odd_window
 
 
 class _Margin(Section):

@@ -11,23 +11,23 @@ from numpy import ndarray as Array
 
 from rovsim.core.files import read_arrays
 from rovsim.core.schema import Section
-from rovsim.recording.recording import Recording
-from rovsim.signals.binned import bin_motion
-from rovsim.signals.clock import stretches, time_step, without_margins
-from rovsim.signals.differentiate import (
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.binned import bin_motion
+from rovsim.measurement.signals.clock import stretches, time_step, without_margins
+from rovsim.measurement.signals.differentiate import (
     Differentiation,
     Spline,
     differentiate_eta,
 )
-from rovsim.signals.filter import (
+from rovsim.measurement.signals.filter import (
     Butterworth,
     Filter,
     filter_eta,
     filter_poses,
 )
-from rovsim.signals.motion import Motion, Poses
-from rovsim.signals.outliers import Outliers, VelocityGate
-from rovsim.signals.resample import Linear, Resampling, resample
+from rovsim.measurement.signals.motion import Motion, Poses
+from rovsim.measurement.signals.outliers import Outliers, VelocityGate
+from rovsim.measurement.signals.resample import Linear, Resampling, resample
 
 # What a stage hands on: poses, or a binned recording that passes unchanged.
 Stage: TypeAlias = Poses | Recording

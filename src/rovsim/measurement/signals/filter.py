@@ -11,8 +11,8 @@ from pydantic import Field
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import Section
-from rovsim.signals.clock import stretches, time_step
-from rovsim.signals.motion import Poses
+from rovsim.measurement.signals.clock import stretches, time_step
+from rovsim.measurement.signals.motion import Poses
 
 # The extension at either end and the stretch its parabola is fitted to, in periods of the cut-off
 # frequency. Four periods let the filter settle (below 1e-6 at order 3). A longer fit is calmer but

@@ -9,10 +9,10 @@ from pydantic import Field
 
 from rovsim.core import rotations
 from rovsim.core.schema import Section
-from rovsim.recording.recording import Recording
-from rovsim.signals.clock import uniform_clock, without_short
-from rovsim.signals.motion import Poses
-from rovsim.signals.outliers import Outliers, find_outliers
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.clock import uniform_clock, without_short
+from rovsim.measurement.signals.motion import Poses
+from rovsim.measurement.signals.outliers import Outliers, find_outliers
 
 # A sample this close to a recorded frame is that frame: MoCap stamps resolve 10 microseconds.
 SAME_INSTANT = 2e-5

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.campaign import Mocap
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
 from rovsim.core.rotations import from_matrix
-from rovsim.recording.readers import Export, finite_rows, mocap_reader
-from rovsim.recording.table import Lines, numbers, split_lines, times, without_cut_line
+from rovsim.measurement.campaign import Mocap
+from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader
+from rovsim.measurement.recording.table import Lines, numbers, split_lines, times, without_cut_line
 
 POSITION = ["X", "Y", "Z"]
 ROTATION = [f"Rot[{k}]" for k in range(9)]

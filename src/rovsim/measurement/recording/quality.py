@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.campaign import AXES
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
-from rovsim.recording.reading import Anomalies, measured_rate
-from rovsim.recording.recording import Recording
-from rovsim.recording.remarks import remarks
+from rovsim.measurement.campaign import AXES
+from rovsim.measurement.recording.reading import Anomalies, measured_rate
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording.remarks import remarks
 
 GAP = 0.05  # s; shorter ones are bridged by any resampling
 SHORTEST_RUN = 2.0  # s; one scoring window (contract, section 3)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.files import read_arrays, write_arrays
-from rovsim.recording.recording import Commands, RunInfo, Site, labels, unlabelled
+from rovsim.measurement.recording.recording import Commands, RunInfo, Site, labels, unlabelled
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,9 @@ from typing import Callable, TypeVar
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.campaign import CommandLog, Mocap
 from rovsim.core.errors import BadInput, nearest
-from rovsim.recording.recording import CommandKind
+from rovsim.measurement.campaign import CommandLog, Mocap
+from rovsim.measurement.recording.recording import CommandKind
 
 # Named in the campaign format but not readable yet, and the way around.
 LATER = {
@@ -106,7 +106,7 @@ def finite_rows(*arrays: Array) -> Array:
 
 
 def _discover() -> None:
-    import rovsim.recording as package
+    import rovsim.measurement.recording as package
 
     for module in pkgutil.iter_modules(package.__path__):
         import_module(f"{package.__name__}.{module.name}")
