@@ -9,8 +9,8 @@ from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, differentiated, filtered, resampled
-from rovsim.tank.campaign import make_campaign
-from rovsim.tank.settings import TankRun, TankSettings
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 
 
 def watched(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[Watch]]:

@@ -15,8 +15,8 @@ from rovsim.learning.pairs import samples, train_residual, training_runs
 from rovsim.loading import Measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.provenance import provenance
-from rovsim.replay import Replay, replay
 from rovsim.scores import comparison, growth, score
+from rovsim.simulation.replay import Replay, replay
 from rovsim.where import content, judged
 
 

@@ -23,7 +23,7 @@ from rovsim.dynamics.engine.types import Inputs
 from rovsim.dynamics.model import Model
 from rovsim.learning.pairs import Samples, accelerations, at_samples
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import ReplaySettings
+from rovsim.simulation.replay import ReplaySettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
 RESIDUAL, MISSING = "learned residual", "missing"

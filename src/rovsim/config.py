@@ -11,8 +11,8 @@ from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.learned.residual import Control
 from rovsim.learning.learner import LearnerSettings, learner_settings
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.replay import ReplaySettings
-from rovsim.tank.settings import TankSettings
+from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 CONF = Path(__file__).parents[2] / "conf"
 

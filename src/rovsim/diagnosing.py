@@ -13,7 +13,7 @@ from rovsim.dynamics.model import Model
 from rovsim.ladder import floor_step, ladder, step
 from rovsim.measurement.signals.chain import Stage, read_stage
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import replay
+from rovsim.simulation.replay import replay
 from rovsim.where import content as where_content
 from rovsim.where import judged
 

@@ -5,8 +5,8 @@ from typing import Any, Iterable, Sequence
 import numpy as np
 
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import Replay
 from rovsim.scores import by_axis, errors, metrics, normalised, pooled, rms
+from rovsim.simulation.replay import Replay
 
 SCHEMA = "rovsim.ladder/1"
 EFFECTS, FLOOR = "effects", "noise_floor"

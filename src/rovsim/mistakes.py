@@ -12,8 +12,8 @@ from rovsim.learning.pairs import Samples, samples
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import OPEN_LOOP, ReplaySettings, replay
 from rovsim.scores import errors, normalised, rms
+from rovsim.simulation.replay import OPEN_LOOP, ReplaySettings, replay
 
 SCHEMA = "rovsim.mistakes/1"
 ERROR, SHARE = "velocity RMSE of the open loop / spread", "share of residual acceleration foretold"

@@ -10,7 +10,7 @@ from rovsim import AXES
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.recording.quality import EXCITED
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import OPEN_LOOP, Prediction, Replay, windows
+from rovsim.simulation.replay import OPEN_LOOP, Prediction, Replay, windows
 
 COMPARISON = "rovsim.comparison/1"
 

@@ -14,7 +14,7 @@ from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.provenance import digest, own_digest, provenance
-from rovsim.tank.campaign import SEALED, describe
+from rovsim.simulation.synthetic_tank.campaign import SEALED, describe
 
 BASELINES = ("zero_acceleration", "nominal")
 PHYSICS = ("refitted", EFFECTS)

@@ -14,7 +14,7 @@ from rovsim.gallery.flight import blocks, fly, found, seen, settings
 from rovsim.gallery.page import PAGE, PICTURES, entry, page
 from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.replay import ReplaySettings
+from rovsim.simulation.replay import ReplaySettings
 
 DOCS = Path(__file__).parents[2] / "docs"
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))

@@ -8,7 +8,7 @@ from rovsim.dynamics.effects import built_in, effect
 from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wrench
 from rovsim.dynamics.model import read_model
 from rovsim.measurement.recording.recording import Site
-from rovsim.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion, some, sticks, tank
 
 # contract, section 2

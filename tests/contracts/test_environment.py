@@ -6,7 +6,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from rovsim.environment import ID, VehicleEnv
-from rovsim.stepping import Stepper
+from rovsim.simulation.stepper import Stepper
 from worlds import model
 
 UNBOUNDED = "ignore:.*infinity:UserWarning"  # positions and velocities have no bound

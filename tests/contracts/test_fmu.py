@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.cli import main
 from rovsim.dynamics.effects.thrusters import ThrusterLag
-from rovsim.stepping import Stepper
+from rovsim.simulation.stepper import Stepper
 from worlds import at_rest, model, sticks
 
 

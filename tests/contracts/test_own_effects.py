@@ -69,10 +69,10 @@ def test_the_study_takes_it_and_sees_edits():
     study = Study({"effects_file": "floor_cushion.py"})
     assert study.effect_files == ["floor_cushion.py"]
     assert "floor_cushion" in catalogue()
-    before = {name: study.code(name) for name in ("replay", "measurement.signals")}
+    before = {name: study.code(name) for name in ("simulation.replay", "measurement.signals")}
     with Path("floor_cushion.py").open("a") as file:
         file.write("# later\n")
-    assert study.code("replay") != before["replay"]
+    assert study.code("simulation.replay") != before["simulation.replay"]
     assert study.code("measurement.signals") == before["measurement.signals"]
     assert Study({}).effect_files == []
 

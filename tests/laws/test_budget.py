@@ -9,7 +9,7 @@ from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Autopilot
 from rovsim.learning.pairs import accelerations, at_samples, samples
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.replay import ReplaySettings
+from rovsim.simulation.replay import ReplaySettings
 from worlds import at_rest, model, motion, some, sticks, tank
 
 

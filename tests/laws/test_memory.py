@@ -12,8 +12,8 @@ from rovsim.dynamics.effects.fluid_memory import ARM, FluidMemory
 from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.memory import lag_of_lines, measured_memory
-from rovsim.replay import ReplaySettings, replay, trajectories
+from rovsim.simulation.initial_memory import lag_of_lines, measured_memory
+from rovsim.simulation.replay import ReplaySettings, replay, trajectories
 from worlds import at_rest, model, motion, sticks
 
 OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))

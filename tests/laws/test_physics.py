@@ -16,7 +16,7 @@ from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.effects.proximity import SurfaceProximity, WallProximity
 from rovsim.dynamics.engine.equation import coriolis
 from rovsim.dynamics.engine.vectors import matrix6
-from rovsim.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion, sticks, tank
 
 speeds = arrays(float, 6, elements=st.floats(-2, 2))

@@ -23,8 +23,8 @@ from rovsim.dynamics.engine.types import Inputs, Jobs, Place
 from rovsim.dynamics.model import zero_acceleration
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.replay import Replay, ReplaySettings, replay, trajectories, windows
 from rovsim.scores import score
+from rovsim.simulation.replay import Replay, ReplaySettings, replay, trajectories, windows
 from worlds import at_rest, model, motion, sticks
 
 DOWN = np.array([0.0, 0.0, 1.0])
@@ -164,7 +164,7 @@ def test_batches_do_not_change_the_numbers(monkeypatch):
 
 CHILD = """
 from worlds import model, motion, at_rest, sticks
-from rovsim.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import ReplaySettings, trajectories
 world = model()
 trajectories(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
 stats = world.engine.integrate.stats

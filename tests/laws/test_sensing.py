@@ -13,7 +13,7 @@ from rovsim.dynamics.effects.sensing import MarkerMisalignment, MarkerOffset, Wo
 from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.replay import ReplaySettings, replay, trajectories
+from rovsim.simulation.replay import ReplaySettings, replay, trajectories
 from worlds import at_rest, model, motion, sticks
 
 places = arrays(float, 3, elements=st.floats(-1, 1))

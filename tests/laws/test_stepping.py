@@ -9,8 +9,8 @@ from rovsim.dynamics.effects.fluid_memory import FluidMemory
 from rovsim.dynamics.effects.thrusters import ThrusterLag, VoltageSag
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.learning.learner import learner_settings, train
-from rovsim.replay import ReplaySettings, trajectories
-from rovsim.stepping import Stepper, rollouts
+from rovsim.simulation.replay import ReplaySettings, trajectories
+from rovsim.simulation.stepper import Stepper, rollouts
 from worlds import at_rest, model, motion, sticks
 
 KNN = learner_settings({"kind": "knn"})

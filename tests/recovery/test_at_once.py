@@ -16,7 +16,7 @@ from rovsim.diagnosis.replayed import Replays, replayed
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.together import known_together
 from rovsim.dynamics.model import EffectEntry
-from rovsim.tank.settings import Log
+from rovsim.simulation.synthetic_tank.settings import Log
 
 GAIN = dict(zip(AXES, (0.9, 0.8, 0.7, 2.0, 2.0, 2.0), strict=True))
 WIDTH = dict(zip(AXES, (1.5, 1.5, 1.5, 4.0, 4.0, 4.0), strict=True))

@@ -9,8 +9,8 @@ from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.replay import ReplaySettings, replay
 from rovsim.scores import errors, pooled, rms, score
+from rovsim.simulation.replay import ReplaySettings, replay
 from worlds import SHARED, needed
 
 

@@ -12,7 +12,7 @@ from rovsim.hidden.library import problem, steps
 from rovsim.hidden.sparse import answered, forward, thresholded
 from rovsim.learning.pairs import accelerations, at_samples
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.replay import ReplaySettings
+from rovsim.simulation.replay import ReplaySettings
 from worlds import model, motion, sticks, tank
 
 # enough to choose from, and nothing to compile

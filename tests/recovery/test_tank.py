@@ -9,10 +9,10 @@ from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality_report import quality_of
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.replay import ReplaySettings, replay
 from rovsim.scores import errors, rms
-from rovsim.tank.campaign import SEALED, describe, make_campaign, true_model
-from rovsim.tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
+from rovsim.simulation.replay import ReplaySettings, replay
+from rovsim.simulation.synthetic_tank.campaign import SEALED, describe, make_campaign, true_model
+from rovsim.simulation.synthetic_tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
 
 RUN = TankRun(id="6dof-1", control="6dof", split="test")
 LAG = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.2})

@@ -9,7 +9,7 @@ from rovsim import AXES
 from rovsim.learning.pairs import samples
 from rovsim.measurement.recording.recording import Site
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.replay import ReplaySettings
+from rovsim.simulation.replay import ReplaySettings
 from rovsim.where import blocks, explain, judged
 from rovsim.where.bins import binned, stretches, table
 from rovsim.where.conditions import BLOCK

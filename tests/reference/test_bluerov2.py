@@ -18,7 +18,7 @@ from rovsim.core.rotations import from_euler, matrix
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
 from rovsim.dynamics.vehicle import VEHICLES
-from rovsim.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion
 
 FILE = yaml.safe_load((VEHICLES / "bluerov2_heavy.yaml").read_text(encoding="utf-8"))

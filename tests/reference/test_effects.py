@@ -18,7 +18,7 @@ from rovsim.dynamics.effects.rigid_body import Payload
 from rovsim.dynamics.effects.tether import TetherDrag, TetherTension
 from rovsim.dynamics.effects.thrusters import AdvanceLoss, PropellerTorque
 from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
-from rovsim.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion
 
 # parameters of contract, section 2, where they are not one per axis

@@ -11,7 +11,7 @@ if study.synthetic:
         params:
             settings=study.section("tank")["tank"],
             folder=f"{R}/raw",
-            code=study.own_code("tank"),
+            code=study.own_code("simulation.synthetic_tank"),
         script:
             "../scripts/tank.py"
 

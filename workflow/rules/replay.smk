@@ -18,7 +18,7 @@ rule replay:
         f"{R}/benchmarks/replay/{{model}}/{{run}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("replay", "dynamics.effects"),
+        code=study.code("simulation.replay", "dynamics.effects"),
     script:
         "../scripts/replay.py"
 

@@ -6,8 +6,8 @@ from rovsim.core.files import read_json, write_json
 from rovsim.jobs import job
 from rovsim.ladder import step, with_diagnosis
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import Replay
 from rovsim.scores import comparison, growth
+from rovsim.simulation.replay import Replay
 from rovsim.where import merged
 
 

@@ -8,7 +8,7 @@ from rovsim.figures import kind
 from rovsim.figures.style import save
 from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import Replay
+from rovsim.simulation.replay import Replay
 
 
 def main(*, figure: str, motion: Path, replays: list[Path], budgets: list[Path], out: Path) -> None:

@@ -8,8 +8,8 @@ from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import replay, rule_settings
 from rovsim.scores import comparison, score
+from rovsim.simulation.replay import replay, rule_settings
 from rovsim.study import BASELINES
 
 

@@ -8,7 +8,7 @@ from rovsim.jobs import job
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.mistakes import SCHEMA, mistakes
-from rovsim.replay import rule_settings
+from rovsim.simulation.replay import rule_settings
 
 
 def main(

@@ -9,7 +9,7 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.measurement.campaign import load_campaign
-from rovsim.replay import ReplaySettings
+from rovsim.simulation.replay import ReplaySettings
 
 
 def main(

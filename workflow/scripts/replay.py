@@ -7,7 +7,7 @@ from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import replay, rule_settings
+from rovsim.simulation.replay import replay, rule_settings
 
 
 def main(*, motion: Path, campaign: Path, file: str, name: str, out: Path, settings: dict) -> None:

@@ -5,8 +5,8 @@ from pathlib import Path
 from rovsim.core.files import write_json
 from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import Replay
 from rovsim.scores import score
+from rovsim.simulation.replay import Replay
 
 
 def main(*, motions: list[Path], replays: list[Path], out: Path) -> None:

@@ -8,7 +8,7 @@ from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import rule_settings
+from rovsim.simulation.replay import rule_settings
 from rovsim.where import content, judged
 
 

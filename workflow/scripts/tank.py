@@ -4,8 +4,8 @@ from pathlib import Path
 
 from rovsim.core.schema import checked
 from rovsim.jobs import job
-from rovsim.tank.campaign import make_campaign
-from rovsim.tank.settings import TankSettings
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 
 def main(*, folder: Path, settings: dict) -> None:

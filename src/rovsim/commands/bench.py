@@ -25,7 +25,7 @@ from rovsim.dynamics.model import Model, nominal
 from rovsim.learning.pairs import samples
 from rovsim.loading import measured
 from rovsim.saying import say
-from rovsim.tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from rovsim.config import Settings
 from rovsim.core.progress import reported
 from rovsim.saying import say
-from rovsim.tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 
 def run(settings: Settings) -> None:

@@ -19,8 +19,8 @@ from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import filter_eta
-from rovsim.replay import windows
 from rovsim.scores import normalised, rms
+from rovsim.simulation.replay import windows
 
 DRAWS = 8
 PAD = 1.0  # s before and after, so that the filter has settled

@@ -18,8 +18,8 @@ from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Jobs
 from rovsim.dynamics.model import Model
-from rovsim.memory import measured_memory
-from rovsim.replay import as_true, packed_inputs, place, stacked
+from rovsim.simulation.initial_memory import measured_memory
+from rovsim.simulation.replay import as_true, packed_inputs, place, stacked
 
 NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
 

@@ -23,7 +23,7 @@ from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import differences, readings
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
-from rovsim.replay import windows
+from rovsim.simulation.replay import windows
 
 SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
 SMALLEST = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count

@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.motion import Motion, Poses
-from rovsim.replay import clock
+from rovsim.simulation.replay import clock
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
 SETTLING = 1.0  # s

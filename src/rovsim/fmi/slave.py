@@ -7,7 +7,7 @@ import numpy as np
 from pythonfmu import Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
 
 from rovsim.dynamics.model import read_model
-from rovsim.stepping import Stepper
+from rovsim.simulation.stepper import Stepper
 
 STATE = ("x", "y", "z", "q0", "q1", "q2", "q3", "u", "v", "w", "p", "q", "r")
 MODEL = "model.yaml"  # among the unit's resources

@@ -17,9 +17,16 @@ from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import ReplaySettings
-from rovsim.tank.campaign import make_campaign, true_model
-from rovsim.tank.settings import Box, Camera, Log, TankRun, TankSettings, Turbulence
+from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
+from rovsim.simulation.synthetic_tank.settings import (
+    Box,
+    Camera,
+    Log,
+    TankRun,
+    TankSettings,
+    Turbulence,
+)
 from rovsim.where import Blocks, blocks
 from rovsim.where.bins import binned, stretches, table
 from rovsim.where.conditions import Condition

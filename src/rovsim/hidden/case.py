@@ -12,7 +12,7 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import EffectEntry, Value
 from rovsim.hidden.outside import OUTSIDE
 from rovsim.hidden.recipes import RECIPES
-from rovsim.tank.settings import TankSettings
+from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 # First and last seed of each range. Whoever builds or tunes a method looks at development cases
 # alone; a case of the other range is flown to report, never to decide.

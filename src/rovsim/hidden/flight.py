@@ -4,8 +4,8 @@ from pathlib import Path
 
 from rovsim.core.errors import BadInput
 from rovsim.hidden.case import Case
-from rovsim.tank.campaign import SEALED, make_campaign
-from rovsim.tank.simulate import LeftTank
+from rovsim.simulation.synthetic_tank.campaign import SEALED, make_campaign
+from rovsim.simulation.synthetic_tank.simulate import LeftTank
 
 TRIES = 12  # 0.8^12 = 0.07 of the size
 PILOTS = 3

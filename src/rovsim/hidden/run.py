@@ -19,7 +19,7 @@ from rovsim.hidden.methods import Method
 from rovsim.provenance import digest
 
 SCHEMA = "rovsim.hidden/1"
-TANK = ("rovsim.tank", "rovsim.hidden.flight", "rovsim.hidden.outside")
+TANK = ("rovsim.simulation.synthetic_tank", "rovsim.hidden.flight", "rovsim.hidden.outside")
 ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 Progress = Callable[[int, int], None]
 

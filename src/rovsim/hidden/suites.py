@@ -20,7 +20,7 @@ from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.hidden.case import Case, Range, Unlisted, merged, random_of, seed_of
 from rovsim.hidden.outside import OUTSIDE, drawn_outside
 from rovsim.hidden.recipes import RECIPES, drawn
-from rovsim.tank.settings import Camera
+from rovsim.simulation.synthetic_tank.settings import Camera
 
 CALM = Camera()
 NOISY: Mapping[str, Any] = {

@@ -17,8 +17,8 @@ from rovsim.learning.learner import LearnerSettings, Progress, Trained, train
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.memory import measured_memory
-from rovsim.replay import (
+from rovsim.simulation.initial_memory import measured_memory
+from rovsim.simulation.replay import (
     ReplaySettings,
     as_true,
     clock,

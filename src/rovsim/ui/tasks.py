@@ -12,7 +12,7 @@ from rovsim.dynamics.effects import use_effect_files
 from rovsim.evidence import PER_RUN
 from rovsim.loading import measured, models
 from rovsim.provenance import provenance
-from rovsim.tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 ONCE = (
     "ranking", "ladder", "where", "where_map", "error_by_axis", "error_growth", "excitation"

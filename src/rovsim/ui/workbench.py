@@ -15,8 +15,8 @@ from rovsim.dynamics.model import BUILT_IN, Model, read_model, zero_acceleration
 from rovsim.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.loading import Measured, measured, models
 from rovsim.provenance import digest, provenance
-from rovsim.replay import OPEN_LOOP, Prediction, Replay, replay
 from rovsim.scores import errors, metrics
+from rovsim.simulation.replay import OPEN_LOOP, Prediction, Replay, replay
 from rovsim.ui import tasks
 from rovsim.ui.draft import Draft
 from rovsim.ui.work import Work

@@ -7,7 +7,7 @@ from rovsim.dynamics.model import Model
 from rovsim.learning.pairs import Samples, samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.replay import ReplaySettings
+from rovsim.simulation.replay import ReplaySettings
 from rovsim.where.conditions import blocks, together
 from rovsim.where.findings import Where, explain
 

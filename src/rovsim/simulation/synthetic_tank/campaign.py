@@ -15,9 +15,9 @@ from rovsim.core.rotations import HALF_TURN_X
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.tank.exports import BODY, commands_csv, qtm_tsv
-from rovsim.tank.settings import TankRun, TankSettings
-from rovsim.tank.simulate import simulate
+from rovsim.simulation.synthetic_tank.exports import BODY, commands_csv, qtm_tsv
+from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
+from rovsim.simulation.synthetic_tank.simulate import simulate
 
 SEALED = "truth.yaml"  # nothing that reads a campaign may open it
 

@@ -23,7 +23,7 @@ from rovsim.measurement.recording.recording import RunInfo
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.motion import Motion
-from rovsim.memory import measured_memory
+from rovsim.simulation.initial_memory import measured_memory
 
 OPEN_LOOP = "open_loop"
 

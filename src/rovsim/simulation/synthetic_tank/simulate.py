@@ -14,8 +14,8 @@ from rovsim.core.rotations import HALF_TURN_X
 from rovsim.dynamics.engine.types import Inputs, Place
 from rovsim.dynamics.model import Model
 from rovsim.measurement.recording.recording import CommandKind, Commands, Site
-from rovsim.tank.pilot import Pilot
-from rovsim.tank.settings import TankSettings, Turbulence
+from rovsim.simulation.synthetic_tank.pilot import Pilot
+from rovsim.simulation.synthetic_tank.settings import TankSettings, Turbulence
 
 FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact to a nanosecond
 

@@ -8,8 +8,8 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import View
-from rovsim.tank.settings import Camera, Log
-from rovsim.tank.simulate import Truth
+from rovsim.simulation.synthetic_tank.settings import Camera, Log
+from rovsim.simulation.synthetic_tank.simulate import Truth
 
 BODY = "BlueROV2"
 COLUMNS = (

@@ -5,7 +5,7 @@
         state = stepper.step(state, command, 0.001)
 
 Thrusters keep their lag, commands their delay and the water its memory from call to call, so that
-a run that is stepped is the run that `rovsim.replay` replays.
+a run that is stepped is the run that `rovsim.simulation.replay` replays.
 """
 
 from math import ceil, inf
@@ -20,9 +20,9 @@ from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Jobs, Place
 from rovsim.dynamics.model import Model
 from rovsim.measurement.recording.recording import CommandKind, Commands, Site
-from rovsim.replay import packed_inputs, residual_data, stacked
+from rovsim.simulation.replay import packed_inputs, residual_data, stacked
 
-LONGEST = 0.01  # s, an integration step; see `rovsim.replay.ReplaySettings`
+LONGEST = 0.01  # s, an integration step; see `rovsim.simulation.replay.ReplaySettings`
 
 
 class Stepper:
