@@ -7,9 +7,9 @@ import numpy as np
 from scipy.signal import lfilter
 
 from rovsim import AXES
-from rovsim.marks import METRICS, Published, against
-from rovsim.where import Blocks, Judged, content, explain
-from rovsim.where.conditions import BLOCK, SPEEDS, THROUGHOUT, Condition
+from rovsim.evaluation.error_conditions import Blocks, Judged, content, explain
+from rovsim.evaluation.error_conditions.conditions import BLOCK, SPEEDS, THROUGHOUT, Condition
+from rovsim.evaluation.held_out.published import METRICS, Published, against
 
 MODELS = (
     "nominal", "knn_3dof", "knn_6dof", "gp_3dof", "gp_6dof", "svgp_3dof", "svgp_6dof",

@@ -3,21 +3,21 @@
 from pathlib import Path
 from typing import Any, Sequence
 
-from rovsim.budget import Budget, budget
 from rovsim.config import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted, reported, staged
 from rovsim.diagnosing import STAGES, Diagnosed, diagnosed
 from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import Model, read_model
+from rovsim.evaluation.budget import Budget, budget
+from rovsim.evaluation.error_conditions import content, judged
+from rovsim.evaluation.scores import comparison, growth, score
 from rovsim.evidence import Evidence
 from rovsim.learning.pairs import samples, train_residual, training_runs
 from rovsim.loading import Measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.provenance import provenance
-from rovsim.scores import comparison, growth, score
 from rovsim.simulation.replay import Replay, replay
-from rovsim.where import content, judged
 
 
 def compare(data: Measured, chosen: Sequence[Model], settings: Settings) -> Evidence:

@@ -5,8 +5,8 @@ from functools import cached_property
 from pathlib import Path
 
 from rovsim.core.errors import BadInput
+from rovsim.evaluation.ladder import EFFECTS
 from rovsim.evidence import ONCE
-from rovsim.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign

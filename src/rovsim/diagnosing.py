@@ -10,12 +10,12 @@ from rovsim.diagnosis.floor import noise_floor
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.watch import Watch, watch
 from rovsim.dynamics.model import Model
-from rovsim.ladder import floor_step, ladder, step
+from rovsim.evaluation.error_conditions import content as where_content
+from rovsim.evaluation.error_conditions import judged
+from rovsim.evaluation.ladder import floor_step, ladder, step
 from rovsim.measurement.signals.chain import Stage, read_stage
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import replay
-from rovsim.where import content as where_content
-from rovsim.where import judged
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}

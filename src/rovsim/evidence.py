@@ -5,7 +5,7 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
-from rovsim.budget import Budget
+from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import OPEN_LOOP, Replay
 

@@ -8,8 +8,8 @@ from typing import Any, Mapping
 from rovsim.config import Settings, compose
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import use_effect_files
+from rovsim.evaluation.ladder import EFFECTS
 from rovsim.evidence import PER_RUN
-from rovsim.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign

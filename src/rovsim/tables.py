@@ -10,6 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.files import write_text
+from rovsim.evaluation.held_out.published import METRICS
 from rovsim.figures.marks import (
     ACCELERATION_UNITS,
     AXES,
@@ -19,7 +20,6 @@ from rovsim.figures.marks import (
     vector,
 )
 from rovsim.figures.pooled import horizon_text, pooled
-from rovsim.marks import METRICS
 
 QUANTITIES = {
     "velocity_rmse": ("velocity RMSE", VELOCITY_UNITS),

@@ -234,7 +234,7 @@ def test_what_was_answered_is_not_asked_again(tmp_path, asked):
     assert asked() == 2
     run(cases, [method], tmp_path / "r", 1)
     assert asked() == 2
-    changed = Method("stub", stub, ("rovsim.core.errors", "rovsim.latency"))
+    changed = Method("stub", stub, ("rovsim.core.errors", "rovsim.evaluation.latency"))
     run(cases[:1], [changed], tmp_path / "r", 1)
     assert asked() == 3
     found = summary(judged(answers(cases, method, tmp_path / "r")))

@@ -5,7 +5,7 @@ import gc
 import numpy as np
 import pytest
 
-from rovsim.latency import RATES, latency
+from rovsim.evaluation.latency import RATES, latency
 
 QUERIES = np.arange(12.0).reshape(4, 3)
 
@@ -27,7 +27,7 @@ def test_each_call_sees_one_query_and_all_are_used_in_turn():
 def clock(monkeypatch):
     """A clock that moves only when a test says so: real ones make timed tests."""
     now = [0]
-    monkeypatch.setattr("rovsim.latency.perf_counter_ns", lambda: now[0])
+    monkeypatch.setattr("rovsim.evaluation.latency.perf_counter_ns", lambda: now[0])
     return now
 
 

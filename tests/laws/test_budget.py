@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rovsim.budget import RESTORING, Budget, budget
 from rovsim.core.rotations import exp
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Autopilot
+from rovsim.evaluation.budget import RESTORING, Budget, budget
 from rovsim.learning.pairs import accelerations, at_samples, samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.replay import ReplaySettings

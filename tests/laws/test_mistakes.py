@@ -7,9 +7,9 @@ import pytest
 
 from flown import watched
 from rovsim.dynamics.model import EffectEntry
+from rovsim.evaluation.held_out.pitfalls import MISTAKES, SAID, mistakes, on_wrong_clock
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.mistakes import MISTAKES, SAID, mistakes, on_wrong_clock
 from rovsim.simulation.replay import ReplaySettings
 
 QUICK = {"max_points": 300, "tuning_points": 100, "iterations": 15}

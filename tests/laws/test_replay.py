@@ -21,9 +21,9 @@ from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Inputs, Jobs, Place
 from rovsim.dynamics.model import zero_acceleration
+from rovsim.evaluation.scores import score
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.scores import score
 from rovsim.simulation.replay import Replay, ReplaySettings, replay, trajectories, windows
 from worlds import at_rest, model, motion, sticks
 

@@ -5,11 +5,11 @@ import pytest
 
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
+from rovsim.evaluation.scores import errors, pooled, rms, score
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.scores import errors, pooled, rms, score
 from rovsim.simulation.replay import ReplaySettings, replay
 from worlds import SHARED, needed
 

@@ -5,11 +5,11 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.model import EffectEntry, nominal
+from rovsim.evaluation.scores import errors, rms
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality_report import quality_of
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.scores import errors, rms
 from rovsim.simulation.replay import ReplaySettings, replay
 from rovsim.simulation.synthetic_tank.campaign import SEALED, describe, make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import Camera, Log, TankRun, TankSettings, Turbulence

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from rovsim import AXES
+from rovsim.evaluation.error_conditions import blocks, explain, judged
+from rovsim.evaluation.error_conditions.bins import binned, stretches, table
+from rovsim.evaluation.error_conditions.conditions import BLOCK
+from rovsim.evaluation.error_conditions.sentences import summary
 from rovsim.learning.pairs import samples
 from rovsim.measurement.recording.recording import Site
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.replay import ReplaySettings
-from rovsim.where import blocks, explain, judged
-from rovsim.where.bins import binned, stretches, table
-from rovsim.where.conditions import BLOCK
-from rovsim.where.sentences import summary
 from synthetic_study import driven
 from worlds import at_rest, model, motion, sticks
 

@@ -20,7 +20,7 @@ rule split:
     benchmark:
         f"{F}/benchmarks/split.tsv"
     params:
-        code=study.code("folds"),
+        code=study.code("evaluation.held_out.folds"),
     script:
         "../scripts/split.py"
 
@@ -98,7 +98,7 @@ rule fold:
         f"{F}/benchmarks/fold.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("scores", "dynamics.effects"),
+        code=study.code("evaluation.scores", "dynamics.effects"),
     script:
         "../scripts/fold.py"
 
@@ -121,7 +121,7 @@ if chapter.published:
             f"{R}/benchmarks/against_published.tsv"
         params:
             runs=chapter.folds,
-            code=study.code("marks", "tables"),
+            code=study.code("evaluation.held_out.published", "tables"),
         script:
             "../scripts/against_published.py"
 
@@ -142,6 +142,6 @@ if chapter.mistakes:
         params:
             settings=study.section("replay", "signals"),
             learners={kind: study.learner(kind) for kind in ("knn", "gp")},
-            code=study.code("mistakes", "dynamics.effects", "learning"),
+            code=study.code("evaluation.held_out.pitfalls", "dynamics.effects", "learning"),
         script:
             "../scripts/mistakes.py"

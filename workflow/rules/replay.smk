@@ -37,7 +37,7 @@ rule search:
         f"{R}/benchmarks/search/{{model}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("where", "dynamics.effects"),
+        code=study.code("evaluation.error_conditions", "dynamics.effects"),
     script:
         "../scripts/search.py"
 
@@ -55,7 +55,7 @@ rule budget:
         f"{R}/benchmarks/budget/{{run}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("budget", "dynamics.effects"),
+        code=study.code("evaluation.budget", "dynamics.effects"),
     script:
         "../scripts/budget.py"
 
@@ -72,6 +72,6 @@ rule score:
     benchmark:
         f"{R}/benchmarks/score/{{model}}.tsv"
     params:
-        code=study.code("scores"),
+        code=study.code("evaluation.scores"),
     script:
         "../scripts/score.py"

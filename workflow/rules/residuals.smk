@@ -36,6 +36,6 @@ rule timing:
     threads: workflow.cores
     params:
         settings=study.section("replay", "signals", "timing"),
-        code=study.code("latency", "learning.pairs", "learning"),
+        code=study.code("evaluation.latency", "learning.pairs", "learning"),
     script:
         "../scripts/timing.py"

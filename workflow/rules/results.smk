@@ -25,7 +25,7 @@ rule compare:
         f"{R}/benchmarks/compare.tsv"
     params:
         models=study.models,
-        code=study.code("ladder"),
+        code=study.code("evaluation.ladder"),
     script:
         "../scripts/compare.py"
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from rovsim.core.files import read_json, write_json
+from rovsim.evaluation.held_out.published import against, demanded, read_published
 from rovsim.jobs import job
-from rovsim.marks import against, demanded, read_published
 from rovsim.measurement.signals.motion import Motion
 from rovsim.tables import marks_table
 

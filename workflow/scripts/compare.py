@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from rovsim.core.files import read_json, write_json
+from rovsim.evaluation.error_conditions import merged
+from rovsim.evaluation.ladder import step, with_diagnosis
+from rovsim.evaluation.scores import comparison, growth
 from rovsim.jobs import job
-from rovsim.ladder import step, with_diagnosis
 from rovsim.measurement.signals.motion import Motion
-from rovsim.scores import comparison, growth
 from rovsim.simulation.replay import Replay
-from rovsim.where import merged
 
 
 def main(

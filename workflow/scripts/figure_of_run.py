@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.budget import Budget
+from rovsim.evaluation.budget import Budget
 from rovsim.evidence import Evidence, arguments
 from rovsim.figures import kind
 from rovsim.figures.style import save

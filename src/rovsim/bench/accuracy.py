@@ -12,7 +12,7 @@ import numpy as np
 from rovsim.bench.data import Pairs, fitted, unfading
 from rovsim.bench.inference import ours
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.latency import latency
+from rovsim.evaluation.latency import latency
 
 SEEN, UNSEEN = "3dof", "6dof"
 CALLS = 2_000

@@ -15,7 +15,7 @@ from rovsim.bench.machine import as_a_control_loop
 from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many, posterior_many
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.latency import latency
+from rovsim.evaluation.latency import latency
 
 BUSY = 100  # us: about what the slowest of our own paths to be counted takes
 CHECKED = 500  # queries whose predictions are compared

@@ -10,11 +10,11 @@ and prints a summary.
 from pathlib import Path
 
 from rovsim.answering import compare
-from rovsim.budget import totals
 from rovsim.config import Settings
 from rovsim.core.files import write_json
+from rovsim.evaluation.budget import totals
+from rovsim.evaluation.ladder import step
 from rovsim.evidence import PER_RUN, Evidence
-from rovsim.ladder import step
 from rovsim.loading import measured, models, results_folder
 from rovsim.provenance import provenance
 from rovsim.report.terminal import compared

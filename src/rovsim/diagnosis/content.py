@@ -22,7 +22,7 @@ def content(
 
     Args:
         found: the diagnosis.
-        where: conditions in which the base fails, as listed by rovsim.where.
+        where: conditions in which the base fails, as listed by rovsim.evaluation.error_conditions.
         error: of the base, with the effects, and the noise floor, on the test runs.
         base: the base model's own content, so that `rovsim add` needs nothing else.
     """

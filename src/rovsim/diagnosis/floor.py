@@ -17,9 +17,9 @@ from rovsim.diagnosis.watch import Watch
 from rovsim.diagnosis.windows import SECONDS, differences
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
+from rovsim.evaluation.scores import normalised, rms
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import filter_eta
-from rovsim.scores import normalised, rms
 from rovsim.simulation.replay import windows
 
 DRAWS = 8

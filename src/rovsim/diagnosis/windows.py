@@ -16,8 +16,8 @@ from rovsim.dynamics.body import packed
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Jobs
 from rovsim.dynamics.model import Model
+from rovsim.evaluation.scores import normalised, rms
 from rovsim.measurement.signals.binned import bin_means
-from rovsim.scores import normalised, rms
 from rovsim.simulation.replay import place, windows
 
 SECONDS = 2.0  # contract, section 3

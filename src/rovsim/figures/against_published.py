@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rovsim.evaluation.held_out.published import COUNTED, PUBLISHED
+from rovsim.evaluation.ladder import EFFECTS
 from rovsim.figures.marks import legend, note, nothing, number, short
 from rovsim.figures.palette import Look, looks
 from rovsim.figures.style import sheet, styled
-from rovsim.ladder import EFFECTS
-from rovsim.marks import COUNTED, PUBLISHED
 
 SECTION = "published"
 CAPTION = (

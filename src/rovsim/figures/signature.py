@@ -18,10 +18,10 @@ from PIL import Image
 from rovsim import AXES
 from rovsim.core.files import appearing
 from rovsim.dynamics.effects.parameters import Signature
+from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.palette import FAMILIES
 from rovsim.figures.style import MM, WIDTH, styled
-from rovsim.where.bins import Table
 
 HEIGHT = 56.0  # mm
 PIXELS = 700

@@ -10,6 +10,9 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics.effects.base import Autopilot, Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.model import EffectEntry, nominal
+from rovsim.evaluation.error_conditions import Blocks, blocks
+from rovsim.evaluation.error_conditions.bins import binned, stretches, table
+from rovsim.evaluation.error_conditions.conditions import Condition
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.figures.signature import Seen
 from rovsim.learning.pairs import samples
@@ -27,9 +30,6 @@ from rovsim.simulation.synthetic_tank.settings import (
     TankSettings,
     Turbulence,
 )
-from rovsim.where import Blocks, blocks
-from rovsim.where.bins import binned, stretches, table
-from rovsim.where.conditions import Condition
 
 RUN = TankRun(id="run", control="6dof", split="train")
 

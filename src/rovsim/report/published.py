@@ -2,10 +2,10 @@
 
 from typing import Any, Mapping
 
+from rovsim.evaluation.held_out.pitfalls import MISTAKES
+from rovsim.evaluation.held_out.published import COUNTED, METRICS, PUBLISHED
+from rovsim.evaluation.ladder import EFFECTS
 from rovsim.figures.marks import significant
-from rovsim.ladder import EFFECTS
-from rovsim.marks import COUNTED, METRICS, PUBLISHED
-from rovsim.mistakes import MISTAKES
 from rovsim.report.marked import table
 from rovsim.tables import QUANTITIES
 

@@ -5,9 +5,9 @@ from typing import Any
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.evaluation.ladder import FLOOR
 from rovsim.figures.marks import VELOCITY_UNITS, number, short, significant
 from rovsim.figures.palette import looks
-from rovsim.ladder import FLOOR
 from rovsim.ui.charts import INK, SOFT
 from rovsim.ui.parts import cell, chart, computed, heading, section, table, text
 from rovsim.ui.workbench import Workbench

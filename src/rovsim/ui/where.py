@@ -7,12 +7,12 @@ import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.evaluation.error_conditions import Judged, content
+from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.figures.marks import ACCELERATION_UNITS
 from rovsim.ui.charts import INK, LINE, MARK, SOFT
 from rovsim.ui.parts import chart, computed, heading, onward, section, text
 from rovsim.ui.workbench import Workbench
-from rovsim.where import Judged, content
-from rovsim.where.bins import Table
 
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"
 BLUE, GREY = "#0072B2", "#bdbdbd"

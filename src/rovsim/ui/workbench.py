@@ -12,15 +12,15 @@ from rovsim.config import Settings, compose
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json
 from rovsim.dynamics.model import BUILT_IN, Model, read_model, zero_acceleration
-from rovsim.ladder import EFFECTS, ladder, step, with_diagnosis
+from rovsim.evaluation.error_conditions import Judged, judged
+from rovsim.evaluation.ladder import EFFECTS, ladder, step, with_diagnosis
+from rovsim.evaluation.scores import errors, metrics
 from rovsim.loading import Measured, measured, models
 from rovsim.provenance import digest, provenance
-from rovsim.scores import errors, metrics
 from rovsim.simulation.replay import OPEN_LOOP, Prediction, Replay, replay
 from rovsim.ui import tasks
 from rovsim.ui.draft import Draft
 from rovsim.ui.work import Work
-from rovsim.where import Judged, judged
 
 KEPT = 200  # replays; one of a minute takes 2 MB
 

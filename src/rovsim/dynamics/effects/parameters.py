@@ -47,7 +47,7 @@ def per_axis(
 class Signature:
     """How the catalogue page shows an effect: hidden with these values, in the error of one axis.
 
-    The mean error, or its `size` (RMS), is drawn over a condition of `rovsim.where`, or over a
+    The mean error, or its `size` (RMS), is drawn over a condition of `rovsim.evaluation.error_conditions`, or over a
     measured acceleration ("surge acceleration").
     """
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.where.conditions import BLOCK, Blocks, Condition
+from rovsim.evaluation.error_conditions.conditions import BLOCK, Blocks, Condition
 
 BINS = 8
 VISITS = 4  # stretches that must have visited a bin before it is judged

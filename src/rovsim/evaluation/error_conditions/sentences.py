@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rovsim.where.conditions import THROUGHOUT, Condition
-from rovsim.where.findings import Finding, Where
+from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
+from rovsim.evaluation.error_conditions.findings import Finding, Where
 
 UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
 POSITIVE = {

@@ -6,11 +6,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.where.bins import Table
-from rovsim.where.conditions import BLOCK
-from rovsim.where.findings import Finding, Where
-from rovsim.where.search import Judged
-from rovsim.where.sentences import UNITS, sentence, summary
+from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.evaluation.error_conditions.conditions import BLOCK
+from rovsim.evaluation.error_conditions.findings import Finding, Where
+from rovsim.evaluation.error_conditions.search import Judged
+from rovsim.evaluation.error_conditions.sentences import UNITS, sentence, summary
 
 SCHEMA = "rovsim.where/1"
 

@@ -4,8 +4,8 @@ from typing import Any, Iterable, Sequence
 
 import numpy as np
 
+from rovsim.evaluation.scores import by_axis, errors, metrics, normalised, pooled, rms
 from rovsim.measurement.signals.motion import Motion
-from rovsim.scores import by_axis, errors, metrics, normalised, pooled, rms
 from rovsim.simulation.replay import Replay
 
 SCHEMA = "rovsim.ladder/1"

@@ -12,8 +12,15 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.where.bins import Binning, Table, binned, evidence, stretches, table
-from rovsim.where.conditions import THROUGHOUT, Blocks, Condition
+from rovsim.evaluation.error_conditions.bins import (
+    Binning,
+    Table,
+    binned,
+    evidence,
+    stretches,
+    table,
+)
+from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Blocks, Condition
 
 LEVEL = 0.005  # chance of a single false finding in a whole search over an adequate model
 FLIPS = 3999

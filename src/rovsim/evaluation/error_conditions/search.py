@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from typing import Sequence
 
 from rovsim.dynamics.model import Model
+from rovsim.evaluation.error_conditions.conditions import blocks, together
+from rovsim.evaluation.error_conditions.findings import Where, explain
 from rovsim.learning.pairs import Samples, samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import ReplaySettings
-from rovsim.where.conditions import blocks, together
-from rovsim.where.findings import Where, explain
 
 
 @dataclass(frozen=True, eq=False)

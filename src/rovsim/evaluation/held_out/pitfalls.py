@@ -7,12 +7,12 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.model import Model
+from rovsim.evaluation.scores import errors, normalised, rms
 from rovsim.learning.learner import LearnerSettings, Trained, train
 from rovsim.learning.pairs import Samples, samples
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.scores import errors, normalised, rms
 from rovsim.simulation.replay import OPEN_LOOP, ReplaySettings, replay
 
 SCHEMA = "rovsim.mistakes/1"
