@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from rovsim.diagnosing import Runs
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.measurement.campaign import load_campaign

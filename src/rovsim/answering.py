@@ -6,7 +6,7 @@ from typing import Any, Sequence
 from rovsim.config import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted, reported, staged
-from rovsim.diagnosing import STAGES, Diagnosed, diagnosed
+from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, diagnosed
 from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import Model, read_model
 from rovsim.evaluation.budget import Budget, budget

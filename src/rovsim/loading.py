@@ -8,7 +8,7 @@ from typing import Any
 from rovsim.config import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
-from rovsim.diagnosing import Runs
+from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.model import Model, load_model
 from rovsim.dynamics.vehicle import Vehicle, campaign_vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign

@@ -7,8 +7,8 @@ import pytest
 
 from chromium import DESK, started
 from rovsim import AXES
-from rovsim.adding import read_diagnosis
 from rovsim.cli import main
+from rovsim.diagnosis.apply import read_diagnosis
 from rovsim.dynamics.model import read_model
 from rovsim.ui.traces import HORIZONS
 

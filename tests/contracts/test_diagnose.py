@@ -2,10 +2,10 @@
 
 import pytest
 
-from rovsim.adding import added
 from rovsim.cli import main
 from rovsim.config import compose
 from rovsim.core.files import read_json, read_yaml
+from rovsim.diagnosis.apply import added
 from rovsim.evaluation.ladder import floor_step, step, with_diagnosis
 from rovsim.ui import tasks
 

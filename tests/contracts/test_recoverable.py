@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from rovsim.config import compose
-from rovsim.diagnosis.candidates import candidates
 from rovsim.diagnosis.diagnose import FIRST_NOISE
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.fit import fit
-from rovsim.diagnosis.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.selection.candidates import candidates
+from rovsim.diagnosis.selection.fit import fit
 from rovsim.dynamics.effects import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.hidden.flight import fly

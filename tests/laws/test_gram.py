@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.gram import coarse, greedy, inner_products, joint, solved, without
+from rovsim.diagnosis.observer.least_squares import (
+    coarse,
+    greedy,
+    inner_products,
+    joint,
+    solved,
+    without,
+)
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.linalg import solve_discrete_are
 from scipy.signal import lfilter
 
-from rovsim.diagnosis.kalman import (
+from rovsim.diagnosis.observer.kalman import (
     LEAST_DRIVING,
     SOLVABLE,
     axis_filter,
@@ -17,7 +17,7 @@ from rovsim.diagnosis.kalman import (
     filter_kept,
     sum_of_squares,
 )
-from rovsim.diagnosis.noise import Noise, Tuning, fit_noise
+from rovsim.diagnosis.observer.noise import Noise, Tuning, fit_noise
 
 H = 0.01
 noises = st.tuples(

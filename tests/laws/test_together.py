@@ -4,12 +4,12 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.diagnosis.advice import next_experiment
+from rovsim.diagnosis.checks.identifiability import known_together
 from rovsim.diagnosis.diagnose import Diagnosis
-from rovsim.diagnosis.fit import Fit
-from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.noise import Noise
-from rovsim.diagnosis.nominal import uncertain
-from rovsim.diagnosis.together import known_together
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.selection.fit import Fit
+from rovsim.diagnosis.selection.nominal import uncertain
 from rovsim.dynamics.effects import effect
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle

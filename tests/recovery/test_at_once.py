@@ -5,16 +5,16 @@ import pytest
 
 from flown import watched
 from rovsim import AXES
-from rovsim.diagnosis.at_once import at_once
-from rovsim.diagnosis.candidates import candidates
-from rovsim.diagnosis.desk import Desk
+from rovsim.diagnosis.checks.identifiability import known_together
 from rovsim.diagnosis.diagnose import FIRST_NOISE
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.library import library
-from rovsim.diagnosis.replayed import Replays, replayed
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.selection.candidates import candidates
+from rovsim.diagnosis.selection.joint_fit import at_once
+from rovsim.diagnosis.selection.replay_fit import Replays, replayed
+from rovsim.diagnosis.selection.sensitivities import library
+from rovsim.diagnosis.selection.workspace import Desk
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.diagnosis.together import known_together
 from rovsim.dynamics.model import EffectEntry
 from rovsim.simulation.synthetic_tank.settings import Log
 

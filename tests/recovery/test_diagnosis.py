@@ -6,7 +6,7 @@ import numba
 import pytest
 
 from rovsim.core.files import read_yaml
-from rovsim.diagnosis.content import SCHEMA
+from rovsim.diagnosis.result import SCHEMA
 from rovsim.hidden.asking import diagnosis
 from rovsim.hidden.flight import fly
 from rovsim.hidden.suites import combination, nothing

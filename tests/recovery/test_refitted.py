@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flown import watched
-from rovsim.diagnosis.refitted import refitted
+from rovsim.diagnosis.selection.refit_nominal import refitted
 from rovsim.dynamics.model import EffectEntry
 
 

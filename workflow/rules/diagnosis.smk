@@ -20,7 +20,7 @@ rule diagnose:
     priority: 10  # most of the study waits for it
     params:
         settings=study.section("search", "signals", "replay", "seed"),
-        code=study.code("diagnosing", "dynamics.effects"),
+        code=study.code("diagnosis.of_campaign", "dynamics.effects"),
     script:
         "../scripts/diagnose.py"
 
@@ -36,7 +36,7 @@ rule add:
     benchmark:
         f"{R}/benchmarks/add.tsv"
     params:
-        code=study.code("adding", "dynamics.effects"),
+        code=study.code("diagnosis.apply", "dynamics.effects"),
     script:
         "../scripts/add.py"
 
@@ -54,6 +54,6 @@ rule refit:
         f"{R}/benchmarks/refit.tsv"
     params:
         settings=study.section("replay"),
-        code=study.code("diagnosis.refitted", "diagnosing", "dynamics.effects"),
+        code=study.code("diagnosis.selection.refit_nominal", "diagnosis.of_campaign", "dynamics.effects"),
     script:
         "../scripts/refit.py"

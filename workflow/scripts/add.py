@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.adding import added, read_diagnosis
+from rovsim.diagnosis.apply import added, read_diagnosis
 from rovsim.jobs import job
 
 

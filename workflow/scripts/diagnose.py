@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
-from rovsim.diagnosing import Runs, diagnosed
+from rovsim.diagnosis.of_campaign import Runs, diagnosed
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle

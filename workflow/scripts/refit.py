@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from rovsim.core.schema import checked
-from rovsim.diagnosing import Runs
-from rovsim.diagnosis.refitted import refitted
+from rovsim.diagnosis.of_campaign import Runs
+from rovsim.diagnosis.selection.refit_nominal import refitted
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.jobs import job

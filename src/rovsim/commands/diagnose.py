@@ -13,7 +13,7 @@ from rovsim.answering import diagnose
 from rovsim.config import Settings
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
-from rovsim.diagnosing import Diagnosed
+from rovsim.diagnosis.of_campaign import Diagnosed
 from rovsim.evidence import Evidence
 from rovsim.loading import Measured, measured, models, results_folder
 from rovsim.provenance import provenance

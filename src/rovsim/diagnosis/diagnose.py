@@ -16,22 +16,22 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim import AXES
-from rovsim.diagnosis.at_once import at_once
-from rovsim.diagnosis.candidates import candidates
-from rovsim.diagnosis.desk import Desk, proposals
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.fit import REACH, Fit, fit
-from rovsim.diagnosis.heldout import held_out_gain
-from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.leftover import Structure, leftover
-from rovsim.diagnosis.library import Library, library, remaining_noise
-from rovsim.diagnosis.noise import Noise
-from rovsim.diagnosis.ranking import Ranked, Selected, ranking, selected
-from rovsim.diagnosis.replayed import replayed
-from rovsim.diagnosis.search import Rival, matters, search
+from rovsim.diagnosis.checks.imitation import unstretched
+from rovsim.diagnosis.checks.residual_structure import Structure, leftover
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.selection.candidates import candidates
+from rovsim.diagnosis.selection.fit import REACH, Fit, fit
+from rovsim.diagnosis.selection.held_out import held_out_gain
+from rovsim.diagnosis.selection.joint_fit import at_once
+from rovsim.diagnosis.selection.ranking import Ranked, Selected, ranking, selected
+from rovsim.diagnosis.selection.replay_fit import replayed
+from rovsim.diagnosis.selection.search import Rival, matters, search
+from rovsim.diagnosis.selection.sensitivities import Library, library, remaining_noise
+from rovsim.diagnosis.selection.workspace import Desk, proposals
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.diagnosis.stretched import unstretched
-from rovsim.diagnosis.watch import Watch
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 from rovsim.measurement.recording.quality import EXCITED

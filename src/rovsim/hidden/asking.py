@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from rovsim.config import compose
-from rovsim.diagnosing import diagnosed
+from rovsim.diagnosis.of_campaign import diagnosed
 from rovsim.dynamics.model import nominal
 from rovsim.loading import measured
 

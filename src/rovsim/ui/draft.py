@@ -6,7 +6,7 @@ from typing import Any, Mapping
 
 import numpy as np
 
-from rovsim.adding import entries_of, extended
+from rovsim.diagnosis.apply import entries_of, extended
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.dynamics.model import EffectEntry, Model, Value

@@ -7,10 +7,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
 
-from rovsim.adding import read_diagnosis
 from rovsim.config import Settings, compose
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json
+from rovsim.diagnosis.apply import read_diagnosis
 from rovsim.dynamics.model import BUILT_IN, Model, read_model, zero_acceleration
 from rovsim.evaluation.error_conditions import Judged, judged
 from rovsim.evaluation.ladder import EFFECTS, ladder, step, with_diagnosis
@@ -85,7 +85,9 @@ class Workbench:
             content.update(path.read_bytes())
         content.update(self.settings.diagnosing.model_dump_json().encode())
         content.update(json.dumps(self.base.content(), sort_keys=True).encode())
-        content.update(digest("rovsim.diagnosing", effects=self.settings.effect_files).encode())
+        content.update(
+            digest("rovsim.diagnosis.of_campaign", effects=self.settings.effect_files).encode()
+        )
         return self.out / content.hexdigest()[:12] / "diagnosis.json"
 
     @cached_property

@@ -7,9 +7,9 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.noise import Tuning
-from rovsim.diagnosis.strangers import STRANGERS
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.noise import Tuning
+from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.unlisted_drag import STRANGERS
 from rovsim.dynamics.actuation import Between, Thrust
 from rovsim.dynamics.body import packed
 from rovsim.dynamics.effects import catalogue

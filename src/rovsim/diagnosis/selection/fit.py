@@ -6,10 +6,10 @@ from typing import Protocol, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.gram import inner_products, solved
-from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.least_squares import inner_products, solved
+from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.model import Model
 
 MOST_ITERATIONS = 12

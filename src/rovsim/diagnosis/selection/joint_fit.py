@@ -12,11 +12,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.desk import Desk
-from rovsim.diagnosis.fit import REACH, Fit
-from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.nominal import DRAG, uncertain
-from rovsim.diagnosis.search import Rival, without_parameters
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.selection.fit import REACH, Fit
+from rovsim.diagnosis.selection.nominal import DRAG, uncertain
+from rovsim.diagnosis.selection.search import Rival, without_parameters
+from rovsim.diagnosis.selection.workspace import Desk
 from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
 from rovsim.dynamics.model import Model
 

@@ -6,7 +6,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.hypothesis import Term
+from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.dynamics.effects import effect
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model

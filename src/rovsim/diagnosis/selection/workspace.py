@@ -12,12 +12,12 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.fit import Fit, fit
-from rovsim.diagnosis.gram import Gain, greedy, inner_products, joint, without
-from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.library import Library, remaining_noise
-from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.least_squares import Gain, greedy, inner_products, joint, without
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.selection.fit import Fit, fit
+from rovsim.diagnosis.selection.sensitivities import Library, remaining_noise
 from rovsim.diagnosis.settings import SearchSettings
 
 TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed

@@ -3,10 +3,10 @@
 from typing import Any, Mapping, Sequence
 
 from rovsim.diagnosis.advice import next_experiment
+from rovsim.diagnosis.checks.identifiability import known_together
 from rovsim.diagnosis.diagnose import Diagnosis, Ranked, Selected
-from rovsim.diagnosis.hypothesis import Term
-from rovsim.diagnosis.search import SURE, Rival
-from rovsim.diagnosis.together import known_together
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.diagnosis.selection.search import SURE, Rival
 
 SCHEMA = "rovsim.diagnosis/1"
 LISTED = 10  # effects of the ranking

@@ -7,11 +7,11 @@ from typing import Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.gram import coarse
-from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.noise import Noise, Tuning, fit_noise, tuning, whitened
-from rovsim.diagnosis.observe import damping_rates, observe
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.innovations import damping_rates, observe
+from rovsim.diagnosis.observer.least_squares import coarse
+from rovsim.diagnosis.observer.noise import Noise, Tuning, fit_noise, tuning, whitened
+from rovsim.diagnosis.observer.observed_run import Watch
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 

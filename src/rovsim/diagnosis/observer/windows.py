@@ -9,8 +9,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observe import batch, remembered
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.innovations import batch, remembered
+from rovsim.diagnosis.observer.observed_run import Watch
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.body import packed
 from rovsim.dynamics.engine.parallel import run_jobs

@@ -10,11 +10,11 @@ from typing import Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.candidates import Candidate
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.gram import inner_products
-from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.noise import Noise
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.least_squares import inner_products
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.selection.candidates import Candidate
 
 ROUNDS = 3  # of fitting the noise and what it leaves in turns
 SHRINK = 1e-4  # of each column's own square: parallel candidates share

@@ -6,12 +6,12 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.desk import Desk, Proposal
-from rovsim.diagnosis.fit import Fit
-from rovsim.diagnosis.hypothesis import Term
-from rovsim.diagnosis.search import Rival
-from rovsim.diagnosis.watch import Watch
-from rovsim.diagnosis.windows import window_errors
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.windows import window_errors
+from rovsim.diagnosis.selection.fit import Fit
+from rovsim.diagnosis.selection.search import Rival
+from rovsim.diagnosis.selection.workspace import Desk, Proposal
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 

@@ -15,11 +15,11 @@ from scipy.signal import lfilter
 from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
-from rovsim.diagnosis.gram import solved
-from rovsim.diagnosis.kalman import AxisFilter
-from rovsim.diagnosis.noise import Noise, Tuning
-from rovsim.diagnosis.shapes import shapes
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.checks.regressors import shapes
+from rovsim.diagnosis.observer.kalman import AxisFilter
+from rovsim.diagnosis.observer.least_squares import solved
+from rovsim.diagnosis.observer.noise import Noise, Tuning
+from rovsim.diagnosis.observer.observed_run import Watch
 from rovsim.dynamics.actuation import ThrustPath
 
 FALSE_ALARM = 0.002  # of all looks together, for each of the three kinds

@@ -6,10 +6,10 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.desk import Desk, Proposal, chance, proposals
-from rovsim.diagnosis.fit import Fit
-from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.windows import window_errors
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.windows import window_errors
+from rovsim.diagnosis.selection.fit import Fit
+from rovsim.diagnosis.selection.workspace import Desk, Proposal, chance, proposals
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters

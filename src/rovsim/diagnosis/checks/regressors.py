@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 
 from rovsim import AXES
 from rovsim.core.rotations import matrix
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.observed_run import Watch
 
 SMOOTH = 0.02  # m/s or rad/s: a sign that turns over within the noise of the velocity
 # The measured velocity at an instant holds some noise of the readings around it, and so would agree

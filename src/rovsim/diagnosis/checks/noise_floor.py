@@ -12,9 +12,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core import rotations
-from rovsim.diagnosis.noise import Noise
-from rovsim.diagnosis.watch import Watch
-from rovsim.diagnosis.windows import SECONDS, differences
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.windows import SECONDS, differences
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalised, rms

@@ -17,8 +17,8 @@ from numpy import ndarray as Array
 from scipy.optimize import minimize
 
 from rovsim import AXES
-from rovsim.diagnosis.kalman import AxisFilter, axis_filter, filter_kept, sum_of_squares
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.kalman import AxisFilter, axis_filter, filter_kept, sum_of_squares
+from rovsim.diagnosis.observer.observed_run import Watch
 from rovsim.dynamics.engine.parallel import on_cores
 
 # Eddies as large as the vehicle (0.2 to 0.5 m) pass it within 0.3 to 3 s at 0.15 to 0.7 m/s.

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from rovsim.diagnosis.fit import Fit
+from rovsim.diagnosis.selection.fit import Fit
 
 ALIKE = 0.95  # correlation; each would be three times as sure if the other were known
 UNSURE = 2.0  # standard deviations: the value could as well be that of absence

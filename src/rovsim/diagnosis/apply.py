@@ -7,7 +7,7 @@ from typing import Any, Mapping, Sequence
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_json
 from rovsim.core.schema import checked
-from rovsim.diagnosis.content import SCHEMA
+from rovsim.diagnosis.result import SCHEMA
 from rovsim.dynamics.model import EffectEntry, Model, load_model, model_of
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Sequence
 
 from rovsim.core.errors import BadInput
-from rovsim.diagnosis.hypothesis import Term
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.diagnosis.observer.observed_run import Watch
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Effect
 

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Mapping, Sequence
 
-from rovsim.diagnosis.content import content
+from rovsim.diagnosis.checks.noise_floor import noise_floor
 from rovsim.diagnosis.diagnose import Diagnosis, diagnose
-from rovsim.diagnosis.floor import noise_floor
+from rovsim.diagnosis.observer.observed_run import Watch, watch
+from rovsim.diagnosis.result import content
 from rovsim.diagnosis.settings import DiagnosisSettings
-from rovsim.diagnosis.watch import Watch, watch
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions import content as where_content
 from rovsim.evaluation.error_conditions import judged

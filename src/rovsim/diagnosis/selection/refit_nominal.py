@@ -10,11 +10,11 @@ from typing import Sequence
 
 from rovsim import AXES
 from rovsim.diagnosis.diagnose import FIRST_NOISE, enough, usable
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.fit import fit
-from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.nominal import DRAG, ONE_GAIN, kept_between, uncertain
-from rovsim.diagnosis.watch import Watch
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.selection.fit import fit
+from rovsim.diagnosis.selection.nominal import DRAG, ONE_GAIN, kept_between, uncertain
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.effects import effect
 from rovsim.dynamics.model import Model

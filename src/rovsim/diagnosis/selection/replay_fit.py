@@ -14,13 +14,13 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.evidence import Observatory, linearised, of_possible
-from rovsim.diagnosis.fit import REACH, Fit, descend, judged
-from rovsim.diagnosis.gram import inner_products, solved
-from rovsim.diagnosis.hypothesis import Hypothesis
-from rovsim.diagnosis.noise import Noise
-from rovsim.diagnosis.watch import Watch
-from rovsim.diagnosis.windows import differences, readings
+from rovsim.diagnosis.observer.filter_bank import Observatory, linearised, of_possible
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.least_squares import inner_products, solved
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.windows import differences, readings
+from rovsim.diagnosis.selection.fit import REACH, Fit, descend, judged
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 from rovsim.simulation.replay import windows

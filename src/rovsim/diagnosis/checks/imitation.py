@@ -7,12 +7,12 @@ those go, and the verdict says that something is unexplained.
 from dataclasses import replace
 
 from rovsim import AXES
-from rovsim.diagnosis.desk import Desk
-from rovsim.diagnosis.fit import Fit
-from rovsim.diagnosis.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.leftover import Structure
-from rovsim.diagnosis.search import SURE
-from rovsim.diagnosis.strangers import STRANGERS
+from rovsim.diagnosis.checks.residual_structure import Structure
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.unlisted_drag import STRANGERS
+from rovsim.diagnosis.selection.fit import Fit
+from rovsim.diagnosis.selection.search import SURE
+from rovsim.diagnosis.selection.workspace import Desk
 from rovsim.dynamics.effects.base import Wrench
 
 IMITATORS = ("linear_damping", "quadratic_damping")

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.evidence import Observatory
-from rovsim.diagnosis.fit import Fit
-from rovsim.diagnosis.gram import inner_products, solved
-from rovsim.diagnosis.noise import Noise
-from rovsim.diagnosis.watch import blocks
+from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.least_squares import inner_products, solved
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.observed_run import blocks
+from rovsim.diagnosis.selection.fit import Fit
 
 FOLDS = 6
 
