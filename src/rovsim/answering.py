@@ -12,11 +12,11 @@ from rovsim.dynamics.model import Model, read_model
 from rovsim.evaluation.budget import Budget, budget
 from rovsim.evaluation.error_conditions import content, judged
 from rovsim.evaluation.scores import comparison, growth, score
-from rovsim.evidence import Evidence
 from rovsim.learning.pairs import samples, train_residual, training_runs
 from rovsim.loading import Measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.provenance import provenance
+from rovsim.reporting.report_data import Evidence
 from rovsim.simulation.replay import Replay, replay
 
 

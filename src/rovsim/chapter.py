@@ -6,10 +6,10 @@ from pathlib import Path
 
 from rovsim.core.errors import BadInput
 from rovsim.evaluation.ladder import EFFECTS
-from rovsim.evidence import ONCE
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign
+from rovsim.reporting.report_data import ONCE
 from rovsim.study import PHYSICS, Study
 
 

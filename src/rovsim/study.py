@@ -9,11 +9,11 @@ from rovsim.config import Settings, compose
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import use_effect_files
 from rovsim.evaluation.ladder import EFFECTS
-from rovsim.evidence import PER_RUN
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.provenance import digest, own_digest, provenance
+from rovsim.reporting.report_data import PER_RUN
 from rovsim.simulation.synthetic_tank.campaign import SEALED, describe
 
 BASELINES = ("zero_acceleration", "nominal")

@@ -7,7 +7,7 @@ from rovsim.bench.accuracy import _left
 from rovsim.bench.data import Pairs, fitted, unfading
 from rovsim.bench.inference import Clock, Effort, _neighbours, _processes
 from rovsim.bench.page import text, write_page
-from rovsim.report.marked import BEGIN, END
+from rovsim.reporting.html.marked import BEGIN, END
 
 FEW = Effort(calls=5, warmup=1, seconds=0.05)
 

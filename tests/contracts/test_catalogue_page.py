@@ -9,11 +9,11 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.figures.signature import signature, write
-from rovsim.gallery.flight import blocks, fly, found, seen, settings
-from rovsim.gallery.page import PAGE, PICTURES, entry, page
 from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.reporting.catalogue.flight import blocks, fly, found, seen, settings
+from rovsim.reporting.catalogue.page import PAGE, PICTURES, entry, page
+from rovsim.reporting.figures.signature import signature, write
 from rovsim.simulation.replay import ReplaySettings
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -8,9 +8,9 @@ import pytest
 from matplotlib.patches import Rectangle
 
 from rovsim.core.errors import BadInput
-from rovsim.evidence import ONCE, PER_RUN
-from rovsim.figures import SECTIONS, kind, kinds
-from rovsim.figures.style import save
+from rovsim.reporting.figures import SECTIONS, kind, kinds
+from rovsim.reporting.figures.style import save
+from rovsim.reporting.report_data import ONCE, PER_RUN
 from synthetic_study import MODELS, study
 
 EVERY = pytest.mark.parametrize("name", sorted(kinds()))

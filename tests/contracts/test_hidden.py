@@ -17,7 +17,7 @@ from rovsim.hidden.run import answers, place, run
 from rovsim.hidden.score import matching, score
 from rovsim.hidden.suites import FAMILIES, suite
 from rovsim.hidden.summary import detection_limit, judged, summary
-from rovsim.report.marked import BEGIN, END, replace_tables
+from rovsim.reporting.html.marked import BEGIN, END, replace_tables
 
 SHORT = {
     "duration": 2.0,

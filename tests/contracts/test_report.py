@@ -10,13 +10,13 @@ import pytest
 
 from rovsim import AXES
 from rovsim.core.files import write_json
-from rovsim.figures import kind
-from rovsim.figures.style import save
-from rovsim.report import chapter_page, page, published, terminal
-from rovsim.report.marked import BEGIN, END
-from rovsim.report.speed import timing_sentences
-from rovsim.report.verdict import verdict
-from rovsim.tables import errors_table, escaped, ladder_table
+from rovsim.reporting.figures import kind
+from rovsim.reporting.figures.style import save
+from rovsim.reporting.html import chapter_page, page, published, terminal
+from rovsim.reporting.html.marked import BEGIN, END
+from rovsim.reporting.html.speed import timing_sentences
+from rovsim.reporting.html.verdict import verdict
+from rovsim.reporting.tables import errors_table, escaped, ladder_table
 from synthetic_study import study
 
 JOINT = ["linear_damping.surge", "added_mass.surge"]

@@ -70,7 +70,7 @@ def test_a_campaign_that_cannot_be_read_is_one_message(tmp_path):
 
 def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench, monkeypatch):
     drawn = []
-    monkeypatch.setattr("rovsim.report.folder.present", lambda *given: drawn.append(given))
+    monkeypatch.setattr("rovsim.reporting.html.folder.present", lambda *given: drawn.append(given))
     here = Workbench(bench.settings, bench.data, dict(bench.models), dict(bench.paths))
     file = tasks.learn(here.only("nominal"), here.out / "knn_6dof.yaml")
     here.add(read_model(file), file)

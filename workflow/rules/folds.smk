@@ -121,7 +121,7 @@ if chapter.published:
             f"{R}/benchmarks/against_published.tsv"
         params:
             runs=chapter.folds,
-            code=study.code("evaluation.held_out.published", "tables"),
+            code=study.code("evaluation.held_out.published", "reporting.tables"),
         script:
             "../scripts/against_published.py"
 

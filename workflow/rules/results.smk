@@ -1,4 +1,4 @@
-from rovsim.evidence import ONCE, PER_RUN
+from rovsim.reporting.report_data import ONCE, PER_RUN
 
 # Only a chapter with published numbers has marks.
 MARKS = [f"{R}/marks.json"] if chapter.published else []
@@ -60,7 +60,7 @@ for figure in chapter.once:
         params:
             figure=figure,
             runs=study.runs(),
-            code=study.code(f"figures.{figure}", "figures.style", "evidence"),
+            code=study.code(f"reporting.figures.{figure}", "reporting.figures.style", "reporting.report_data"),
         script:
             "../scripts/figure_of_study.py"
 
@@ -88,7 +88,7 @@ for figure in PER_RUN:
             f"{R}/benchmarks/figures/{figure}-{{run}}.tsv"
         params:
             figure=figure,
-            code=study.code(f"figures.{figure}", "figures.style", "evidence"),
+            code=study.code(f"reporting.figures.{figure}", "reporting.figures.style", "reporting.report_data"),
         script:
             "../scripts/figure_of_run.py"
 
@@ -110,7 +110,7 @@ rule tables:
         f"{R}/benchmarks/tables.tsv"
     params:
         folder=f"{R}/tables",
-        code=study.code("tables"),
+        code=study.code("reporting.tables"),
     script:
         "../scripts/tables.py"
 
@@ -139,7 +139,7 @@ rule report:
         campaign=study.name,
         runs=study.runs(),
         provenance=study.provenance(),
-        code=study.code("report", "evidence"),
+        code=study.code("reporting.html", "reporting.report_data"),
     script:
         "../scripts/report.py"
 

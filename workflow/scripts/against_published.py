@@ -6,7 +6,7 @@ from rovsim.core.files import read_json, write_json
 from rovsim.evaluation.held_out.published import against, demanded, read_published
 from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
-from rovsim.tables import marks_table
+from rovsim.reporting.tables import marks_table
 
 
 def main(

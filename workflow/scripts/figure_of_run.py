@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from rovsim.evaluation.budget import Budget
-from rovsim.evidence import Evidence, arguments
-from rovsim.figures import kind
-from rovsim.figures.style import save
 from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.figures import kind
+from rovsim.reporting.figures.style import save
+from rovsim.reporting.report_data import Evidence, arguments
 from rovsim.simulation.replay import Replay
 
 

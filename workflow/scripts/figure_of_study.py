@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from rovsim.core.files import read_json
-from rovsim.evidence import Evidence, arguments
-from rovsim.figures import kind
-from rovsim.figures.style import save
 from rovsim.jobs import job
+from rovsim.reporting.figures import kind
+from rovsim.reporting.figures.style import save
+from rovsim.reporting.report_data import Evidence, arguments
 
 
 def main(*, figure: str, contents: dict[str, Path], quality: dict[str, Path], out: Path) -> None:

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from rovsim.core.files import read_json
-from rovsim.evidence import ONCE, about
 from rovsim.jobs import job
-from rovsim.report import page
+from rovsim.reporting.html import page
+from rovsim.reporting.report_data import ONCE, about
 
 
 def main(

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rovsim.core.files import read_json
 from rovsim.jobs import job
-from rovsim.tables import errors_table, ladder_table
+from rovsim.reporting.tables import errors_table, ladder_table
 
 QUANTITIES = ("velocity_rmse", "velocity_mae", "acceleration_rmse")
 

@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from rovsim.bench.plots import draw_accuracy, draw_sizes
-from rovsim.figures.marks import significant
-from rovsim.figures.style import save
-from rovsim.report.marked import replace_tables, table
+from rovsim.reporting.figures.marks import significant
+from rovsim.reporting.figures.style import save
+from rovsim.reporting.html.marked import replace_tables, table
 
 PLOTS = {
     "bench_sizes": "Median and 99.9th percentile of one prediction against the number of points.",

@@ -4,8 +4,8 @@ from typing import Any, Mapping
 
 from matplotlib.figure import Figure
 
-from rovsim.figures.marks import legend, plain_log
-from rovsim.figures.style import sheet, styled
+from rovsim.reporting.figures.marks import legend, plain_log
+from rovsim.reporting.figures.style import sheet, styled
 
 # One colour for us, the Okabe-Ito colours for the libraries
 SIZES = {

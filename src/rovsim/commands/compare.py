@@ -14,10 +14,10 @@ from rovsim.config import Settings
 from rovsim.core.files import write_json
 from rovsim.evaluation.budget import totals
 from rovsim.evaluation.ladder import step
-from rovsim.evidence import PER_RUN, Evidence
 from rovsim.loading import measured, models, results_folder
 from rovsim.provenance import provenance
-from rovsim.report.terminal import compared
+from rovsim.reporting.html.terminal import compared
+from rovsim.reporting.report_data import PER_RUN, Evidence
 from rovsim.saying import say
 
 
@@ -39,7 +39,7 @@ def run(settings: Settings) -> None:
 
 
 def _present(out: Path, campaign: str, evidence: Evidence, settings: Settings) -> None:
-    from rovsim.report.folder import present
+    from rovsim.reporting.html.folder import present
 
     once = ("where", "where_map", "error_by_axis", "error_growth", "excitation")
     wanted = [(figure, "") for figure in once]

@@ -14,10 +14,10 @@ from rovsim.config import Settings
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.of_campaign import Diagnosed
-from rovsim.evidence import Evidence
 from rovsim.loading import Measured, measured, models, results_folder
 from rovsim.provenance import provenance
-from rovsim.report import terminal
+from rovsim.reporting.html import terminal
+from rovsim.reporting.report_data import Evidence
 from rovsim.saying import say
 from rovsim.tracking import track_diagnosis
 
@@ -42,7 +42,7 @@ def run(settings: Settings) -> None:
 
 
 def _present(out: Path, data: Measured, found: Diagnosed, settings: Settings) -> list[Path]:
-    from rovsim.report.folder import present
+    from rovsim.reporting.html.folder import present
 
     evidence = Evidence(
         {}, {}, ladder=found.content["ladder"], quality=data.quality, where=found.where,

@@ -19,7 +19,7 @@ from rovsim.hidden.run import answers
 from rovsim.hidden.run import run as run_cases
 from rovsim.hidden.suites import suite
 from rovsim.hidden.summary import judged, summary
-from rovsim.report.marked import replace_tables
+from rovsim.reporting.html.marked import replace_tables
 from rovsim.saying import say
 
 SCHEMA = "rovsim.hidden.summary/1"

@@ -3,7 +3,7 @@
 from typing import Any, Mapping, Sequence
 
 from rovsim.hidden.case import SEEDS
-from rovsim.report import marked
+from rovsim.reporting.html import marked
 
 KIND_COLUMNS = {
     "cases": "cases", "verdict": "verdict right", "first": "first name right",

@@ -9,8 +9,8 @@ from rovsim import AXES
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.model import Model
-from rovsim.figures.marks import significant
-from rovsim.gallery.page import unit
+from rovsim.reporting.catalogue.page import unit
+from rovsim.reporting.figures.marks import significant
 from rovsim.ui.draft import reach
 from rovsim.ui.parts import Slider, computed, heading, onward, section, text, tile, tile_html
 from rovsim.ui.traces import Traces, excited, panels

@@ -6,7 +6,7 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.figures.palette import Look, looks
+from rovsim.reporting.figures.palette import Look, looks
 
 POINTS = 1000  # a curve shows at most; a screen is not wider
 INK, SOFT, LINE, MARK = "#1a1a1a", "#555555", "#d9d9d9", "#D55E00"

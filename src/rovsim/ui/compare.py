@@ -7,7 +7,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.figures.marks import VELOCITY_UNITS
+from rovsim.reporting.figures.marks import VELOCITY_UNITS
 from rovsim.ui import path
 from rovsim.ui.charts import styles
 from rovsim.ui.parts import Slider, cell, chart, computed, heading, onward, section, table, text

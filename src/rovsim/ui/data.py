@@ -3,7 +3,7 @@
 from typing import Any
 
 from rovsim import AXES
-from rovsim.figures.marks import VELOCITY_UNITS
+from rovsim.reporting.figures.marks import VELOCITY_UNITS
 from rovsim.ui.charts import INK, LINE, MARK, SOFT
 from rovsim.ui.parts import cell, chart, heading, section, table, text, words
 from rovsim.ui.workbench import Workbench

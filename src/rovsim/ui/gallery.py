@@ -9,7 +9,7 @@ from nicegui import ui
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.gallery.page import PICTURES, chaptered, unit
+from rovsim.reporting.catalogue.page import PICTURES, chaptered, unit
 from rovsim.ui.parts import computed, formula, heading, section, table, text, words
 from rovsim.ui.workbench import Workbench
 
@@ -75,8 +75,8 @@ def _about(signature: Signature) -> str:
 
 
 def _draw(cls: type[Effect], path: Path) -> None:
-    from rovsim.figures.signature import signature, write
-    from rovsim.gallery.flight import seen, settings
+    from rovsim.reporting.catalogue.flight import seen, settings
+    from rovsim.reporting.figures.signature import signature, write
 
     assert cls.signature is not None
     write(signature(seen(cls.signature, settings(cls, cls.signature))), path)

@@ -6,8 +6,8 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.evaluation.ladder import FLOOR
-from rovsim.figures.marks import VELOCITY_UNITS, number, short, significant
-from rovsim.figures.palette import looks
+from rovsim.reporting.figures.marks import VELOCITY_UNITS, number, short, significant
+from rovsim.reporting.figures.palette import looks
 from rovsim.ui.charts import INK, SOFT
 from rovsim.ui.parts import cell, chart, computed, heading, section, table, text
 from rovsim.ui.workbench import Workbench

@@ -7,7 +7,7 @@ from typing import Any, Callable, Sequence
 
 from nicegui import ui
 
-from rovsim.figures.marks import number, significant
+from rovsim.reporting.figures.marks import number, significant
 
 FONT = "Roboto, system-ui, sans-serif"
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.figures.palette import Look
+from rovsim.reporting.figures.palette import Look
 from rovsim.ui.charts import LINE, POINTS, SOFT, line_style
 
 WIDE = 1.6  # width over height of the picture (.path in style.css)

@@ -9,9 +9,9 @@ from rovsim.config import Settings
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.dynamics.effects import use_effect_files
-from rovsim.evidence import PER_RUN
 from rovsim.loading import measured, models
 from rovsim.provenance import provenance
+from rovsim.reporting.report_data import PER_RUN
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 ONCE = (
@@ -38,7 +38,7 @@ def learn(settings: Settings, path: Path) -> Path:
 
 def tell(settings: Settings, known: dict[str, Any], out: Path) -> Path:
     """Write comparison.json, where.json, what is `known` by name, and report.html; returns it."""
-    from rovsim.report.folder import present
+    from rovsim.reporting.html.folder import present
 
     use_effect_files(settings.effect_files)
     data = measured(settings)

@@ -7,8 +7,8 @@ from nicegui import ui
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.figures.marks import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.figures.marks import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.simulation.replay import Prediction
 from rovsim.ui.charts import Panel, cursor, height, series_data, styles, time_series
 from rovsim.ui.parts import chart

@@ -9,7 +9,7 @@ from nicegui import ui
 from rovsim import AXES
 from rovsim.evaluation.error_conditions import Judged, content
 from rovsim.evaluation.error_conditions.bins import Table
-from rovsim.figures.marks import ACCELERATION_UNITS
+from rovsim.reporting.figures.marks import ACCELERATION_UNITS
 from rovsim.ui.charts import INK, LINE, MARK, SOFT
 from rovsim.ui.parts import chart, computed, heading, onward, section, text
 from rovsim.ui.workbench import Workbench

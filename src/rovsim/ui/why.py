@@ -6,7 +6,7 @@ from typing import Any
 from nicegui import ui
 
 from rovsim.dynamics.effects import catalogue
-from rovsim.report.verdict import Missing, percent, verdict
+from rovsim.reporting.html.verdict import Missing, percent, verdict
 from rovsim.ui.gallery import picture
 from rovsim.ui.parts import bar, cell, formula, heading, onward, section, table, text, tile, words
 from rovsim.ui.workbench import Workbench

@@ -1,5 +1,0 @@
-"""The study's report: one HTML file that needs nothing else."""
-
-from rovsim.report.page import Picture, ReportInputs, render, write
-
-__all__ = ["Picture", "ReportInputs", "render", "write"]

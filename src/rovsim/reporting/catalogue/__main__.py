@@ -1,0 +1,28 @@
+"""Write the page and its pictures: python -m rovsim.reporting.catalogue [docs] [effect …]."""
+
+import sys
+from pathlib import Path
+
+from rovsim.core.files import write_text
+from rovsim.core.progress import reported
+from rovsim.dynamics.effects import built_in
+from rovsim.reporting.catalogue.flight import seen, settings
+from rovsim.reporting.catalogue.page import PAGE, PICTURES, page
+from rovsim.reporting.figures.signature import signature, write
+
+
+def main(docs: Path, names: list[str]) -> None:
+    """Write docs/catalogue.md, and the pictures of these effects (all if none is named)."""
+    known = {n: cls for n, cls in built_in().items() if cls.signature and n in (names or [n])}
+    with reported("drawing") as progress:
+        for k, (name, cls) in enumerate(known.items()):
+            progress(k, len(known))
+            if cls.signature:
+                look = seen(cls.signature, settings(cls, cls.signature))
+                write(signature(look), docs / PICTURES / f"{name}.png")
+        progress(len(known), len(known))
+    write_text(docs / PAGE, page(built_in()))
+
+
+if __name__ == "__main__":
+    main(Path((sys.argv[1:] or ["docs"])[0]), sys.argv[2:])

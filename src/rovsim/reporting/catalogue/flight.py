@@ -1,0 +1,98 @@
+"""One run in a small tank with an effect hidden, and what the nominal model misses of it."""
+
+import tempfile
+from pathlib import Path
+
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput, nearest
+from rovsim.dynamics.effects.base import Autopilot, Effect
+from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.model import EffectEntry, nominal
+from rovsim.evaluation.error_conditions import Blocks, blocks
+from rovsim.evaluation.error_conditions.bins import binned, stretches, table
+from rovsim.evaluation.error_conditions.conditions import Condition
+from rovsim.learning.pairs import samples
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings, clean
+from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.figures.marks import ACCELERATION_UNITS
+from rovsim.reporting.figures.signature import Seen
+from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
+from rovsim.simulation.synthetic_tank.settings import (
+    Box,
+    Camera,
+    Log,
+    TankRun,
+    TankSettings,
+    Turbulence,
+)
+
+RUN = TankRun(id="run", control="6dof", split="train")
+
+
+def settings(cls: type[Effect], signature: Signature) -> TankSettings:
+    """A calm tank small enough for walls and surface to matter, cameras better than usual."""
+    hidden = EffectEntry.model_validate({"effect": cls.id, "parameters": dict(signature.values)})
+    return TankSettings(
+        seed=3,
+        runs=(RUN,),
+        tank=Box(x=(0.0, 4.0), y=(0.0, 2.2), z=(0.0, 2.0)),
+        duration=120.0,
+        camera=Camera(
+            position_noise=1e-4, attitude_noise=3e-4, bursts_per_minute=0, outliers_per_minute=0
+        ),
+        log=Log(kind="demand" if issubclass(cls, Autopilot) else "pwm", missing=0.0),
+        turbulence=Turbulence(force=0.1, moment=0.004),
+        effects=(hidden,),
+    )
+
+
+def fly(tank: TankSettings) -> Motion:
+    """The run as it is measured from its raw exports."""
+    with tempfile.TemporaryDirectory() as folder:
+        make_campaign(tank, Path(folder) / "raw")
+        recording, _ = read_run(load_campaign(Path(folder) / "raw"), RUN.id)
+    return clean(recording, SignalSettings())
+
+
+def seen(signature: Signature, tank: TankSettings) -> Seen:
+    """What the nominal model misses in this tank, and what the hidden effect adds to it."""
+    motion, truth = fly(tank), true_model(tank)
+    missing, rest = (
+        blocks(motion, samples(model, motion, SignalSettings(), ReplaySettings()))
+        for model in (nominal(truth.vehicle), truth)
+    )
+    k = AXES.index(signature.axis)
+    condition, values = found(signature.condition, missing)
+    error, added = missing.error[:, k], missing.error[:, k] - rest.error[:, k]
+    stretch = stretches(missing, error)
+    cut = binned(condition, values, stretch)
+    missed, effect = (table(cut, x, stretch) for x in (error, added))
+    return Seen(signature, missed, effect, values, missing.time, error, added)
+
+
+def found(name: str, missing: Blocks) -> tuple[Condition, Array]:
+    """The condition of this name and its values (n,).
+
+    The measured accelerations are conditions here too: with calm water and good cameras their noise
+    is small. In a real run it is in the error as well, and the two would seem related.
+
+    Raises:
+        BadInput: there is none.
+    """
+    known = {c.name: (c, x) for c, x in missing.values.items()}
+    for axis, unit, measured in zip(AXES, ACCELERATION_UNITS, missing.measured.T, strict=True):
+        title = f"{axis} acceleration"
+        known[title] = Condition(title, unit, "acceleration", axis), measured
+    if name in known:
+        return known[name]
+    raise BadInput(
+        f"unknown condition '{name}'",
+        where="the signature of an effect",
+        expected=f"one of {', '.join(known)}",
+        remedy=nearest(name, known),
+    )

@@ -1,0 +1,98 @@
+"""Every held-out run and axis: our errors divided by the smallest that anybody published."""
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rovsim.evaluation.held_out.published import COUNTED, PUBLISHED
+from rovsim.evaluation.ladder import EFFECTS
+from rovsim.reporting.figures.marks import legend, note, nothing, number, short
+from rovsim.reporting.figures.palette import Look, looks
+from rovsim.reporting.figures.style import sheet, styled
+
+SECTION = "published"
+CAPTION = (
+    "Error on each held-out run and axis divided by its mark, the smallest error that anybody "
+    "published for it (1 = as good as the best of them, lower is better). In parentheses: axes "
+    "whose demand never moved. Models of every fold, residuals on top of effects only; the table "
+    "has all."
+)
+LABELS = {"acceleration_rmse": "acceleration RMSE", "velocity_mae": "velocity MAE"}
+SHAPES = "osD^vP*hX<>"
+LOWEST, HIGHEST = 0.25, 4.0  # a ratio beyond is drawn on the upper edge
+TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
+
+
+@styled()
+def draw(*, marks: Mapping[str, Any]) -> Figure:
+    """Draw the ratios of `marks.json`, one panel a metric."""
+    names = _shown(marks)
+    style = looks(names)
+    figure = sheet(60 + 60 * len(COUNTED))
+    for axes, metric in zip(figure.subplots(len(COUNTED), 1), COUNTED, strict=True):
+        cells = [cell for cell in marks.get("cells", []) if cell["metric"] == metric]
+        _panel(axes, cells, style)
+        axes.set_ylabel(f"{LABELS[metric]} / mark (–)")
+    legend(
+        figure, [Line2D([], [], label=short(n), **_look(k, style[n])) for k, n in enumerate(names)]
+    )
+    beyond = any(_ratio(c, n) > HIGHEST for c in marks.get("cells", []) for n in names)
+    note(figure, [f"On the upper edge: {HIGHEST:g} or more, or no value." if beyond else ""])
+    return figure
+
+
+def _shown(marks: Mapping[str, Any]) -> list[str]:
+    """Our models of every cell; of residuals those on top of effects, if there are any."""
+    cells = marks.get("cells", [])
+    ours = [n for n in marks.get("models", {}) if not n.startswith(PUBLISHED)]
+    whole = [n for n in ours if all(n in cell["ratios"] for cell in cells)]
+    stacked = {n.partition("+")[2] for n in whole if n.startswith(f"{EFFECTS}+")}
+    return [n for n in whole if n not in stacked]
+
+
+def _panel(axes: Axes, cells: Sequence[Mapping[str, Any]], style: Mapping[str, Look]) -> None:
+    if not cells:
+        nothing(axes, "nothing to compare with")
+        return
+    runs = list(dict.fromkeys(cell["run"] for cell in cells))
+    places = np.array([k + runs.index(cell["run"]) for k, cell in enumerate(cells)])
+    shown = np.array([[_ratio(cell, name) for name in style] for cell in cells])
+    for k, name in enumerate(style):
+        axes.plot(places, np.minimum(shown[:, k], HIGHEST), **_look(k, style[name]))
+    axes.axhline(1.0, color="#444444", linewidth=0.8)
+    _vertical(axes, float(np.nanmin(shown, initial=LOWEST)))
+    axes.set_xticks(places, [_label(cell) for cell in cells], rotation=90)
+    axes.tick_params(axis="x", length=0)
+    for run in runs:
+        middle = np.mean([x for x, c in zip(places, cells, strict=True) if c["run"] == run])
+        axes.text(middle, 1.01, f"run {short(run, 14)}", ha="center", va="bottom", fontsize=8,
+                  transform=axes.get_xaxis_transform())  # fmt: skip
+
+
+def _vertical(axes: Axes, lowest: float) -> None:
+    axes.set_yscale("log")
+    axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * HIGHEST)
+    axes.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])
+    axes.set_yticks([], minor=True)
+    axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * HIGHEST)
+
+
+def _ratio(cell: Mapping[str, Any], name: str) -> float:
+    """Ratio of one model; infinite where it has no value, NaN where it is not in the cell."""
+    if name not in cell["ratios"]:
+        return float("nan")
+    value = number(cell["ratios"][name])
+    return value if np.isfinite(value) else float("inf")
+
+
+def _label(cell: Mapping[str, Any]) -> str:
+    return cell["axis"] if cell["demanded"] else f"({cell['axis']})"
+
+
+def _look(k: int, look: Look) -> dict[str, Any]:
+    """A marker of its own for each model."""
+    return {"color": look.color, "marker": SHAPES[k % len(SHAPES)], "linestyle": "",
+            "markersize": 3.6, "markeredgewidth": 0.3, "markeredgecolor": "white"}  # fmt: skip

@@ -1,0 +1,107 @@
+"""Budget of forces: who pushes how much over time, and what is missing, axis by axis."""
+
+from typing import Mapping
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy import ndarray as Array
+
+from rovsim.reporting.figures.marks import legend, lines, note, significant
+from rovsim.reporting.figures.palette import Look
+from rovsim.reporting.figures.panels import plot_all, six_panels
+from rovsim.reporting.figures.series import excerpt
+from rovsim.reporting.figures.style import styled
+
+SECTION = "where"
+CAPTION = (
+    "Forces and moments of the model's parts at the measured states, and the force that is missing "
+    "(M a_res, black). Where a part looks like the missing force, turned over or not, the model "
+    "has too much or too little of it. Smaller parts are left out."
+)
+UNITS = ("N",) * 3 + ("N m",) * 3
+LETTERS = ("X", "Y", "Z", "K", "M", "N")
+SHOWN = 7  # parts drawn
+LENGTH = 20.0  # s: forces change faster than velocities
+SMOOTH = 0.5  # s: the missing force is twice differentiated noise before
+KNOWN = {
+    "thrusters": Look("#0072B2", "-"),
+    "quadratic damping": Look("#D55E00", (0, (4, 1.5))),
+    "linear damping": Look("#E69F00", (0, (2, 0.8))),
+    "weight and buoyancy": Look("#009E73", (0, (6, 1, 1, 1))),
+    "Coriolis": Look("#999999", (0, (1, 1.2))),
+    "added-mass Coriolis": Look("#999999", (0, (5, 2))),
+}
+ADDED = (Look("#CC79A7", "-"), Look("#56B4E9", "-"), Look("#CC79A7", (0, (4, 1.5))))
+
+
+@styled()
+def draw(*, time: Array, parts: Mapping[str, Array], missing: Array) -> Figure:
+    """Draw parts {name: (n, 6)} in N, N m and the missing force (n, 6) over `time` (n,) s."""
+    known = np.isfinite(missing).all(axis=1)
+    names = _largest(parts, known)
+    curves = {"missing": _smoothed(time, missing), **{n: parts[n] for n in names}}
+    curves = {n: np.where(known[:, None], v, np.nan) for n, v in curves.items()}
+    at = excerpt(time, np.where(known[:, None], parts.get("thrusters", missing), np.nan), LENGTH)
+    style = {"missing": Look("#000000", "-", width=1.5), **_looks(names)}
+    figure, axes = six_panels(LETTERS, UNITS)
+    drawn = {n: v[at] for n, v in curves.items()}
+    remarks = plot_all(axes, time[at], _common(drawn), style)
+    for k, axis in enumerate(axes):
+        axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
+        axis.set_ylim(*_limits([v[:, k] for v in drawn.values()]))
+    left = [n for n in parts if n not in names]
+    legend(figure, lines(style))
+    note(figure, [
+        f"Missing: mean over {significant(SMOOTH, 1)} s.",
+        f"Too small to be drawn: {', '.join(left)}." if left else "",
+        _excerpt_told(time, at),
+        *(r for r in remarks if r.startswith("No values")),
+    ])  # fmt: skip
+    return figure
+
+
+def _looks(names: list[str]) -> dict[str, Look]:
+    """The same look for a part in every figure; added effects share what is left."""
+    added = [n for n in names if n not in KNOWN]
+    return {n: KNOWN.get(n) or ADDED[added.index(n) % len(ADDED)] for n in names}
+
+
+def _excerpt_told(time: Array, at: slice) -> str:
+    whole = at.stop - at.start == len(time)
+    return "" if whole else f"Excerpt of a run of {time[-1] - time[0]:.0f} s."
+
+
+def _largest(parts: Mapping[str, Array], known: Array) -> list[str]:
+    """Parts that matter most on some axis, in the order given."""
+    size = {n: np.sqrt(np.mean(f[known] ** 2, axis=0)) for n, f in parts.items() if known.any()}
+    whole = np.sqrt(sum((s**2 for s in size.values()), np.zeros(6)))
+    share = {n: float(np.max(s / np.where(whole > 0, whole, 1.0))) for n, s in size.items()}
+    kept = sorted((n for n in share if share[n] > 0.02), key=lambda n: -share[n])[:SHOWN]
+    return [n for n in parts if n in kept]
+
+
+def _smoothed(time: Array, values: Array) -> Array:
+    """Running mean over `SMOOTH` s of values (n, 6), of what is known in it."""
+    count = max(round(SMOOTH / float(np.median(np.diff(time)))), 1)
+    known, window = np.isfinite(values), np.ones(count)
+    total = [
+        np.convolve(np.where(k, v, 0.0), window, "same")
+        for v, k in zip(values.T, known.T, strict=True)
+    ]
+    weight = [np.convolve(k.astype(float), window, "same") for k in known.T]
+    return np.stack([t / np.maximum(w, 1.0) for t, w in zip(total, weight, strict=True)], axis=1)
+
+
+def _common(curves: dict[str, Array]) -> dict[str, Array]:
+    """The curves, the missing force drawn last, on top of the others."""
+    others = {name: values for name, values in curves.items() if name != "missing"}
+    return {**others, "missing": curves["missing"]}
+
+
+def _limits(values: list[Array]) -> tuple[float, float]:
+    known = np.concatenate([v[np.isfinite(v)] for v in values])
+    if not len(known):
+        return -1.0, 1.0
+    low, high = float(known.min()), float(known.max())
+    room = 0.06 * max(high - low, 1e-6)
+    return low - room, high + room

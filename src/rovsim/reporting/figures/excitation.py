@@ -1,0 +1,72 @@
+"""Quality of every run at a glance: which axes were excited, and when the vehicle was seen."""
+
+from typing import Any, Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from rovsim.reporting.figures.marks import AXES, legend, note, nothing, number, short, significant
+from rovsim.reporting.figures.style import sheet, styled
+
+SECTION = "quality"
+CAPTION = (
+    "Per run: standard deviation of the body velocity on each axis (an axis that hardly moved "
+    "cannot be judged), and the stretches in which the motion capture lost the vehicle."
+)
+EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", "#D55E00"
+
+
+@styled()
+def draw(*, quality: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw the quality reports {run: quality/<run>.json}."""
+    figure = sheet(34 + 7 * max(len(quality), 2))
+    cells, timeline = figure.subplots(1, 2, width_ratios=[3, 2])
+    runs = list(quality)
+    remarks = []
+    for row, run in enumerate(runs):
+        y = len(runs) - 1 - row
+        _excitation(cells, y, quality[run].get("excitation") or {})
+        _seen(timeline, y, quality[run])
+        if quality[run].get("unusable"):
+            remarks.append(f"{short(run)} is not used: {quality[run]['unusable']}.")
+    for axes in (cells, timeline):
+        axes.set_ylim(-0.5, max(len(runs), 1) - 0.5)
+        axes.grid(False)
+        axes.tick_params(length=0)
+    cells.set_xlim(-0.5, 5.5)
+    cells.set_xticks(range(6), AXES)
+    cells.set_yticks(range(len(runs)), [short(run, 20) for run in reversed(runs)])
+    cells.set_title("velocity std (m/s, rad/s)")
+    timeline.set_yticks([])
+    timeline.set_xlim(left=0)
+    timeline.set_xlabel("time (s)")
+    timeline.set_title("seen by the motion capture")
+    if not runs:
+        nothing(cells, "no runs")
+    labels = ((EXCITED, "excited"), (STILL, "not excited"), (SEEN, "seen"), (GAP, "gap"))
+    edge: dict[str, Any] = {"edgecolor": "#888888", "linewidth": 0.5}
+    legend(figure, [Patch(facecolor=color, label=label, **edge) for color, label in labels])
+    note(figure, remarks)
+    return figure
+
+
+def _excitation(axes: Axes, y: float, excitation: Mapping[str, Any]) -> None:
+    for k, axis in enumerate(AXES):
+        entry = excitation.get(axis) or {}
+        color = EXCITED if entry.get("excited") else STILL
+        axes.bar(k, 0.84, 0.94, y - 0.42, facecolor=color, edgecolor="#BBBBBB", linewidth=0.5)
+        text = significant(number(entry.get("std")), 2)
+        axes.text(k, y, text, ha="center", va="center", fontsize=8)
+
+
+def _seen(axes: Axes, y: float, report: Mapping[str, Any]) -> None:
+    duration = number(report.get("duration_s"))
+    if not np.isfinite(duration):
+        return
+    axes.barh(y, duration, 0.5, facecolor=SEEN)
+    first = number(report.get("start_s", 0.0))
+    spans = [(g["start_s"] - first, g["duration_s"]) for g in report.get("gaps") or []]
+    # a gap narrower than a hair would vanish on paper: the edge keeps it visible
+    axes.broken_barh(spans, (y - 0.25, 0.5), facecolor=GAP, edgecolor=GAP, linewidth=0.4)

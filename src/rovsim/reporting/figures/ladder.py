@@ -1,0 +1,78 @@
+"""The ladder: the error on held-out runs falling, step by step."""
+
+from typing import Any, Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rovsim.reporting.figures.marks import legend, note, nothing, number, short, significant
+from rovsim.reporting.figures.palette import FAMILIES, looks
+from rovsim.reporting.figures.style import sheet, styled
+
+SECTION = "ladder"
+CAPTION = (
+    "Error of every step on runs none of them was fitted to: the velocity error of 2 s windows "
+    "in units of the measured velocity's spread, averaged over the excited axes. Lower is better."
+)
+ROOM = 1.14  # for the values behind the bars
+BASELINE = "zero_acceleration"
+FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the models can be told apart
+
+
+@styled()
+def draw(*, ladder: Mapping[str, Any]) -> Figure:
+    """Draw `windows_2s` of `ladder.json` from the first step down, the noise floor as a line."""
+    steps = {s["model"]: number(s.get("windows_2s")) for s in ladder.get("steps", [])}
+    floor = steps.pop("noise_floor", float("nan"))
+    style = looks(steps)
+    figure = sheet(26 + 7.5 * max(len(steps), 3))
+    axes = figure.subplots()
+    top = _top(steps, floor)
+    for row, (name, value) in enumerate(steps.items()):
+        y = len(steps) - 1 - row
+        axes.barh(y, np.nan_to_num(value), 0.66, **style[name].bar())
+        _value(axes, y, value, top)
+    axes.set_yticks(range(len(steps)), [short(n, 28) for n in reversed(steps)])
+    axes.set_ylim(-0.6, max(len(steps), 1) - 0.4)
+    axes.set_xlim(0, top)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(False, axis="y")
+    axes.set_xlabel("velocity RMSE of 2 s windows / spread of the measured velocity (–)")
+    if not steps:
+        nothing(axes, "no steps")
+    if np.isfinite(floor):
+        look = FAMILIES["noise_floor"]
+        axes.axvline(floor, **look.line())
+        label = f"noise floor, {significant(floor)}"
+        legend(figure, [Line2D([], [], label=label, **look.line())])
+    note(figure, _remarks(ladder, steps, top))
+    return figure
+
+
+def _top(steps: Mapping[str, float], floor: float) -> float:
+    """Where the axis ends; a baseline that is far higher than all models is cut."""
+    known = {n: v for n, v in {**steps, "noise_floor": floor}.items() if np.isfinite(v)}
+    models = max((v for n, v in known.items() if n != BASELINE), default=0.0)
+    cut = 0.0 < FAR * models < known.get(BASELINE, 0.0)
+    return ROOM * (models if cut else max(known.values(), default=0.0)) or 1.0
+
+
+def _value(axes: Axes, y: int, value: float, top: float) -> None:
+    """The number of one step, behind its bar, or on it where the bar leaves the axes."""
+    beyond = value > top
+    text = significant(value) if np.isfinite(value) else "no value"
+    place = (top, y) if beyond else (float(np.nan_to_num(value)), y)
+    axes.annotate(f"{text} →" if beyond else text, place, xytext=(-4 if beyond else 3, 0),
+                  va="center", ha="right" if beyond else "left", textcoords="offset points",
+                  fontsize=8, bbox={"facecolor": "white", "pad": 1, "linewidth": 0})  # fmt: skip
+
+
+def _remarks(ladder: Mapping[str, Any], steps: Mapping[str, float], top: float) -> list[str]:
+    splits = sorted({s["split"] for s in ladder.get("steps", []) if s.get("split")})
+    beyond = [short(name) for name, value in steps.items() if value > top]
+    return [
+        f"Runs of the {' and '.join(splits)} split." if splits else "",
+        f"The bar of {beyond[0]} goes on beyond the axes." if beyond else "",
+    ]

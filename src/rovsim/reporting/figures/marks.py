@@ -1,0 +1,119 @@
+"""Legends, notes and axis names, placed so that they never cover what is plotted."""
+
+import math
+import textwrap
+from typing import Any, Iterable, Sequence
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter
+
+from rovsim import AXES
+from rovsim.reporting.figures.palette import Look
+from rovsim.reporting.figures.style import FONT_SIZE, MM, WIDTH
+
+VELOCITY = ("u", "v", "w", "p", "q", "r")  # Fossen's letters
+VELOCITY_UNITS = ("m/s",) * 3 + ("rad/s",) * 3
+ACCELERATION_UNITS = ("m/s²",) * 3 + ("rad/s²",) * 3
+
+EM = FONT_SIZE / 72  # inches
+LONGEST = 40  # letters of a name before it is wrapped
+
+
+def short(name: str, length: int = LONGEST) -> str:
+    """Return `name`, its middle left out where it is longer than `length` letters."""
+    if len(name) <= length:
+        return name
+    return f"{name[: length // 2]}…{name[-(length // 2 - 1) :]}"
+
+
+def lines(looks: dict[str, Look]) -> list[Artist]:
+    """Legend entries for lines."""
+    return [Line2D([], [], label=short(n), **look.line()) for n, look in looks.items()]
+
+
+def patches(looks: dict[str, Look]) -> list[Artist]:
+    """Legend entries for bars."""
+    return [Patch(label=short(n), **look.bar()) for n, look in looks.items()]
+
+
+def legend(figure: Figure, handles: Sequence[Any]) -> None:
+    """Put a legend above all axes, in as few rows as fit the page."""
+    if not handles:
+        return
+    lengths = [len(str(handle.get_label())) for handle in handles]
+    rows = next(r for r in range(1, len(handles) + 1) if _width(lengths, r) < 0.96 * WIDTH * MM)
+    figure.legend(
+        handles=list(handles),
+        loc="outside upper center",
+        ncols=math.ceil(len(handles) / rows),
+        handlelength=2.6,
+        columnspacing=1.4,
+        borderaxespad=0.2,
+    )
+
+
+def _width(lengths: Sequence[int], rows: int) -> float:
+    """Width in inches of a legend in `rows` rows; a letter is half an em, a handle 4.8 em."""
+    columns = math.ceil(len(lengths) / rows)
+    # matplotlib fills column by column, the first ones one entry longer than the last
+    full, longer = divmod(len(lengths), columns)
+    ends = np.cumsum([full + (k < longer) for k in range(columns)])
+    widest = [max(part) for part in np.split(np.asarray(lengths), ends[:-1])]
+    return EM * sum(0.5 * length + 4.8 for length in widest) if rows < len(lengths) else 0.0
+
+
+def note(figure: Figure, remarks: Iterable[str]) -> None:
+    """Write remarks under the figure, each a sentence of its own."""
+    text = " ".join(r for r in remarks if r)
+    if text:
+        wrapped = "\n".join(textwrap.wrap(text, int(WIDTH * MM / EM / 0.47)))
+        figure.supxlabel(wrapped, fontsize=FONT_SIZE - 1, color="#444444")
+
+
+def nothing(axes: Axes, text: str) -> None:
+    """Say in an empty panel why it is empty."""
+    axes.text(
+        0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color="#666666"
+    )  # fmt: skip
+
+
+def plain_log(axes: Axes, names: str = "x") -> None:
+    """Make axes (x, y or xy) logarithmic and label them with plain numbers: 0.1, 1, 10."""
+    axes.set(**{f"{name}scale": "log" for name in names})
+    for name in names:
+        axis = axes.xaxis if name == "x" else axes.yaxis
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(FuncFormatter(lambda *_: ""))
+
+
+def number(value: float | None) -> float:
+    """Return a JSON value as a float; null is NaN."""
+    return math.nan if value is None else float(value)
+
+
+def vector(content: dict[str, Any] | None) -> np.ndarray:
+    """Return the six axes' values (6,) of a JSON object; what is missing is NaN."""
+    return np.array([number((content or {}).get(axis)) for axis in AXES])
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return names as people list them: a, b and c."""
+    *first, last = [short(n) for n in names] or [""]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def significant(value: float, digits: int = 3) -> str:
+    """Return `value` to so many significant figures, without an exponent where it is readable."""
+    if not math.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    if not 1e-4 <= abs(value) < 1e6:
+        return f"{value:.{digits - 1}e}"
+    places = digits - 1 - math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    return f"{round(value, places):.{max(places, 0)}f}"

@@ -1,0 +1,88 @@
+"""The ranking: how much of the error each effect removes by itself, the selected ones marked."""
+
+from typing import Any, Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from rovsim.reporting.figures.marks import legend, note, nothing, number, short
+from rovsim.reporting.figures.palette import FAMILIES
+from rovsim.reporting.figures.style import sheet, styled
+
+SECTION = "verdict"
+CAPTION = (
+    "Share of the model's error that each of the likeliest effects removes by itself, at its first "
+    "estimate; for the selected ones also what each adds in the final model, fitted together."
+)
+OTHER = "#BBBBBB"
+
+
+@styled()
+def draw(*, diagnosis: Mapping[str, Any]) -> Figure:
+    """Draw `ranking` and `selected` of `diagnosis.json`, a bar an effect, largest share first.
+
+    A diamond is what a selected effect adds in the final model. One that the ranking does not list
+    has no bar: others had to be there to bring it to light.
+    """
+    alone = {r["effect"]: number(r["error_reduction"]) for r in diagnosis.get("ranking", [])}
+    chosen = {s["effect"]: number(s["error_reduction"]) for s in diagnosis.get("selected", [])}
+    most = {name: np.nan_to_num([alone.get(name, 0.0), chosen.get(name, 0.0)]).max()
+            for name in (*alone, *chosen)}  # fmt: skip
+    names = sorted(most, key=lambda name: -most[name])
+    figure = sheet(28 + 6.0 * max(len(names), 3))
+    axes = figure.subplots()
+    for y, name in enumerate(names):
+        color = FAMILIES["effects"].color if name in chosen else OTHER
+        _row(axes, y, alone.get(name, np.nan), chosen.get(name, np.nan), color)
+    axes.set_yticks(range(len(names)), [short(name, 28) for name in names])
+    for label in axes.get_yticklabels():
+        label.set_fontweight("bold" if label.get_text() in chosen else "normal")
+    axes.set_ylim(max(len(names), 1) - 0.4, -0.6)
+    axes.set_xlim(0, 122)
+    axes.set_xticks(range(0, 101, 20))
+    axes.tick_params(axis="y", length=0)
+    axes.grid(False, axis="y")
+    axes.set_xlabel("share of the error removed (%)")
+    if not names:
+        nothing(axes, "no effect was judged")
+    legend(figure, _handles(bool(chosen)) if names else [])
+    note(figure, _remarks(diagnosis, alone, chosen))
+    return figure
+
+
+def _row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
+    axes.barh(y, 100 * np.nan_to_num(alone), 0.66, color=color, linewidth=0)
+    if np.isfinite(together):
+        axes.plot(100 * together, y, "D", color="black", markersize=4, clip_on=False)
+    right = 100 * max(np.nan_to_num(alone), np.nan_to_num(together))
+    axes.annotate(_text(alone, together), (right, y), xytext=(6, 0), va="center",
+                  textcoords="offset points", fontsize=8,
+                  bbox={"facecolor": "white", "pad": 1, "linewidth": 0})  # fmt: skip
+
+
+def _text(alone: float, together: float) -> str:
+    by_itself = f"{100 * alone:.0f}" if np.isfinite(alone) else ""
+    if not np.isfinite(together):
+        return by_itself
+    return f"{100 * together:.0f}" + (f" ({by_itself} alone)" if by_itself else "")
+
+
+def _handles(chosen: bool) -> list[Line2D | Patch]:
+    others = Patch(color=OTHER, linewidth=0, label="alone")
+    if not chosen:
+        return [others]
+    mark: dict[str, Any] = {"marker": "D", "color": "black", "markersize": 4, "linestyle": "none"}
+    return [
+        others,
+        Patch(color=FAMILIES["effects"].color, linewidth=0, label="alone, selected"),
+        Line2D([], [], label="in the final model", **mark),
+    ]
+
+
+def _remarks(diagnosis: Mapping[str, Any], alone: Mapping, chosen: Mapping) -> list[str]:
+    if not alone:
+        return ["Too little was recorded to judge any effect."] if diagnosis else []
+    return ["Train runs, 2 s windows." if chosen else "Train runs, 2 s windows; none was selected."]

@@ -1,0 +1,43 @@
+"""Acceleration residual a_real - a_sim over time, six axes."""
+
+from typing import Mapping
+
+from matplotlib.figure import Figure
+from numpy import ndarray as Array
+
+from rovsim.reporting.figures.marks import ACCELERATION_UNITS, legend, lines, note
+from rovsim.reporting.figures.palette import looks
+from rovsim.reporting.figures.panels import plot_all, six_panels
+from rovsim.reporting.figures.series import excerpt, masked
+from rovsim.reporting.figures.style import styled
+
+SECTION = "compare"
+CAPTION = (
+    "Acceleration residual, measured minus simulated, over time, one panel per axis. "
+    "A perfect model would leave only noise around zero."
+)
+LETTERS = ("Δu̇", "Δv̇", "Δẇ", "Δṗ", "Δq̇", "Δṙ")
+
+
+@styled()
+def draw(
+    *, time: Array, nu_dot: Array, predicted_nu_dot: Mapping[str, Array],
+    usable: Array | None = None,
+) -> Figure:  # fmt: skip
+    """Draw `nu_dot` (n, 6) minus each model's acceleration {model: (n, 6)} over `time` (n,) s.
+
+    The first model sets the scale; gaps and excerpt as in `velocities`.
+    """
+    measured = masked(nu_dot, usable)
+    part = excerpt(time, measured)
+    curves = {name: (measured - values)[part] for name, values in predicted_nu_dot.items()}
+    style = looks(curves)
+    figure, axes = six_panels(LETTERS, ACCELERATION_UNITS)
+    remarks = plot_all(axes, time[part], curves, style) if curves else ["No model was given."]
+    for axis in axes:
+        axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
+    if part.stop - part.start < len(time):
+        remarks.append(f"Excerpt of a run of {time[-1] - time[0]:.0f} s.")
+    legend(figure, lines(style))
+    note(figure, remarks)
+    return figure

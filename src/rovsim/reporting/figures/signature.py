@@ -1,0 +1,124 @@
+"""What an effect looks like to a model that lacks it: a small picture for the catalogue page.
+
+Not a figure of the study, so there is no `draw` here.
+"""
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy import ndarray as Array
+from PIL import Image
+
+from rovsim import AXES
+from rovsim.core.files import appearing
+from rovsim.dynamics.effects.parameters import Signature
+from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.reporting.figures.marks import ACCELERATION_UNITS
+from rovsim.reporting.figures.palette import FAMILIES
+from rovsim.reporting.figures.style import MM, WIDTH, styled
+
+HEIGHT = 56.0  # mm
+PIXELS = 700
+COLORS = 64  # in the file: black, orange and greys
+EXCERPT = 20.0  # s
+MISSED, EFFECT = "what the model misses", "what the effect adds to the model"
+BLACK, ORANGE = FAMILIES["measured"].color, FAMILIES["nominal"].color
+LINE: dict[str, Any] = {"color": ORANGE, "linewidth": 1.8}
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What is drawn: an axis' error over a condition and over time, n blocks.
+
+    `missed` is the table of what the nominal model misses, `effect` that of what the true effect
+    adds to the model; `condition` (n,) its values, `error` and `added` (n,) m/s2 or rad/s2 the same
+    two block by block at `time` (n,) s.
+    """
+
+    signature: Signature
+    missed: Table
+    effect: Table
+    condition: Array
+    time: Array
+    error: Array
+    added: Array
+
+
+@styled()
+def signature(seen: Seen) -> Figure:
+    """Draw the error over the condition, and beside it over time."""
+    figure = Figure(figsize=(WIDTH * MM, HEIGHT * MM), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(0.85, 1.0), sharey=not seen.signature.size)
+    _bins(left, seen)
+    _trace(right, seen)
+    figure.legend(
+        handles=[
+            Line2D([], [], color=BLACK, marker="o", markersize=4, label=MISSED),
+            Line2D([], [], label=EFFECT, **LINE),
+        ],
+        loc="outside upper center", ncols=2, borderaxespad=0.1,
+    )  # fmt: skip
+    return figure
+
+
+def write(figure: Figure, path: Path) -> None:
+    """Write a PNG of few colours; same figure, same bytes."""
+    buffer = io.BytesIO()
+    with styled():
+        figure.savefig(buffer, format="png", dpi=PIXELS / (WIDTH * MM), metadata={"Software": None})
+    small = Image.open(buffer).convert("RGB").quantize(COLORS)
+    with appearing(path) as temporary:
+        small.save(temporary, format="PNG", optimize=True)
+
+
+def _bins(axes: Axes, seen: Seen) -> None:
+    """Bin means (or sizes) with what the effect makes of them; dots: single blocks."""
+    size, at = seen.signature.size, seen.missed.binning
+    turned = np.degrees if at.condition.unit == "rad" else np.asarray
+    dots = np.abs(seen.error) if size else seen.error
+    axes.axhline(0.0, color="#444444", linewidth=0.6)
+    axes.plot(turned(seen.condition), dots, ".", color="#bbbbbb", markersize=3, zorder=1.5)
+    x, there = turned(at.center), at.count > 0
+    y, added = _height(seen.missed, size), _height(seen.effect, size)
+    error = None if size else 2 * seen.missed.error[there]
+    axes.errorbar(x[there], y[there], yerr=error, fmt="o", color=BLACK, markersize=4, zorder=3)
+    axes.plot(x[there], added[there], zorder=2.5, **LINE)
+    unit = "deg" if at.condition.unit == "rad" else at.condition.unit
+    axes.set_xlabel(f"{at.condition.name} ({unit})")
+    axis = seen.signature.axis
+    what = f"size of {axis} error" if size else f"{axis} error"
+    axes.set_ylabel(f"{what} ({ACCELERATION_UNITS[AXES.index(axis)]})")
+
+
+def _height(table: Table, size: bool) -> Array:
+    return table.rms if size else table.mean
+
+
+def _trace(axes: Axes, seen: Seen) -> None:
+    """The same block by block: the liveliest stretch, or the whole run where time matters."""
+    whole = seen.signature.condition == "time in the run"
+    part = slice(None) if whole else liveliest(seen.time, seen.added, EXCERPT)
+    axes.axhline(0.0, color="#444444", linewidth=0.6)
+    axes.plot(seen.time[part], seen.added[part], zorder=2, **LINE)
+    axes.plot(
+        seen.time[part], seen.error[part], color=BLACK, linewidth=0.7, marker=".", markersize=3,
+        zorder=3,
+    )  # fmt: skip
+    axes.set_xlabel("time in the run (s)")
+    axes.margins(x=0.01)
+
+
+def liveliest(time: Array, values: Array, length: float) -> slice:
+    """The stretch of that length in which the values vary most; all of a shorter run."""
+    count = int(np.searchsorted(time - time[0], length))
+    if count >= len(time):
+        return slice(None)
+    spread = [np.sum(np.abs(values[k : k + count])) for k in range(len(time) - count + 1)]
+    first = int(np.argmax(spread))
+    return slice(first, first + count)

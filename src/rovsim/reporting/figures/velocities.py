@@ -1,0 +1,40 @@
+"""Measured against simulated body velocity, six axes over time."""
+
+from typing import Mapping
+
+from matplotlib.figure import Figure
+from numpy import ndarray as Array
+
+from rovsim.reporting.figures.marks import VELOCITY, VELOCITY_UNITS, legend, lines, note
+from rovsim.reporting.figures.palette import looks
+from rovsim.reporting.figures.panels import plot_all, six_panels
+from rovsim.reporting.figures.series import excerpt, masked
+from rovsim.reporting.figures.style import styled
+
+SECTION = "compare"
+CAPTION = (
+    "Measured and simulated body velocity over time, one panel per axis. "
+    "Where no line is drawn the motion capture did not see the vehicle."
+)
+
+
+@styled()
+def draw(
+    *, time: Array, nu: Array, predicted_nu: Mapping[str, Array], usable: Array | None = None
+) -> Figure:
+    """Draw measured velocity `nu` (n, 6) and each model's {model: (n, 6)} over `time` (n,) s.
+
+    NaN, samples that are not `usable` (n,) and jumps of `time` stay gaps. A run longer than a
+    minute is cut to its liveliest minute.
+    """
+    measured = masked(nu, usable)
+    part = excerpt(time, measured)
+    curves = {"measured": measured, **{n: masked(v, usable) for n, v in predicted_nu.items()}}
+    style = looks(curves)
+    figure, axes = six_panels(VELOCITY, VELOCITY_UNITS)
+    remarks = plot_all(axes, time[part], {n: v[part] for n, v in curves.items()}, style)
+    if part.stop - part.start < len(time):
+        remarks.append(f"Excerpt of a run of {time[-1] - time[0]:.0f} s.")
+    legend(figure, lines(style))
+    note(figure, remarks)
+    return figure

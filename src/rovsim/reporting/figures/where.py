@@ -1,0 +1,135 @@
+"""Error by condition: small multiples of the conditions that explain most, one row an axis."""
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rovsim.reporting.figures.marks import (
+    ACCELERATION_UNITS,
+    AXES,
+    legend,
+    lines,
+    note,
+    nothing,
+    short,
+)
+from rovsim.reporting.figures.palette import Look, looks
+from rovsim.reporting.figures.style import sheet, styled
+
+SECTION = "where"
+CAPTION = (
+    "Mean acceleration error, measured minus model, by the three conditions that explain most of "
+    "it on each axis; bars: two standard errors, hollow: too few independent "
+    "samples to judge, grey below: how often the vehicle was there."
+)
+COLUMNS = 3
+SHOWN = 4  # models in one panel
+
+
+@styled()
+def draw(*, where: Mapping[str, Any]) -> Figure:
+    """Draw `where.json`: for each axis the conditions that explain most of any model's error."""
+    models = dict(list(where.get("models", {}).items())[-SHOWN:])
+    style = looks(models)
+    figure = sheet(222)
+    rows = figure.subplots(len(AXES), COLUMNS, sharey="row")
+    for k, (axis, panels) in enumerate(zip(AXES, rows, strict=True)):
+        tables = {name: m["axes"].get(axis, {}) for name, m in models.items()}
+        names = strongest(list(tables.values()))
+        known = {
+            f["condition"] for m in models.values() for f in m["findings"] if f["axis"] == axis
+        }
+        for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
+            _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
+            title = _title(name, [t[name] for t in tables.values() if name in t]) if name else ""
+            panel.set_title(title, fontsize=7.5, weight="bold" if name in known else "normal")
+        panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[k]})")
+        panels[0].locator_params(axis="y", nbins=4)
+    figure.align_ylabels(list(rows[:, 0]))
+    legend(figure, lines(style))
+    note(figure, _remarks(models))
+    return figure
+
+
+def strongest(models: Sequence[Mapping[str, Any]], count: int = COLUMNS) -> list[str]:
+    """Names of the conditions with more than one bin that explain most, the best first."""
+    known: dict[str, float] = {}
+    for tables in models:
+        for name, table in tables.items():
+            if len(table["mean"]) > 1:
+                known[name] = max(known.get(name, 0.0), table["share_of_error"])
+    return sorted(known, key=lambda name: -known[name])[:count]
+
+
+def _title(name: str, tables: Sequence[Mapping[str, Any]]) -> str:
+    shares = ", ".join(f"{100 * t['share_of_error']:.0f}" for t in tables)
+    unit = "deg" if tables[0]["unit"] == "rad" else tables[0]["unit"]
+    name = name.replace("distance to the nearest", "distance to")
+    return f"{name} ({unit}): {shares} %"
+
+
+def _panel(axes: Axes, tables: Mapping[str, Any], style: Mapping[str, Look]) -> None:
+    axes.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
+    if not tables:
+        nothing(axes, "no values")
+        axes.set_xticks([])
+        return
+    last = list(tables.values())[-1]
+    _counts(axes, last)
+    for order, (name, table) in enumerate(tables.items()):
+        _curve(axes, table, style[name], 2 + order)
+    axes.locator_params(axis="x", nbins=5)
+    centers = _scaled(last, "center")[np.array(last["blocks"]) > 0]
+    room = 0.08 * max(float(np.ptp(centers)), 1e-9)
+    axes.set_xlim(float(centers.min()) - room, float(centers.max()) + room)
+
+
+def _curve(axes: Axes, table: Mapping[str, Any], look: Look, order: int) -> None:
+    x, mean, error, judged = _columns(table, "center", "mean", "std_error", "judged")
+    judged, there = judged.astype(bool), np.array(table["blocks"]) > 0
+    axes.plot(x[judged], mean[judged], zorder=order, **look.line())
+    for part, face in ((judged, look.color), (there & ~judged, "white")):
+        axes.errorbar(
+            x[part], mean[part], yerr=2 * error[part] if face == look.color else None,
+            fmt="o", markersize=3, color=look.color, markerfacecolor=face, elinewidth=0.8,
+            zorder=order,
+        )  # fmt: skip
+
+
+def _counts(axes: Axes, table: Mapping[str, Any]) -> None:
+    """How many blocks lie in each bin, as grey bars along the lower edge."""
+    count, edges = np.array(table["blocks"], float), _scaled(table, "edges")
+    below = axes.twinx()
+    below.set_zorder(axes.get_zorder() - 1)
+    axes.patch.set_visible(False)
+    below.bar(edges[:-1], count, np.diff(edges), align="edge", color="#e3e3e3", linewidth=0)
+    below.set_ylim(0, 4.0 * max(count.max(), 1.0))
+    below.set_yticks([])
+    below.grid(False)
+    for spine in below.spines.values():
+        spine.set_visible(False)
+
+
+def _columns(table: Mapping[str, Any], *names: str) -> list[np.ndarray]:
+    return [_scaled(table, name) for name in names]
+
+
+def _scaled(table: Mapping[str, Any], name: str) -> np.ndarray:
+    """A column of a table; places along the condition in degrees where it is an angle."""
+    values = np.array(table[name], float)
+    along = name in ("center", "edges") and table["unit"] == "rad"
+    return np.degrees(values) if along else values
+
+
+def _remarks(models: Mapping[str, Any]) -> Sequence[str]:
+    if not models:
+        return ["No model was searched."]
+    splits = {m["split"] for m in models.values()}
+    told = [f"{short(n)}: runs of the {m['split']} split" for n, m in models.items()]
+    return [
+        f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(told)}.",
+        "Percent: share of the squared error that varies with the condition, model "
+        "by model; bold: beyond chance.",
+    ]

@@ -1,0 +1,55 @@
+"""The whole search at a glance: share of the error each condition explains on each axis."""
+
+from typing import Any, Mapping
+
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+
+from rovsim.reporting.figures.marks import AXES, note, nothing, short
+from rovsim.reporting.figures.style import sheet, styled
+
+SECTION = "where"
+CAPTION = (
+    "Share of the squared acceleration error, in percent, that each condition explains on each "
+    "axis, for the last model. Framed: the conditions that were found to explain it; what varied "
+    "together with them is high as well."
+)
+BLUES = LinearSegmentedColormap.from_list("shares", ["#ffffff", "#0072B2"])
+
+
+@styled()
+def draw(*, where: Mapping[str, Any]) -> Figure:
+    """Draw `share_of_error` of the last model of `where.json`; framed where it is a finding."""
+    models = where.get("models", {})
+    name, model = list(models.items())[-1] if models else ("", {"axes": {}, "findings": []})
+    tables = model["axes"]
+    rows = list(next((t for t in tables.values() if t), {}))
+    figure = sheet(30 + 4.6 * max(len(rows), 5))
+    axes = figure.subplots()
+    axes.grid(False)
+    if not rows:
+        nothing(axes, "nothing was searched")
+        return figure
+    shares = np.array([[tables[a].get(r, {}).get("share_of_error", 0) for a in AXES] for r in rows])
+    axes.imshow(shares, cmap=BLUES, vmin=0, vmax=1, aspect="auto")
+    found = {(f["axis"], f["condition"]) for f in model["findings"]}
+    for y, row in enumerate(rows):
+        for x, axis in enumerate(AXES):
+            _cell(axes, x, y, float(shares[y, x]), (axis, row) in found)
+    axes.set_xticks(range(6), AXES)
+    axes.xaxis.tick_top()
+    axes.set_yticks(range(len(rows)), rows)
+    axes.tick_params(length=0)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    note(figure, [f"Model {short(name)}, runs of the {model['split']} split."])
+    return figure
+
+
+def _cell(axes, x: int, y: int, share: float, found: bool) -> None:
+    text = f"{100 * share:.0f}" if round(100 * share) >= 1 else "·"
+    color = "white" if share > 0.6 else "#222222"
+    axes.text(x, y, text, ha="center", va="center", fontsize=7.5, color=color)
+    if found:
+        frame = {"facecolor": "none", "edgecolor": "#D55E00", "linewidth": 1.6}
+        axes.bar(x, 0.86, 0.95, y - 0.43, **frame)

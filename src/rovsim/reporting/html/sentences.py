@@ -1,0 +1,200 @@
+"""The report's summary in plain language. A sentence says only what its numbers show."""
+
+import math
+from typing import Any, Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.reporting.figures.marks import AXES, VELOCITY_UNITS, listed, number, significant
+from rovsim.reporting.figures.palette import RESIDUALS, family
+from rovsim.reporting.figures.pooled import pooled, relative
+from rovsim.reporting.html.speed import timing_sentences
+
+EQUAL = 0.01  # share: a smaller change is called none
+REACHED = 0.05  # the noise floor is an estimate itself
+
+
+def summary(
+    comparison: Mapping[str, Any],
+    ladder: Mapping[str, Any],
+    timing: Mapping[str, Any],
+    quality: Mapping[str, Mapping[str, Any]],
+) -> list[str]:
+    """Return the summary, one string per paragraph."""
+    errors = pooled(comparison, "velocity_rmse", "2", "test")
+    paragraphs = [
+        runs_sentences(quality),
+        nominal_sentences(errors) + quiet_sentences(quality),
+        residual_sentences(errors, scores(ladder)),
+        ladder_sentences(scores(ladder)),
+        timing_sentences(timing),
+    ]
+    return [" ".join(sentences) for sentences in paragraphs if sentences]
+
+
+def scores(ladder: Mapping[str, Any]) -> dict[str, float]:
+    """Return {step: windows_2s}, steps without a number left out."""
+    steps = {s["model"]: number(s.get("windows_2s")) for s in ladder.get("steps", [])}
+    return {name: value for name, value in steps.items() if math.isfinite(value)}
+
+
+def runs_sentences(quality: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Say how many runs there are and which cannot be used."""
+    if not quality:
+        return []
+    held = [run for run, report in quality.items() if report.get("split") == "test"]
+    unusable = {run: r["unusable"] for run, r in quality.items() if r.get("unusable")}
+    text = (
+        f"The campaign has {_count(len(quality), 'run')}, {len(held)} of them held out for tests."
+    )
+    return [text, *(f"Run {run} is not used: {why}." for run, why in unusable.items())]
+
+
+def nominal_sentences(errors: Mapping[str, Array]) -> list[str]:
+    """Say how far the nominal model is from the measurement, and whether it beats doing nothing."""
+    row = errors.get("nominal")
+    if row is None or not np.isfinite(row).any():
+        return ["The nominal model has no result on the test runs."]
+    parts = [
+        f"{significant(value, 2)} {unit} in {axis}"
+        for axis, unit, value in zip(AXES, VELOCITY_UNITS, row, strict=True)
+        if np.isfinite(value)
+    ]
+    missing = [axis for axis, value in zip(AXES, row, strict=True) if not np.isfinite(value)]
+    return [
+        "On the test runs, set to the measured state every 2 s, the nominal model misses the "
+        f"measured velocity by {listed(parts)} (root mean square).",
+        *([f"It has no value in {listed(missing)}."] if missing else []),
+        *_against_nothing(errors),
+    ]
+
+
+def _against_nothing(errors: Mapping[str, Array]) -> list[str]:
+    if "zero_acceleration" not in errors:
+        return []
+    ratio = relative(errors, "zero_acceleration")["nominal"]
+    if not np.isfinite(ratio).any():
+        return []
+    beaten = [axis for axis, r in zip(AXES, ratio, strict=True) if r >= 1 - EQUAL]
+    if beaten:
+        return [f"In {listed(beaten)} it is no better than assuming that the velocity is kept."]
+    where = "every axis" if np.isfinite(ratio).all() else "every axis with a value"
+    return [f"On {where} it is closer than assuming that the vehicle keeps its velocity."]
+
+
+def quiet_sentences(quality: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Name the axes that hardly moved on any test run: nothing can be judged there."""
+    tests = [r.get("excitation") or {} for r in quality.values() if r.get("split") == "test"]
+    judged = [axis for axis in AXES if any(axis in e for e in tests)]
+    quiet = [a for a in judged if not any(e.get(a, {}).get("excited") for e in tests)]
+    if not quiet:
+        return []
+    return [f"The test runs hardly move in {listed(quiet)}: errors there say little about a model."]
+
+
+def residual_sentences(errors: Mapping[str, Array], steps: Mapping[str, float]) -> list[str]:
+    """Say which learned residual lowers the nominal error most, where, and where it does not."""
+    if not any(family(name) in RESIDUALS for name in (*errors, *steps)):
+        return []
+    ratios, measure = _overall(errors, steps)
+    learned = {n: r for n, r in ratios.items() if family(n) in RESIDUALS and math.isfinite(r)}
+    if not learned:
+        return ["No learned residual can be compared with the nominal model on the test runs."]
+    best = min(learned, key=lambda name: learned[name])
+    return [
+        _best_sentence(best, learned[best], len(learned), measure),
+        *_per_axis(best, relative(errors).get(best)),
+        *_others(learned, best),
+    ]
+
+
+def _overall(
+    errors: Mapping[str, Array], steps: Mapping[str, float]
+) -> tuple[dict[str, float], str]:
+    """One error per model, relative to nominal, and what it measures."""
+    if steps.get("nominal") and any(family(name) in RESIDUALS for name in steps):
+        ratios = {name: value / steps["nominal"] for name, value in steps.items()}
+        return ratios, "the velocity error of 2 s windows, averaged over the excited axes"
+    rows = relative(errors)
+    counted = np.isfinite(rows.get("nominal", np.full(len(AXES), np.nan)))
+    if not counted.any():
+        return {}, ""
+    ratios = {name: float(np.mean(row[counted])) for name, row in rows.items()}
+    return (
+        ratios,
+        "the velocity error of 2 s windows, relative to nominal and averaged over the axes",
+    )
+
+
+def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
+    which = "The learned residual" if count == 1 else f"Of {count} learned residuals,"
+    if ratio < 1 - EQUAL:
+        verb = "lowers" if count == 1 else "lowers the error most:"
+        tail = (
+            f" {measure} by {_percent(1 - ratio)}" if count == 1 else f" by {_percent(1 - ratio)}"
+        )
+        text = f"{which} {best} {verb}{tail}"
+        return f"{text}." if count == 1 else f"{text} ({measure})."
+    change = (
+        "leaves the error as it is" if ratio <= 1 + EQUAL else f"raises it by {_percent(ratio - 1)}"
+    )
+    if count == 1:
+        return f"The learned residual {best} does not help: it {change} ({measure})."
+    return f"None of the {count} learned residuals helps; the best, {best}, {change} ({measure})."
+
+
+def _per_axis(best: str, row: Array | None) -> list[str]:
+    if row is None or not np.isfinite(row).any():
+        return []
+    axes = dict(zip(AXES, (float(r) for r in row), strict=True))
+    lower = [f"{a} (−{_percent(1 - r)})" for a, r in axes.items() if r < 1 - EQUAL]
+    same = [a for a, r in axes.items() if abs(r - 1) <= EQUAL]
+    worse = [f"{a} (+{_percent(r - 1)})" for a, r in axes.items() if r > 1 + EQUAL]
+    groups = (("lower in", lower), ("the same in", same), ("higher in", worse))
+    parts = [f"{what} {listed(where)}" for what, where in groups if where]
+    return [f"Axis by axis its velocity RMSE is {'; '.join(parts)}."]
+
+
+def _others(learned: Mapping[str, float], best: str) -> list[str]:
+    failing = [
+        f"{name} (+{_percent(r - 1)})" if r > 1 + EQUAL else f"{name} (no change)"
+        for name, r in learned.items()
+        if name != best and r >= 1 - EQUAL
+    ]
+    return [f"Not better than nominal: {listed(failing)}."] if failing else []
+
+
+def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
+    """Say how far the best step has come and how far the noise floor is."""
+    models = {name: value for name, value in steps.items() if name != "noise_floor"}
+    if len(models) < 2:
+        return []
+    best = min(models, key=lambda name: models[name])
+    text = f"On the ladder the lowest error is that of {best}, {significant(models[best])}"
+    others = [f"{n} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
+              if n in models and n != best]  # fmt: skip
+    sentences = [f"{text}; {listed(others)}." if others else f"{text}."]
+    floor = steps.get("noise_floor", 0.0)
+    if floor > 0:
+        sentences.append(_floor_sentence(models[best] / floor, floor))
+    return sentences
+
+
+def _floor_sentence(ratio: float, floor: float) -> str:
+    if ratio <= 1 + REACHED:
+        return (
+            f"It reaches the noise floor, {significant(floor)}: no model can be seen to do better."
+        )
+    return (
+        f"A perfect model would show about {significant(floor)} (noise floor); "
+        f"the best is {significant(ratio, 2)} times that."
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f}\u202f%" if share >= 0.1 else f"{significant(100 * share, 2)}\u202f%"
+
+
+def _count(number_of: int, what: str) -> str:
+    return f"{number_of} {what}" if number_of == 1 else f"{number_of} {what}s"

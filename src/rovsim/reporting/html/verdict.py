@@ -1,0 +1,139 @@
+"""What a diagnosis found, in plain language: for the report and for the terminal."""
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any, Mapping, Sequence
+
+from rovsim.dynamics.effects import catalogue
+from rovsim.reporting.figures.marks import listed, number, significant
+
+VERDICTS = {
+    "missing_effects": "The model lacks physics that the catalogue knows.",
+    "adequate": "Nothing is missing: what is left is noise.",
+    "unexplained": "Something is missing that the catalogue does not know.",
+    "insufficient_data": "The recording does not say: too little was recorded, or moved.",
+}
+INTERVAL = 1.96  # standard deviations to either side hold 95 %
+MANY = 1e6  # odds that need no number
+
+
+@dataclass(frozen=True)
+class Missing:
+    """A selected effect: its id, what it is, its parameters as text, and how sure it is.
+
+    `equation` in LaTeX and `cause` are empty where the effect is not in the catalogue any more.
+    """
+
+    effect: str
+    meaning: str
+    parameters: tuple[str, ...]
+    worth: str
+    equation: str
+    cause: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A diagnosis in words: a sentence, the missing effects, what else to know, what to record."""
+
+    name: str
+    sentence: str
+    missing: tuple[Missing, ...]
+    remarks: tuple[str, ...]
+    next: str
+
+
+def verdict(found: Mapping[str, Any]) -> Verdict:
+    """`diagnosis.json` in words."""
+    remarks = [
+        error_sentence(found["error"], bool(found["selected"])),
+        *apart_sentences(found),
+        *unexplained_sentences(found),
+        *still_sentences(found.get("not_excited", [])),
+    ]
+    return Verdict(
+        found["verdict"], VERDICTS[found["verdict"]], tuple(map(_missing, found["selected"])),
+        tuple(remarks), found["next_experiment"] or "",
+    )  # fmt: skip
+
+
+def _missing(one: Mapping[str, Any]) -> Missing:
+    known = catalogue().get(one["effect"])
+    meaning = (known.__doc__ or "").split("\n")[0] if known else ""
+    equation, cause = (known.equation, known.cause) if known else ("", "")
+    values = tuple(f"{name} {interval(v)}" for name, v in one["parameters"].items())
+    worth = f"removes {percent(one['error_reduction'])} of the error, {_sure(one['probability'])}"
+    return Missing(one["effect"], meaning, values, worth, equation, cause)
+
+
+def interval(value: Mapping[str, Any]) -> str:
+    """A fitted value with its 95 % interval and unit: 0.181 ± 0.002 s."""
+    unit = "" if value["unit"] == "1" else re.sub(r"(?<=[a-z])2", "²", value["unit"])
+    half = INTERVAL * number(value.get("std"))
+    if not math.isfinite(half) or half <= 0.0:
+        return f"{significant(number(value['value']), 4)} {unit}".strip()
+    places = max(0, 1 - math.floor(math.log10(half)))
+    return f"{number(value['value']):.{places}f} ± {half:.{places}f} {unit}".strip()
+
+
+def percent(share: float | None) -> str:
+    """A share as a whole number of percent."""
+    return "an unknown share" if share is None else f"{100 * share:.0f}\u202f%"
+
+
+def _sure(probability: float | None) -> str:
+    p = number(probability)
+    return "probability above 0.999" if p > 0.999 else f"probability {p:.3f}"
+
+
+def error_sentence(error: Mapping[str, float | None], changed: bool) -> str:
+    """The error on the test runs before and after, and what a perfect model would show."""
+    before, after, floor = (
+        number(error.get(k)) for k in ("nominal", "with_effects", "noise_floor")
+    )
+    if not math.isfinite(before):
+        return "No test run could be used, so there is no error to report."
+    now = f"falls from {significant(before)} to {significant(after)}"
+    text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
+    text += " (velocity in 2 s windows, in units of its spread)."
+    if not math.isfinite(floor):
+        return text
+    return f"{text} A perfect model would show about {significant(floor)} (noise floor)."
+
+
+def apart_sentences(found: Mapping[str, Any]) -> list[str]:
+    """Which effects the runs cannot tell apart, and how far behind the next names are."""
+    alike = found["indistinguishable"]
+    sentences = [f"These runs cannot tell {listed(group)} apart." for group in alike]
+    sentences += [
+        f"Known only together, not one by one: {', '.join(group)}."
+        for group in found.get("known_together", [])
+    ]
+    for one in found["selected"]:
+        rivals = [r for r in found.get("rivals", []) if r["instead_of"] == one["effect"]]
+        taken = {name for group in alike if one["effect"] in group for name in group}
+        behind = [r for r in rivals if r["effect"] not in taken]
+        if behind:
+            sentences.append(_runner_up(min(behind, key=lambda r: r["deficit"])))
+    return sentences
+
+
+def _runner_up(rival: Mapping[str, Any]) -> str:
+    odds = math.exp(min(0.5 * rival["deficit"], 700.0))
+    times = "more than a million" if odds > MANY else f"{significant(odds, 2)}"
+    name, instead = rival["effect"], rival["instead_of"]
+    return f"The runner-up for {instead} is {name}, {times} times less likely."
+
+
+def unexplained_sentences(found: Mapping[str, Any]) -> list[str]:
+    """What no effect of the catalogue explains."""
+    left = found["unexplained"]
+    return [f"Unexplained: {left['hint']}"] if left["significant"] else []
+
+
+def still_sentences(axes: Sequence[str]) -> list[str]:
+    """Axes that nobody moved."""
+    if not axes:
+        return []
+    return [f"Nothing can be said about {listed(axes)}: no train run moves there."]
