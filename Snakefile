@@ -2,9 +2,9 @@
 
 import sys
 
-from rovsim.chapter import Chapter
+from rovsim.application.leave_one_run_out import Chapter
 from rovsim.core.errors import RovsimError
-from rovsim.study import Study
+from rovsim.application.study import Study
 
 study = Study(config)
 chapter = Chapter(study)

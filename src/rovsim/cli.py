@@ -52,7 +52,7 @@ def _main(words: list[str]) -> None:
     if sweep:
         _sweep([f"command={command}", *overrides])
     else:
-        from rovsim.config import compose
+        from rovsim.application.settings import compose
         from rovsim.core.progress import heard_by
         from rovsim.dynamics.effects import use_effect_files
 
@@ -127,7 +127,7 @@ def _sweep(overrides: list[str]) -> None:
     """Let Hydra run a command once for every combination of the given values."""
     import hydra
 
-    from rovsim.config import CONF
+    from rovsim.application.settings import CONF
     from rovsim.sweep import job
 
     sys.argv = ["rovsim", "--multirun", *overrides]

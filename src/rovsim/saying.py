@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from rovsim.config import Settings
+from rovsim.application.settings import Settings
 
 
 def say(settings: Settings, text: str, content: Any) -> None:

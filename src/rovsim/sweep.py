@@ -5,7 +5,7 @@ import sys
 from contextlib import nullcontext
 from typing import Any
 
-from rovsim.config import settings_of
+from rovsim.application.settings import settings_of
 from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
 from rovsim.dynamics.effects import use_effect_files

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from recordings import write_campaign, write_lines
-from rovsim.chapter import Chapter
+from rovsim.application.leave_one_run_out import Chapter
+from rovsim.application.settings import compose
+from rovsim.application.study import Study
 from rovsim.cli import main
-from rovsim.config import compose
 from rovsim.core.errors import BadInput
-from rovsim.study import Study
 
 ROOT = Path(__file__).parents[2]
 KTH = ROOT / "campaigns" / "kth_tank_2025"

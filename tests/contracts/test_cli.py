@@ -7,8 +7,8 @@ import sys
 import pytest
 import yaml
 
+from rovsim.application.settings import compose
 from rovsim.cli import listed, main, override, quoted
-from rovsim.config import compose
 from rovsim.core.files import read_yaml
 
 AWKWARD = [

@@ -2,8 +2,8 @@
 
 import pytest
 
+from rovsim.application.settings import compose
 from rovsim.cli import main
-from rovsim.config import compose
 from rovsim.core.files import read_json, read_yaml
 from rovsim.diagnosis.apply import added
 from rovsim.evaluation.ladder import floor_step, step, with_diagnosis

@@ -5,6 +5,7 @@ import pickle
 import numpy as np
 import pytest
 
+from rovsim.application.loading import results_folder
 from rovsim.core.errors import BadInput
 from rovsim.core.files import (
     appearing,
@@ -15,7 +16,6 @@ from rovsim.core.files import (
     write_json,
 )
 from rovsim.core.schema import checked
-from rovsim.loading import results_folder
 from rovsim.measurement.signals.chain import SignalSettings
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from rovsim.application.study import Study
 from rovsim.cli import main
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import catalogue, effect, use_effect_files
-from rovsim.study import Study
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")
 

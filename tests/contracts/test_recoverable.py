@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rovsim.config import compose
+from rovsim.application.loading import measured
+from rovsim.application.settings import compose
 from rovsim.diagnosis.diagnose import FIRST_NOISE
 from rovsim.diagnosis.observer.filter_bank import Observatory
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
@@ -13,7 +14,6 @@ from rovsim.dynamics.effects import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.hidden.flight import fly
 from rovsim.hidden.suites import hiding
-from rovsim.loading import measured
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 

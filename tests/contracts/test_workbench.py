@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from chores import counting, dying, failing
-from rovsim.answering import compare
+from rovsim.application.pipeline import compare
+from rovsim.application.settings import compose
 from rovsim.cli import main
-from rovsim.config import compose
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
 from rovsim.dynamics.effects import catalogue

@@ -163,6 +163,6 @@ rule track:
         campaign=study.name,
         tracking=study.section("tracking")["tracking"],
         diagnosis=study.section("search", "signals", "replay", "seed"),
-        code=study.code("tracking"),
+        code=study.code("application.tracking"),
     script:
         "../scripts/track.py"

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.diagnosis.apply import added, read_diagnosis
-from rovsim.jobs import job
 
 
 def main(*, diagnosis: Path, out: Path) -> None:

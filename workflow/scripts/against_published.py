@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json, write_json
 from rovsim.evaluation.held_out.published import against, demanded, read_published
-from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.tables import marks_table
 

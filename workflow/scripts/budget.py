@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.budget import budget
-from rovsim.jobs import job
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json, write_json
 from rovsim.evaluation.error_conditions import merged
 from rovsim.evaluation.ladder import step, with_diagnosis
 from rovsim.evaluation.scores import comparison, growth
-from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import Replay
 

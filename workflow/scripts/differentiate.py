@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json
 from rovsim.core.schema import checked
-from rovsim.jobs import job
 from rovsim.measurement.signals.chain import SignalSettings, differentiated, read_stage
 
 

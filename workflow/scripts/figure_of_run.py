@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.evaluation.budget import Budget
-from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json
-from rovsim.jobs import job
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.report_data import Evidence, arguments

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.schema import checked
-from rovsim.jobs import job
 from rovsim.measurement.signals.chain import SignalSettings, filtered, read_stage
 
 

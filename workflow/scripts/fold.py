@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
+from rovsim.application.study import BASELINES
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import load_model, read_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.scores import comparison, score
-from rovsim.jobs import job
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import replay, rule_settings
-from rovsim.study import BASELINES
 
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import read_model
 from rovsim.evaluation.held_out.pitfalls import SCHEMA, mistakes
-from rovsim.jobs import job
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import rule_settings

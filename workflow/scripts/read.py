@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
-from rovsim.jobs import job
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality_report import quality_of
 from rovsim.measurement.recording import read_run

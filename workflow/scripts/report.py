@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json
-from rovsim.jobs import job
 from rovsim.reporting.html import page
 from rovsim.reporting.report_data import ONCE, about
 

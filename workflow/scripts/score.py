@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.evaluation.scores import score
-from rovsim.jobs import job
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import Replay
 

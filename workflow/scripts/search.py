@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import load_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.error_conditions import content, judged
-from rovsim.jobs import job
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import rule_settings

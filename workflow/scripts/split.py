@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.evaluation.held_out.folds import held_out
-from rovsim.jobs import job
 from rovsim.measurement.signals.chain import read_stage
 from rovsim.measurement.signals.motion import Motion
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.core.schema import checked
-from rovsim.jobs import job
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from rovsim.config import TimingSettings
+from rovsim.application.settings import TimingSettings
+from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
 from rovsim.dynamics.model import nominal, read_model
 from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.latency import both_ways
-from rovsim.jobs import job
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion

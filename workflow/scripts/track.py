@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from rovsim.config import TrackingSettings
+from rovsim.application.settings import TrackingSettings
+from rovsim.application.snakemake_job import job
+from rovsim.application.tracking import track, track_diagnosis
 from rovsim.core.files import read_json, read_yaml, write_json
 from rovsim.core.schema import checked
-from rovsim.jobs import job
-from rovsim.tracking import track, track_diagnosis
 
 
 def main(

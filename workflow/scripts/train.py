@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.application.snakemake_job import job
 from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import load_model
 from rovsim.dynamics.vehicle import campaign_vehicle
-from rovsim.jobs import job
 from rovsim.learning.learner import learner_settings
 from rovsim.learning.pairs import train_residual
 from rovsim.measurement.campaign import load_campaign

@@ -8,10 +8,10 @@ and adds them to the base model `to`. NEW.yaml is plain YAML, and a model wherev
 
 from pathlib import Path
 
-from rovsim.config import Settings
+from rovsim.application.provenance import provenance
+from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.apply import added, read_diagnosis
-from rovsim.provenance import provenance
 from rovsim.saying import say
 
 

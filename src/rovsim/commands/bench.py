@@ -12,18 +12,18 @@ from typing import Any
 
 import numpy as np
 
+from rovsim.application.loading import measured
+from rovsim.application.settings import Settings
 from rovsim.bench.accuracy import accuracy
 from rovsim.bench.data import Pairs, fitted, unfading
 from rovsim.bench.inference import GP, Effort, inference
 from rovsim.bench.machine import machine
 from rovsim.bench.page import write_page
 from rovsim.bench.replay import replay_speeds
-from rovsim.config import Settings
 from rovsim.core.files import write_json
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
 from rovsim.learning.pairs import samples
-from rovsim.loading import measured
 from rovsim.saying import say
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 

@@ -9,17 +9,17 @@ is then written by `rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 
 from pathlib import Path
 
-from rovsim.answering import diagnose
-from rovsim.config import Settings
+from rovsim.application.loading import Measured, measured, models, results_folder
+from rovsim.application.pipeline import diagnose
+from rovsim.application.provenance import provenance
+from rovsim.application.settings import Settings
+from rovsim.application.tracking import track_diagnosis
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.of_campaign import Diagnosed
-from rovsim.loading import Measured, measured, models, results_folder
-from rovsim.provenance import provenance
 from rovsim.reporting.html import terminal
 from rovsim.reporting.report_data import Evidence
 from rovsim.saying import say
-from rovsim.tracking import track_diagnosis
 
 FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
 

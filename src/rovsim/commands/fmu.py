@@ -8,7 +8,7 @@ in the Python that its FMI tool loads (docs/elsewhere.md). Needs the extra rovsi
 
 from pathlib import Path
 
-from rovsim.config import Settings
+from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.model import BUILT_IN, load_model
 from rovsim.dynamics.vehicle import load_vehicle

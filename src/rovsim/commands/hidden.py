@@ -10,7 +10,7 @@ Writes OUT/summary.json, and of reporting seeds the tables of docs/benchmark_hid
 from pathlib import Path
 from typing import Any
 
-from rovsim.config import Settings
+from rovsim.application.settings import Settings
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.hidden.methods import chosen

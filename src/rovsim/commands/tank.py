@@ -8,7 +8,7 @@ DIR gets campaign.yaml, a QTM export and a command log per run, and truth.yaml.
 
 from pathlib import Path
 
-from rovsim.config import Settings
+from rovsim.application.settings import Settings
 from rovsim.core.progress import reported
 from rovsim.saying import say
 from rovsim.simulation.synthetic_tank.campaign import make_campaign

@@ -6,14 +6,14 @@ Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comp
 an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof.
 """
 
-from rovsim.answering import replayed, scored, train
-from rovsim.config import Settings
+from rovsim.application.loading import measured, models, results_folder
+from rovsim.application.pipeline import replayed, scored, train
+from rovsim.application.settings import Settings
+from rovsim.application.tracking import track
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
-from rovsim.loading import measured, models, results_folder
 from rovsim.saying import say
-from rovsim.tracking import track
 
 
 def run(settings: Settings) -> None:

@@ -9,7 +9,7 @@ near here, and one to practise on. What it computes lies in `out` (results/CAMPA
 
 import socket
 
-from rovsim.config import Settings
+from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
 from rovsim.saying import say
 from rovsim.ui import HOST

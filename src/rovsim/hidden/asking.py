@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from rovsim.config import compose
+from rovsim.application.loading import measured
+from rovsim.application.settings import compose
 from rovsim.diagnosis.of_campaign import diagnosed
 from rovsim.dynamics.model import nominal
-from rovsim.loading import measured
 
 
 def diagnosis(campaign: Path, out: Path) -> dict[str, Any]:

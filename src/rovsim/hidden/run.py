@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Iterator, Sequence
 
+from rovsim.application.provenance import digest
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json, write_json
 from rovsim.hidden.case import Case
 from rovsim.hidden.flight import fly
 from rovsim.hidden.methods import Method
-from rovsim.provenance import digest
 
 SCHEMA = "rovsim.hidden/1"
 TANK = ("rovsim.simulation.synthetic_tank", "rovsim.hidden.flight", "rovsim.hidden.outside")

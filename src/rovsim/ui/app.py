@@ -12,7 +12,7 @@ from nicegui import app as server
 from nicegui import ui
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
-from rovsim.config import Settings, compose
+from rovsim.application.settings import Settings, compose
 from rovsim.core.errors import RovsimError
 from rovsim.ui import HOST
 

@@ -4,13 +4,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rovsim.answering import compare, diagnose, train
-from rovsim.config import Settings
+from rovsim.application.loading import measured, models
+from rovsim.application.pipeline import compare, diagnose, train
+from rovsim.application.provenance import provenance
+from rovsim.application.settings import Settings
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.dynamics.effects import use_effect_files
-from rovsim.loading import measured, models
-from rovsim.provenance import provenance
 from rovsim.reporting.report_data import PER_RUN
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 

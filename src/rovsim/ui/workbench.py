@@ -7,7 +7,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
 
-from rovsim.config import Settings, compose
+from rovsim.application.loading import Measured, measured, models
+from rovsim.application.provenance import digest, provenance
+from rovsim.application.settings import Settings, compose
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json
 from rovsim.diagnosis.apply import read_diagnosis
@@ -15,8 +17,6 @@ from rovsim.dynamics.model import BUILT_IN, Model, read_model, zero_acceleration
 from rovsim.evaluation.error_conditions import Judged, judged
 from rovsim.evaluation.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.evaluation.scores import errors, metrics
-from rovsim.loading import Measured, measured, models
-from rovsim.provenance import digest, provenance
 from rovsim.simulation.replay import OPEN_LOOP, Prediction, Replay, replay
 from rovsim.ui import tasks
 from rovsim.ui.draft import Draft

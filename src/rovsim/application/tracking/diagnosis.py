@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any, Iterable, Mapping
 
-from rovsim.config import TrackingSettings
-from rovsim.provenance import leaves
-from rovsim.tracking.runs import flat, track
+from rovsim.application.provenance import leaves
+from rovsim.application.settings import TrackingSettings
+from rovsim.application.tracking.runs import flat, track
 
 
 def track_diagnosis(

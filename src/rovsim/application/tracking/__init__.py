@@ -3,7 +3,7 @@
 Runs are written under a lock, one writer at a time, so parallel jobs never find a locked database.
 """
 
-from rovsim.tracking.diagnosis import track_diagnosis
-from rovsim.tracking.runs import track
+from rovsim.application.tracking.diagnosis import track_diagnosis
+from rovsim.application.tracking.runs import track
 
 __all__ = ["track", "track_diagnosis"]

@@ -7,7 +7,7 @@ from typing import Any, Iterable, Mapping
 import numpy as np
 from filelock import FileLock
 
-from rovsim.config import TrackingSettings
+from rovsim.application.settings import TrackingSettings
 
 HORIZONS = ("open_loop", "0.5", "2", "5")
 

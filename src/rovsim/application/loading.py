@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rovsim.config import Settings
+from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.diagnosis.of_campaign import Runs

@@ -3,7 +3,9 @@
 from pathlib import Path
 from typing import Any, Sequence
 
-from rovsim.config import Settings
+from rovsim.application.loading import Measured
+from rovsim.application.provenance import provenance
+from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted, reported, staged
 from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, diagnosed
@@ -13,9 +15,7 @@ from rovsim.evaluation.budget import Budget, budget
 from rovsim.evaluation.error_conditions import content, judged
 from rovsim.evaluation.scores import comparison, growth, score
 from rovsim.learning.pairs import samples, train_residual, training_runs
-from rovsim.loading import Measured
 from rovsim.measurement.signals.motion import Motion
-from rovsim.provenance import provenance
 from rovsim.reporting.report_data import Evidence
 from rovsim.simulation.replay import Replay, replay
 

@@ -14,7 +14,7 @@ from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.replay import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
-CONF = Path(__file__).parents[2] / "conf"
+CONF = Path(__file__).parents[3] / "conf"
 
 
 class StudySettings(Section):
@@ -168,7 +168,7 @@ def _nearest_override(overrides: Sequence[str]) -> str:
 
 def _keys() -> list[str]:
     """Every key of the default configuration, dotted, and every group."""
-    from rovsim.provenance import flattened
+    from rovsim.application.provenance import flattened
 
     groups = [path.name for path in CONF.iterdir() if path.is_dir()]
     return [*groups, *flattened(compose([]).model_dump(mode="json"))]

@@ -5,14 +5,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
 
-from rovsim.config import Settings, compose
+from rovsim.application.provenance import digest, own_digest, provenance
+from rovsim.application.settings import Settings, compose
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import use_effect_files
 from rovsim.evaluation.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
-from rovsim.provenance import digest, own_digest, provenance
 from rovsim.reporting.report_data import PER_RUN
 from rovsim.simulation.synthetic_tank.campaign import SEALED, describe
 
