@@ -13,7 +13,7 @@ from statistics import median
 from playwright.sync_api import sync_playwright
 
 from chromium import DESK, FLAGS, NAMES, started
-from rovsim.bench.machine import machine
+from rovsim.benchmarks.speed.machine import machine
 from rovsim.cli import main
 from rovsim.core.files import write_json
 

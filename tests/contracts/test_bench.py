@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rovsim.bench.accuracy import _left
-from rovsim.bench.data import Pairs, fitted, unfading
-from rovsim.bench.inference import Clock, Effort, _neighbours, _processes
-from rovsim.bench.page import text, write_page
+from rovsim.benchmarks.speed.accuracy import _left
+from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
+from rovsim.benchmarks.speed.inference import Clock, Effort, _neighbours, _processes
+from rovsim.benchmarks.speed.page import text, write_page
 from rovsim.reporting.html.marked import BEGIN, END
 
 FEW = Effort(calls=5, warmup=1, seconds=0.05)

@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 
+from rovsim.benchmarks.blind.case import SEEDS, Case, Unlisted, seed_of
+from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.methods import Method
+from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
+from rovsim.benchmarks.blind.page import tables
+from rovsim.benchmarks.blind.recipes import RECIPES
+from rovsim.benchmarks.blind.run import answers, place, run
+from rovsim.benchmarks.blind.score import matching, score
+from rovsim.benchmarks.blind.suites import FAMILIES, suite
+from rovsim.benchmarks.blind.summary import detection_limit, judged, summary
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.model import EffectEntry
-from rovsim.hidden.case import SEEDS, Case, Unlisted, seed_of
-from rovsim.hidden.flight import fly
-from rovsim.hidden.methods import Method
-from rovsim.hidden.outside import OUTSIDE, drawn_outside
-from rovsim.hidden.page import tables
-from rovsim.hidden.recipes import RECIPES
-from rovsim.hidden.run import answers, place, run
-from rovsim.hidden.score import matching, score
-from rovsim.hidden.suites import FAMILIES, suite
-from rovsim.hidden.summary import detection_limit, judged, summary
 from rovsim.reporting.html.marked import BEGIN, END, replace_tables
 
 SHORT = {

@@ -5,6 +5,8 @@ import pytest
 
 from rovsim.application.loading import measured
 from rovsim.application.settings import compose
+from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.suites import hiding
 from rovsim.diagnosis.diagnose import FIRST_NOISE
 from rovsim.diagnosis.observer.filter_bank import Observatory
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
@@ -12,8 +14,6 @@ from rovsim.diagnosis.selection.candidates import candidates
 from rovsim.diagnosis.selection.fit import fit
 from rovsim.dynamics.effects import built_in
 from rovsim.dynamics.model import nominal
-from rovsim.hidden.flight import fly
-from rovsim.hidden.suites import hiding
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 

@@ -5,11 +5,11 @@ import json
 import numba
 import pytest
 
+from rovsim.benchmarks.blind.asking import diagnosis
+from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.suites import combination, nothing
 from rovsim.core.files import read_yaml
 from rovsim.diagnosis.result import SCHEMA
-from rovsim.hidden.asking import diagnosis
-from rovsim.hidden.flight import fly
-from rovsim.hidden.suites import combination, nothing
 from worlds import SHARED, needed
 
 pytestmark = pytest.mark.slow

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rovsim.benchmarks.blind import methods
+from rovsim.benchmarks.blind.library import problem, steps
+from rovsim.benchmarks.blind.sparse import answered, forward, thresholded
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import catalogue, effect
-from rovsim.hidden import methods
-from rovsim.hidden.library import problem, steps
-from rovsim.hidden.sparse import answered, forward, thresholded
 from rovsim.learning.pairs import accelerations, at_samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.replay import ReplaySettings

@@ -14,12 +14,12 @@ import numpy as np
 
 from rovsim.application.loading import measured
 from rovsim.application.settings import Settings
-from rovsim.bench.accuracy import accuracy
-from rovsim.bench.data import Pairs, fitted, unfading
-from rovsim.bench.inference import GP, Effort, inference
-from rovsim.bench.machine import machine
-from rovsim.bench.page import write_page
-from rovsim.bench.replay import replay_speeds
+from rovsim.benchmarks.speed.accuracy import accuracy
+from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
+from rovsim.benchmarks.speed.inference import GP, Effort, inference
+from rovsim.benchmarks.speed.machine import machine
+from rovsim.benchmarks.speed.page import write_page
+from rovsim.benchmarks.speed.replay import replay_speeds
 from rovsim.core.files import write_json
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal

@@ -11,18 +11,18 @@ from pathlib import Path
 from typing import Any
 
 from rovsim.application.settings import Settings
+from rovsim.benchmarks.blind.methods import chosen
+from rovsim.benchmarks.blind.page import tables
+from rovsim.benchmarks.blind.run import answers
+from rovsim.benchmarks.blind.run import run as run_cases
+from rovsim.benchmarks.blind.suites import suite
+from rovsim.benchmarks.blind.summary import judged, summary
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
-from rovsim.hidden.methods import chosen
-from rovsim.hidden.page import tables
-from rovsim.hidden.run import answers
-from rovsim.hidden.run import run as run_cases
-from rovsim.hidden.suites import suite
-from rovsim.hidden.summary import judged, summary
 from rovsim.reporting.html.marked import replace_tables
 from rovsim.saying import say
 
-SCHEMA = "rovsim.hidden.summary/1"
+SCHEMA = "rovsim.benchmarks.blind.summary/1"
 
 
 def run(settings: Settings) -> None:

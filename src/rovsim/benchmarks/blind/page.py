@@ -2,7 +2,7 @@
 
 from typing import Any, Mapping, Sequence
 
-from rovsim.hidden.case import SEEDS
+from rovsim.benchmarks.blind.case import SEEDS
 from rovsim.reporting.html import marked
 
 KIND_COLUMNS = {

@@ -9,9 +9,9 @@ import numpy as np
 from numpy import ndarray as Array
 from threadpoolctl import threadpool_limits
 
-from rovsim.bench import libraries
-from rovsim.bench.data import Pairs, fitted, unfading
-from rovsim.bench.machine import as_a_control_loop
+from rovsim.benchmarks.speed import libraries
+from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
+from rovsim.benchmarks.speed.machine import as_a_control_loop
 from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many, posterior_many
 from rovsim.dynamics.learned.residual import Residual

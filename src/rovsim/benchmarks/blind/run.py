@@ -12,14 +12,18 @@ from pathlib import Path
 from typing import Any, Callable, Iterator, Sequence
 
 from rovsim.application.provenance import digest
+from rovsim.benchmarks.blind.case import Case
+from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.methods import Method
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json, write_json
-from rovsim.hidden.case import Case
-from rovsim.hidden.flight import fly
-from rovsim.hidden.methods import Method
 
 SCHEMA = "rovsim.hidden/1"
-TANK = ("rovsim.simulation.synthetic_tank", "rovsim.hidden.flight", "rovsim.hidden.outside")
+TANK = (
+    "rovsim.simulation.synthetic_tank",
+    "rovsim.benchmarks.blind.flight",
+    "rovsim.benchmarks.blind.outside",
+)
 ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 Progress = Callable[[int, int], None]
 

@@ -5,8 +5,8 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
-from rovsim.hidden.case import Case
-from rovsim.hidden.score import ParameterScore, Score, score
+from rovsim.benchmarks.blind.case import Case
+from rovsim.benchmarks.blind.score import ParameterScore, Score, score
 
 
 @dataclass(frozen=True)

@@ -33,19 +33,19 @@ def chosen(names: Sequence[str]) -> list[Method]:
 
 
 def _diagnosis() -> Method:
-    from rovsim.hidden.asking import diagnosis
+    from rovsim.benchmarks.blind.asking import diagnosis
 
-    return Method("diagnosis", diagnosis, ("rovsim.hidden.asking",))
+    return Method("diagnosis", diagnosis, ("rovsim.benchmarks.blind.asking",))
 
 
 def _stlsq() -> Method:
-    from rovsim.hidden.sparse import stlsq
+    from rovsim.benchmarks.blind.sparse import stlsq
 
     return _regression("stlsq", stlsq)
 
 
 def _frols() -> Method:
-    from rovsim.hidden.sparse import frols
+    from rovsim.benchmarks.blind.sparse import frols
 
     return _regression("frols", frols)
 
@@ -58,7 +58,7 @@ def _regression(name: str, answer: Answer) -> Method:
             expected="the packages of environment.lock",
             remedy="Run `make setup`, or ask for hidden.methods=[diagnosis] alone.",
         )
-    return Method(name, answer, ("rovsim.hidden.sparse",))
+    return Method(name, answer, ("rovsim.benchmarks.blind.sparse",))
 
 
 _METHODS = {"diagnosis": _diagnosis, "stlsq": _stlsq, "frols": _frols}

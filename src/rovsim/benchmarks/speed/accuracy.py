@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rovsim.bench.data import Pairs, fitted, unfading
-from rovsim.bench.inference import ours
+from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
+from rovsim.benchmarks.speed.inference import ours
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.evaluation.latency import latency
 

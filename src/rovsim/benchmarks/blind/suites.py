@@ -15,11 +15,11 @@ from typing import Any, Iterator, Mapping, Sequence
 import numpy as np
 
 from rovsim import AXES
+from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
+from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
+from rovsim.benchmarks.blind.recipes import RECIPES, drawn
 from rovsim.dynamics.model import EffectEntry, Value
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.hidden.case import Case, Range, Unlisted, merged, random_of, seed_of
-from rovsim.hidden.outside import OUTSIDE, drawn_outside
-from rovsim.hidden.recipes import RECIPES, drawn
 from rovsim.simulation.synthetic_tank.settings import Camera
 
 CALM = Camera()

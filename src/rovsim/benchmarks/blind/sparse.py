@@ -15,17 +15,17 @@ from numpy import ndarray as Array
 from scipy.linalg import LinAlgWarning
 from sklearn.exceptions import ConvergenceWarning
 
+from rovsim.benchmarks.blind.library import Problem, problem
 from rovsim.dynamics.effects import catalogue, effect
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import campaign_vehicle
-from rovsim.hidden.library import Problem, problem
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 
 Regression = Callable[[Array, Array], Array]
 
-# The best of `rovsim.hidden.tuning`, on development seeds (docs/benchmark_hidden.md).
+# The best of `rovsim.benchmarks.blind.tuning`, on development seeds (docs/benchmark_hidden.md).
 THRESHOLD, RIDGE = 0.17, 0.02
 LEAST_GAIN, MOST_TERMS = 0.05, 8
 

@@ -6,12 +6,12 @@ from typing import Any, Literal, Mapping
 import numpy as np
 from pydantic import Field
 
+from rovsim.benchmarks.blind.outside import OUTSIDE
+from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.core.schema import Section
 from rovsim.dynamics.effects import effect
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import EffectEntry, Value
-from rovsim.hidden.outside import OUTSIDE
-from rovsim.hidden.recipes import RECIPES
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 # First and last seed of each range. Whoever builds or tunes a method looks at development cases

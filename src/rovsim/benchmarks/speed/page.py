@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any, Mapping
 
-from rovsim.bench.plots import draw_accuracy, draw_sizes
+from rovsim.benchmarks.speed.plots import draw_accuracy, draw_sizes
 from rovsim.reporting.figures.marks import significant
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html.marked import replace_tables, table

@@ -9,8 +9,8 @@ counted, so that an answer cannot win by calling everything alike.
 from dataclasses import asdict, dataclass
 from typing import Any, Mapping, Sequence
 
+from rovsim.benchmarks.blind.case import Case
 from rovsim.dynamics.effects import effect
-from rovsim.hidden.case import Case
 
 Diagnosis = Mapping[str, Any]
 SURE = 1.96  # standard deviations of a 95 % interval

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from rovsim.benchmarks.blind.case import Case
 from rovsim.core.errors import BadInput
-from rovsim.hidden.case import Case
 from rovsim.simulation.synthetic_tank.campaign import SEALED, make_campaign
 from rovsim.simulation.synthetic_tank.simulate import LeftTank
 

@@ -1,4 +1,4 @@
-"""Choose the thresholds of the sparse regressions: python -m rovsim.hidden.tuning.
+"""Choose the thresholds of the sparse regressions: python -m rovsim.benchmarks.blind.tuning.
 
 On development seeds: each case of the quick suite that hides something of the catalogue, or
 nothing. The best setting names exactly what is hidden most often, and among equals has the right
@@ -9,13 +9,13 @@ import tempfile
 from pathlib import Path
 from typing import Any, Iterator
 
+from rovsim.benchmarks.blind.case import Case
+from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.library import Problem
+from rovsim.benchmarks.blind.score import Score, score
+from rovsim.benchmarks.blind.sparse import Regression, answered, forward, of_campaign, thresholded
+from rovsim.benchmarks.blind.suites import suite
 from rovsim.core.progress import counted
-from rovsim.hidden.case import Case
-from rovsim.hidden.flight import fly
-from rovsim.hidden.library import Problem
-from rovsim.hidden.score import Score, score
-from rovsim.hidden.sparse import Regression, answered, forward, of_campaign, thresholded
-from rovsim.hidden.suites import suite
 
 THRESHOLDS = (0.05, 0.07, 0.1, 0.13, 0.15, 0.17, 0.2, 0.3, 0.4)
 RIDGES = (1e-3, 0.01, 0.02, 0.03, 0.1, 0.3)
