@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from chromium import DESK, FLAGS, NAMES, PHONE, PICTURES, Tab, started
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
 
 
 @pytest.fixture(scope="session")

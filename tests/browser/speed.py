@@ -13,8 +13,8 @@ from statistics import median
 from playwright.sync_api import sync_playwright
 
 from chromium import DESK, FLAGS, NAMES, started
+from rovsim.apps.cli.main import main
 from rovsim.benchmarks.speed.machine import machine
-from rovsim.cli import main
 from rovsim.core.files import write_json
 
 STARTS, MOVES = 5, 40

@@ -7,10 +7,10 @@ import pytest
 
 from chromium import DESK, started
 from rovsim import AXES
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
+from rovsim.apps.workbench.traces import HORIZONS
 from rovsim.diagnosis.apply import read_diagnosis
 from rovsim.dynamics.model import read_model
-from rovsim.ui.traces import HORIZONS
 
 pytestmark = pytest.mark.browser
 SCREENS = ("compare", "where", "why", "add", "ladder", "data", "gallery")

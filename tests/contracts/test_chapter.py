@@ -13,7 +13,7 @@ from recordings import write_campaign, write_lines
 from rovsim.application.leave_one_run_out import Chapter
 from rovsim.application.settings import compose
 from rovsim.application.study import Study
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 
 ROOT = Path(__file__).parents[2]

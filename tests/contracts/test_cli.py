@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from rovsim.application.settings import compose
-from rovsim.cli import listed, main, override, quoted
+from rovsim.apps.cli.main import listed, main, override, quoted
 from rovsim.core.files import read_yaml
 
 AWKWARD = [
@@ -148,7 +148,7 @@ def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, mon
 @pytest.mark.parametrize("words", [["--help"], ["diagnose", "--help"]])
 def test_help_is_quick_because_it_imports_nothing_heavy(words):
     code = (
-        f"import sys; from rovsim.cli import main; main({words});"
+        f"import sys; from rovsim.apps.cli.main import main; main({words});"
         "print(sorted({'torch','mlflow','numba','hydra','matplotlib'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

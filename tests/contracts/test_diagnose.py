@@ -3,11 +3,11 @@
 import pytest
 
 from rovsim.application.settings import compose
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
+from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json, read_yaml
 from rovsim.diagnosis.apply import added
 from rovsim.evaluation.ladder import floor_step, step, with_diagnosis
-from rovsim.ui import tasks
 
 
 @pytest.fixture(scope="module")

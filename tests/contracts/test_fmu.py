@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
 from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.simulation.stepper import Stepper
 from worlds import at_rest, model, sticks

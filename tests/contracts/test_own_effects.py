@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from rovsim.application.study import Study
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import catalogue, effect, use_effect_files
 

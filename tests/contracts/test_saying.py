@@ -2,7 +2,7 @@
 
 import pytest
 
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
 from rovsim.core.progress import counted, heard_by, reported, staged
 
 

@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 from chores import counting, dying, failing
 from rovsim.application.pipeline import compare
 from rovsim.application.settings import compose
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
+from rovsim.apps.workbench import charts, path, tasks
+from rovsim.apps.workbench.draft import Draft, reach
+from rovsim.apps.workbench.work import Work
+from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.model import read_model
-from rovsim.ui import charts, path, tasks
-from rovsim.ui.draft import Draft, reach
-from rovsim.ui.work import Work
-from rovsim.ui.workbench import Workbench
 from worlds import model
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from rovsim.ui.charts import MARK, styles
-from rovsim.ui.where import BLUE, GREY
+from rovsim.apps.workbench.charts import MARK, styles
+from rovsim.apps.workbench.where import BLUE, GREY
 
 TOGETHER = ["measured", "nominal", "repaired", "knn_6dof", "gp_6dof", "zero_acceleration"]
 # Machado, Oliveira and Fernandes 2009, table 1, severity 1.0; for linear RGB.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rovsim.cli import main
+from rovsim.apps.cli.main import main
 from rovsim.core.files import read_json, read_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -28,7 +28,9 @@ def commands() -> list[str]:
 @pytest.mark.slow
 def test_the_tutorial_ends_with_the_error_fallen(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("rovsim.commands.compare.PER_RUN", ("velocities",))  # one figure a run
+    monkeypatch.setattr(
+        "rovsim.apps.cli.commands.compare.PER_RUN", ("velocities",)
+    )  # one figure a run
     for line in commands():
         if not line.startswith(ELSEWHERE):
             words = shlex.split(line)[1:]

@@ -10,10 +10,10 @@ from rovsim.application.loading import measured, models, results_folder
 from rovsim.application.pipeline import replayed, scored, train
 from rovsim.application.settings import Settings
 from rovsim.application.tracking import track
+from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
-from rovsim.saying import say
 
 
 def run(settings: Settings) -> None:

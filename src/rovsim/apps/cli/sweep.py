@@ -21,7 +21,7 @@ def job(composed: Any) -> None:
     try:
         use_effect_files(settings.effect_files)
         with heard_by() if settings.output == "quiet" else nullcontext():
-            importlib.import_module(f"rovsim.commands.{settings.command}").run(settings)
+            importlib.import_module(f"rovsim.apps.cli.commands.{settings.command}").run(settings)
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)
         sys.exit(2)

@@ -13,12 +13,12 @@ from rovsim.application.loading import measured, models, results_folder
 from rovsim.application.pipeline import compare
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import Settings
+from rovsim.apps.cli.output import say
 from rovsim.core.files import write_json
 from rovsim.evaluation.budget import totals
 from rovsim.evaluation.ladder import step
 from rovsim.reporting.html.terminal import compared
 from rovsim.reporting.report_data import PER_RUN, Evidence
-from rovsim.saying import say
 
 
 def run(settings: Settings) -> None:

@@ -10,6 +10,9 @@ from typing import Any, Mapping
 from rovsim.application.loading import Measured, measured, models
 from rovsim.application.provenance import digest, provenance
 from rovsim.application.settings import Settings, compose
+from rovsim.apps.workbench import tasks
+from rovsim.apps.workbench.draft import Draft
+from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json
 from rovsim.diagnosis.apply import read_diagnosis
@@ -18,9 +21,6 @@ from rovsim.evaluation.error_conditions import Judged, judged
 from rovsim.evaluation.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.evaluation.scores import errors, metrics
 from rovsim.simulation.replay import OPEN_LOOP, Prediction, Replay, replay
-from rovsim.ui import tasks
-from rovsim.ui.draft import Draft
-from rovsim.ui.work import Work
 
 KEPT = 200  # replays; one of a minute takes 2 MB
 

@@ -3,10 +3,10 @@
 from typing import Any
 
 from rovsim import AXES
+from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
+from rovsim.apps.workbench.parts import cell, chart, heading, section, table, text, words
+from rovsim.apps.workbench.workbench import Workbench
 from rovsim.reporting.figures.marks import VELOCITY_UNITS
-from rovsim.ui.charts import INK, LINE, MARK, SOFT
-from rovsim.ui.parts import cell, chart, heading, section, table, text, words
-from rovsim.ui.workbench import Workbench
 
 TITLE, QUESTION = "Data", "Can these recordings be trusted?"
 

@@ -79,7 +79,7 @@ def _doc(name: str) -> str:
 
 
 def _command(name: str) -> Any:
-    return importlib.import_module(f"rovsim.commands.{name}")
+    return importlib.import_module(f"rovsim.apps.cli.commands.{name}")
 
 
 def override(word: str) -> str:
@@ -128,7 +128,7 @@ def _sweep(overrides: list[str]) -> None:
     import hydra
 
     from rovsim.application.settings import CONF
-    from rovsim.sweep import job
+    from rovsim.apps.cli.sweep import job
 
     sys.argv = ["rovsim", "--multirun", *overrides]
     hydra.main(version_base="1.3", config_path=str(CONF), config_name="config")(job)()

@@ -6,13 +6,23 @@ import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.apps.workbench import path
+from rovsim.apps.workbench.charts import styles
+from rovsim.apps.workbench.parts import (
+    Slider,
+    cell,
+    chart,
+    computed,
+    heading,
+    onward,
+    section,
+    table,
+    text,
+)
+from rovsim.apps.workbench.traces import HORIZONS, QUANTITIES, Traces, excited, horizon_text, panels
+from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.reporting.figures.marks import VELOCITY_UNITS
-from rovsim.ui import path
-from rovsim.ui.charts import styles
-from rovsim.ui.parts import Slider, cell, chart, computed, heading, onward, section, table, text
-from rovsim.ui.traces import HORIZONS, QUANTITIES, Traces, excited, horizon_text, panels
-from rovsim.ui.workbench import Workbench
 
 TITLE, QUESTION = "Compare", "How far is the model from the measurement?"
 TICK = 0.1  # s between two pictures of a playback

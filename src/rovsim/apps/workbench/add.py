@@ -6,15 +6,24 @@ from typing import Any
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.apps.workbench.draft import reach
+from rovsim.apps.workbench.parts import (
+    Slider,
+    computed,
+    heading,
+    onward,
+    section,
+    text,
+    tile,
+    tile_html,
+)
+from rovsim.apps.workbench.traces import Traces, excited, panels
+from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.model import Model
 from rovsim.reporting.catalogue.page import unit
 from rovsim.reporting.figures.marks import significant
-from rovsim.ui.draft import reach
-from rovsim.ui.parts import Slider, computed, heading, onward, section, text, tile, tile_html
-from rovsim.ui.traces import Traces, excited, panels
-from rovsim.ui.workbench import Workbench
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
 STEPS = 400  # of a slider

@@ -5,12 +5,12 @@ from typing import Any
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.apps.workbench.charts import INK, SOFT
+from rovsim.apps.workbench.parts import cell, chart, computed, heading, section, table, text
+from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.ladder import FLOOR
 from rovsim.reporting.figures.marks import VELOCITY_UNITS, number, short, significant
 from rovsim.reporting.figures.palette import looks
-from rovsim.ui.charts import INK, SOFT
-from rovsim.ui.parts import cell, chart, computed, heading, section, table, text
-from rovsim.ui.workbench import Workbench
 
 TITLE, QUESTION = "Ladder", "How far down does the error go?"
 KINDS = {"knn": "nearest neighbours (KNN)", "gp": "Gaussian process (GP)"}

@@ -14,6 +14,7 @@ import numpy as np
 
 from rovsim.application.loading import measured
 from rovsim.application.settings import Settings
+from rovsim.apps.cli.output import say
 from rovsim.benchmarks.speed.accuracy import accuracy
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import GP, Effort, inference
@@ -24,7 +25,6 @@ from rovsim.core.files import write_json
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
 from rovsim.learning.pairs import samples
-from rovsim.saying import say
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features

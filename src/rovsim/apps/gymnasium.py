@@ -1,7 +1,7 @@
 """The simulator as a Gymnasium environment: fly to a place and stay there.
 
     import gymnasium
-    env = gymnasium.make("rovsim.environment:rovsim/Vehicle-v0", model="model.yaml")
+    env = gymnasium.make("rovsim.apps.gymnasium:rovsim/Vehicle-v0", model="model.yaml")
 
 Needs the extra `rovsim[gym]`. For a task of your own, override `reward` and `_goal`.
 """

@@ -9,10 +9,10 @@ in the Python that its FMI tool loads (docs/elsewhere.md). Needs the extra rovsi
 from pathlib import Path
 
 from rovsim.application.settings import Settings
+from rovsim.apps.fmi.unit import write_unit
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.model import BUILT_IN, load_model
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.fmi.unit import write_unit
 
 
 def run(settings: Settings) -> None:

@@ -9,8 +9,8 @@ DIR gets campaign.yaml, a QTM export and a command log per run, and truth.yaml.
 from pathlib import Path
 
 from rovsim.application.settings import Settings
+from rovsim.apps.cli.output import say
 from rovsim.core.progress import reported
-from rovsim.saying import say
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 

@@ -10,15 +10,15 @@ near here, and one to practise on. What it computes lies in `out` (results/CAMPA
 import socket
 
 from rovsim.application.settings import Settings
+from rovsim.apps.cli.output import say
+from rovsim.apps.workbench import HOST
 from rovsim.core.errors import BadInput
-from rovsim.saying import say
-from rovsim.ui import HOST
 
 
 def run(settings: Settings) -> None:
     """Serve until interrupted."""
     _free(settings.port)
-    from rovsim.ui.app import serve
+    from rovsim.apps.workbench.app import serve
 
     address = f"http://{HOST}:{settings.port}"
     say(settings, f"The workbench is at {address} (Ctrl+C ends it)", {"address": address})

@@ -5,11 +5,22 @@ from typing import Any
 
 from nicegui import ui
 
+from rovsim.apps.workbench.gallery import picture
+from rovsim.apps.workbench.parts import (
+    bar,
+    cell,
+    formula,
+    heading,
+    onward,
+    section,
+    table,
+    text,
+    tile,
+    words,
+)
+from rovsim.apps.workbench.workbench import Workbench
 from rovsim.dynamics.effects import catalogue
 from rovsim.reporting.html.verdict import Missing, percent, verdict
-from rovsim.ui.gallery import picture
-from rovsim.ui.parts import bar, cell, formula, heading, onward, section, table, text, tile, words
-from rovsim.ui.workbench import Workbench
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
 SHOWN = 8  # effects of the ranking

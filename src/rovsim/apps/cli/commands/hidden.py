@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rovsim.application.settings import Settings
+from rovsim.apps.cli.output import say
 from rovsim.benchmarks.blind.methods import chosen
 from rovsim.benchmarks.blind.page import tables
 from rovsim.benchmarks.blind.run import answers
@@ -20,7 +21,6 @@ from rovsim.benchmarks.blind.summary import judged, summary
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.reporting.html.marked import replace_tables
-from rovsim.saying import say
 
 SCHEMA = "rovsim.benchmarks.blind.summary/1"
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import Settings
+from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.apply import added, read_diagnosis
-from rovsim.saying import say
 
 
 def run(settings: Settings) -> None:

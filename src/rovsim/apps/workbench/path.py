@@ -5,9 +5,9 @@ from typing import Any, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.apps.workbench.charts import LINE, POINTS, SOFT, line_style
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.reporting.figures.palette import Look
-from rovsim.ui.charts import LINE, POINTS, SOFT, line_style
 
 WIDE = 1.6  # width over height of the picture (.path in style.css)
 ROOM = 0.56  # half the picture, over what is in it

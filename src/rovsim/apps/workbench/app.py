@@ -13,8 +13,8 @@ from nicegui import ui
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from rovsim.application.settings import Settings, compose
+from rovsim.apps.workbench import HOST
 from rovsim.core.errors import RovsimError
-from rovsim.ui import HOST
 
 SCREENS = ("compare", "where", "why", "add", "ladder", "data")
 STYLE = Path(__file__).with_name("style.css")
@@ -45,8 +45,8 @@ class App:
 
     def practise(self) -> None:
         """Make the practice campaign, unless it is there, and open it."""
-        from rovsim.ui import tasks
-        from rovsim.ui.work import Work
+        from rovsim.apps.workbench import tasks
+        from rovsim.apps.workbench.work import Work
 
         if (PRACTICE / "campaign.yaml").exists():
             self.choose(str(PRACTICE))
@@ -64,8 +64,8 @@ class App:
         """The open campaign, read now if need be; None when there is none, or it cannot be read."""
         async with self.opening:
             if self.bench is None and self.settings.campaign and not self.problem:
-                from rovsim.ui.parts import computed
-                from rovsim.ui.workbench import Workbench
+                from rovsim.apps.workbench.parts import computed
+                from rovsim.apps.workbench.workbench import Workbench
 
                 try:
                     self.bench = await computed(Workbench.opened, self.settings)
@@ -205,7 +205,7 @@ class Page:
         self._choose()
 
     def _choose(self) -> None:
-        from rovsim.ui import campaigns
+        from rovsim.apps.workbench import campaigns
 
         campaigns.show(self.shared.choose, self.shared.practise, self.shared.problem)
 
@@ -214,7 +214,7 @@ def _module(name: str) -> ModuleType:
     """A screen; imported when first shown, so that the page itself is there at once."""
     import importlib
 
-    return importlib.import_module(f"rovsim.ui.{name}")
+    return importlib.import_module(f"rovsim.apps.workbench.{name}")
 
 
 def serve(settings: Settings) -> None:

@@ -7,12 +7,12 @@ import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
+from rovsim.apps.workbench.parts import chart, computed, heading, onward, section, text
+from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.error_conditions import Judged, content
 from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.reporting.figures.marks import ACCELERATION_UNITS
-from rovsim.ui.charts import INK, LINE, MARK, SOFT
-from rovsim.ui.parts import chart, computed, heading, onward, section, text
-from rovsim.ui.workbench import Workbench
 
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"
 BLUE, GREY = "#0072B2", "#bdbdbd"

@@ -5,7 +5,7 @@ from typing import Callable
 
 from nicegui import ui
 
-from rovsim.ui.parts import heading, section, text
+from rovsim.apps.workbench.parts import heading, section, text
 
 TITLE, QUESTION = "Open", "Which campaign do you want to look at?"
 PLACES = ("campaigns/*/campaign.yaml", "results/*/raw/campaign.yaml", "*/campaign.yaml")

@@ -14,12 +14,12 @@ from rovsim.application.pipeline import diagnose
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import Settings
 from rovsim.application.tracking import track_diagnosis
+from rovsim.apps.cli.output import say
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.of_campaign import Diagnosed
 from rovsim.reporting.html import terminal
 from rovsim.reporting.report_data import Evidence
-from rovsim.saying import say
 
 FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
 
