@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.diagnosis.observer.observed_run import Watch
 from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.model import Model, nominal
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, differentiated, filtered, resampled

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.measurement.recording.recording import Commands, RunInfo, Site
 from rovsim.measurement.signals.motion import Motion
 
 SHARED = Path(os.environ.get("ROVSIM_DATA", Path(__file__).parents[2] / "shared" / "data")).parent

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Site
 from rovsim.dynamics.effects import built_in, effect
 from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wrench
 from rovsim.dynamics.model import read_model
-from rovsim.measurement.recording.recording import Site
 from rovsim.simulation.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion, some, sticks, tank
 

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.core.schema import checked
-from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.chain import (
     SignalSettings,
     clean,

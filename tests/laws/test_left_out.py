@@ -5,8 +5,7 @@ import pytest
 from scipy.linalg import eigh
 from scipy.signal import lfilter
 
-from rovsim.learning import left_out
-from rovsim.learning.cross_validation import FACTORS, noise_factor, stretches
+from rovsim.learning.cross_validation import FACTORS, STRETCHES, noise_factor, stretches
 from rovsim.learning.posterior_variance import rbf
 
 
@@ -50,4 +49,4 @@ def test_what_is_right_is_left_alone(rows):
 def test_every_row_is_left_out_once_however_few():
     for rows in (1, 3, 10, 37):
         assert np.array_equal(np.concatenate(list(stretches(rows))), np.arange(rows))
-        assert len(list(stretches(rows))) == min(rows, left_out.STRETCHES)
+        assert len(list(stretches(rows))) == min(rows, STRETCHES)

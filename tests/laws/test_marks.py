@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.held_out.folds import held_out
 from rovsim.evaluation.held_out.published import METRICS, Published, against, standing
 from rovsim.learning.pairs import training_runs
-from rovsim.measurement.recording.recording import Commands, RunInfo, Site
 from rovsim.measurement.signals.motion import Poses
 
 errors = st.floats(1e-3, 1e3)

@@ -10,6 +10,7 @@ from scipy.linalg import eigh
 
 from rovsim.core import rotations
 from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.dynamics.learned.checks import check_exported
 from rovsim.dynamics.learned.features import (
     COLUMNS,
     FEATURES,
@@ -22,7 +23,7 @@ from rovsim.dynamics.learned.features import (
 from rovsim.dynamics.learned.layout import BLOCKS, HEADER
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.simd import exponentials
-from rovsim.learning.export import Kernel, check_exported, export_expansion, export_neighbours
+from rovsim.learning.export import Kernel, export_expansion, export_neighbours
 from rovsim.learning.posterior_variance import EXACT, ROUGH, of_exact, rbf
 from rovsim.learning.scaling import fit_scaling
 

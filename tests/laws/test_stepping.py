@@ -7,7 +7,6 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
 from rovsim.dynamics.effects.thrusters import ThrusterLag, VoltageSag
-from rovsim.dynamics.learned.residual import Residual
 from rovsim.learning.learner import learner_settings, train
 from rovsim.simulation.replay import ReplaySettings, trajectories
 from rovsim.simulation.stepper import Stepper, rollouts
@@ -23,7 +22,7 @@ def learnt(world):
     rng = np.random.default_rng(0)
     X, Y = rng.normal(size=(50, 12)), 0.1 * rng.normal(size=(50, 6))
     found = train(X, Y, KNN, seed=0)
-    return replace(world, residual=Residual("6dof", KNN, found.data, found.arrays, found.info))
+    return replace(world, residual=found.residual("6dof"))
 
 
 WORLDS = {

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Commands
 from rovsim.dynamics.effects.clocks import ClockDrift, InputDelay
 from rovsim.dynamics.effects.thrusters import (
     AdvanceLoss,
@@ -18,7 +19,6 @@ from rovsim.dynamics.effects.thrusters import (
 )  # fmt: skip
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.measurement.recording.recording import Commands
 from worlds import model, sticks
 
 EDGES = np.linspace(0.0, 2.0, 201)

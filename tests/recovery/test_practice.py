@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.scores import errors, pooled, rms, score
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign

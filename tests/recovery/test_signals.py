@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rovsim.core import rotations
-from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.measurement.signals.outliers import Hampel, VelocityGate, find_outliers
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from rovsim import AXES
+from rovsim.core.run import Site
 from rovsim.evaluation.error_conditions import blocks, explain, judged
 from rovsim.evaluation.error_conditions.bins import binned, stretches, table
 from rovsim.evaluation.error_conditions.conditions import BLOCK
 from rovsim.evaluation.error_conditions.sentences import summary
 from rovsim.learning.pairs import samples
-from rovsim.measurement.recording.recording import Site
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.replay import ReplaySettings
 from synthetic_study import driven

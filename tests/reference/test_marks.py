@@ -5,8 +5,8 @@ import pytest
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Commands
 from rovsim.evaluation.held_out.published import against, demanded, read_published
-from rovsim.measurement.recording.recording import Commands
 
 HEAD = "run,control,variant,model,axis,acceleration_rmse,velocity_mae,velocity_rmse"
 LINES = [

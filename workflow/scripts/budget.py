@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.budget import budget
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
 from rovsim.diagnosis.of_campaign import Runs, diagnosed
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.measurement.campaign import load_campaign
 
 

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.application.study import BASELINES
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import load_model, read_model
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.scores import comparison, score
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion

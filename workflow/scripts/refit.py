@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.core.schema import checked
 from rovsim.diagnosis.of_campaign import Runs
 from rovsim.diagnosis.selection.refit_nominal import refitted
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.measurement.campaign import load_campaign
 from rovsim.simulation.replay import ReplaySettings
 

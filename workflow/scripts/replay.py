@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.dynamics.model import load_model
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import replay, rule_settings

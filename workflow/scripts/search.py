@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import load_model
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.error_conditions import content, judged
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.settings import TimingSettings
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
 from rovsim.dynamics.model import nominal, read_model
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.evaluation.latency import both_ways
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import load_model
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.learning.learner import learner_settings
 from rovsim.learning.pairs import train_residual
 from rovsim.measurement.campaign import load_campaign
@@ -22,7 +22,7 @@ def main(
     learner = learner_settings(residual, "conf/residual")
     signals, how = rule_settings(settings)
     trained = train_residual(base, runs, control, learner, signals, how, settings["seed"])
-    description = write_residual(out.parent, trained, control)
+    description = write_residual(out.parent, trained.residual(control))
     story = {"base": name, "train_runs": [m.run.id for m in runs], "seed": settings["seed"]}
     base.write(out, description, story)
 

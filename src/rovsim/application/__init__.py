@@ -1,1 +1,1 @@
-"""TODO application."""
+"""What the edges share: settings, loading, the pipeline, the study, tracking."""

@@ -10,7 +10,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.model import Model, load_model
-from rovsim.dynamics.vehicle import Vehicle, campaign_vehicle
+from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
 from rovsim.measurement.quality_report import quality_of
 from rovsim.measurement.recording import read_run, usable_reason
@@ -75,6 +75,11 @@ def measured(settings: Settings, even_unusable: bool = False) -> Measured:
             remedy="Record longer runs in which the vehicle moves.",
         )
     return Measured(campaign, campaign_vehicle(campaign), motions, quality, stages)
+
+
+def campaign_vehicle(campaign: Campaign) -> Vehicle:
+    """The vehicle a campaign was recorded with."""
+    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
 
 
 def results_folder(path: str | Path) -> Path:

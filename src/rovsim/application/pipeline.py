@@ -92,7 +92,7 @@ def train(data: Measured, base: Model, settings: Settings, out: Path, name: str 
             base, used, settings.control, settings.learner, settings.signals, settings.replay,
             settings.seed, progress,
         )  # fmt: skip
-    description = write_residual(out, trained, settings.control)
+    description = write_residual(out, trained.residual(settings.control))
     story = provenance(settings) | {"train_runs": [m.run.id for m in used], "base": base.name}
     path = out / f"{name}.yaml"
     base.write(path, description, story)

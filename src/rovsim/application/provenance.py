@@ -5,7 +5,7 @@ import platform
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Sequence
 
 import rovsim
 from rovsim.core.schema import Section
@@ -69,19 +69,3 @@ def provenance(settings: Section) -> dict[str, Any]:
     chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
     code = digest("rovsim", effects=getattr(settings, "effect_files", ()))
     return {"settings": chosen, "code": code, "versions": versions}
-
-
-def flattened(content: Mapping[str, Any], above: str = "") -> dict[str, Any]:
-    """Nested values by dotted name, sections included."""
-    found: dict[str, Any] = {}
-    for key, value in content.items():
-        found[f"{above}{key}"] = value
-        if isinstance(value, Mapping):
-            found |= flattened(value, f"{above}{key}.")
-    return found
-
-
-def leaves(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Nested values by dotted name, without the sections themselves."""
-    found = flattened(content)
-    return {name: v for name, v in found.items() if not isinstance(v, Mapping) or not v}

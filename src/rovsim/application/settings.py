@@ -168,7 +168,7 @@ def _nearest_override(overrides: Sequence[str]) -> str:
 
 def _keys() -> list[str]:
     """Every key of the default configuration, dotted, and every group."""
-    from rovsim.application.provenance import flattened
+    from rovsim.core.mappings import flattened
 
     groups = [path.name for path in CONF.iterdir() if path.is_dir()]
     return [*groups, *flattened(compose([]).model_dump(mode="json"))]

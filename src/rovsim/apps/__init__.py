@@ -1,1 +1,1 @@
-"""TODO apps."""
+"""Ways in: command line, workbench, Gymnasium, FMI."""

@@ -24,10 +24,10 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
     """A vehicle that starts at rest and level near the origin.
 
     An action (n,) is one command in [-1, 1] per thruster, of what the vehicle allows. An
-    observation (16,) is the state (13,) of `rovsim.simulation.stepper` and the goal (3,), m in NED. The
-    reward is minus the distance to the goal in m, minus the mean square of the action. An episode
-    is cut off after `seconds`, and ends where the vehicle is more than three times `reach` from
-    the origin on some axis.
+    observation (16,) is the state (13,) of `rovsim.simulation.stepper` and the goal (3,), m in
+    NED. The reward is minus the distance to the goal in m, minus the mean square of the action. An
+    episode is cut off after `seconds`, and ends where the vehicle is more than three times `reach`
+    from the origin on some axis.
 
     Args:
         model: a built-in model, the path of a model file (with residual and all), or a model.

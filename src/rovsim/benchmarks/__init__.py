@@ -1,1 +1,1 @@
-"""TODO benchmarks."""
+"""How fast it is, and whether physics hidden in a tank is found."""

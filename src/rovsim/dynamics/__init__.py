@@ -1,1 +1,1 @@
-"""TODO dynamics."""
+"""The equation of motion: body, actuation, effects, compiled engine, learned residuals."""

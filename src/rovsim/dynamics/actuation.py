@@ -11,9 +11,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import CommandKind, Commands
 from rovsim.dynamics.effects.base import Autopilot, Clock, Effect, Response, Shaping, Strength
 from rovsim.dynamics.vehicle import Thrusters
-from rovsim.measurement.recording.recording import CommandKind, Commands
 
 Between = Literal["held", "linear"]
 

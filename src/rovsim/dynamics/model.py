@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import plain, read_yaml, write_yaml
+from rovsim.core.run import CommandKind, Site
 from rovsim.core.schema import Number, Section, checked
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.body import Body, packed
@@ -19,10 +20,9 @@ from rovsim.dynamics.effects import effect
 from rovsim.dynamics.effects.base import Coefficients, Effect, Sensing, Wrench
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import Constants
-from rovsim.dynamics.learned.residual import Residual, read_residual
+from rovsim.dynamics.learned.residual import Residual, StoredResidual, read_residual
 from rovsim.dynamics.mocap_view import View
 from rovsim.dynamics.vehicle import VEHICLES, Thrusters, Vehicle, check_layout, load_vehicle
-from rovsim.measurement.recording.recording import CommandKind, Site
 
 SCHEMA = "rovsim.model/1"
 
@@ -185,10 +185,12 @@ class Model:
         content["effects"] = [entry.plain() for entry in self.entries]
         return content
 
-    def write(self, path: Path, residual: dict | None = None, provenance: dict | None = None):
+    def write(
+        self, path: Path, residual: StoredResidual | None = None, provenance: dict | None = None
+    ):
         """Write a model file; `residual` describes arrays that lie beside it."""
         content = self.content()
-        content |= {"residual": plain(residual)} if residual else {}
+        content |= {"residual": residual.model_dump(mode="json")} if residual else {}
         content |= {"provenance": plain(provenance)} if provenance else {}
         write_yaml(path, content)
 

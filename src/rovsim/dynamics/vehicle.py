@@ -17,7 +17,6 @@ from rovsim.dynamics.effects.base import Coefficients, Effect
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.rigid_body import RigidBody
-from rovsim.measurement.campaign import Campaign
 
 VEHICLES = Path(__file__).parents[3] / "conf" / "vehicle"
 
@@ -181,11 +180,6 @@ def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
     vehicle = checked(Vehicle, read_yaml(path), path)
     check_layout(vehicle, path)
     return vehicle
-
-
-def campaign_vehicle(campaign: Campaign) -> Vehicle:
-    """The vehicle a campaign was recorded with."""
-    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
 
 
 def check_layout(vehicle: Vehicle, path: Path) -> None:

@@ -1,1 +1,1 @@
-"""TODO evaluation."""
+"""How far model and measurement are apart: scores, ladder, budget, conditions of error."""

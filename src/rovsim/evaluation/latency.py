@@ -91,9 +91,10 @@ def both_ways(
 ) -> dict[str, Any]:
     """Latency of a trained residual's library call and of its exported predictor, side by side."""
     from rovsim.dynamics.learned.predictor import evaluate_many
+    from rovsim.learning.learner import library_of
 
     data, points = residual.data, residual.points
-    ways = {"library": residual.library(), "exported": lambda x: evaluate_many(data, x)}
+    ways = {"library": library_of(residual), "exported": lambda x: evaluate_many(data, x)}
     return {
         way: latency(call, queries, calls, warmup, points=points, seconds=seconds)
         for way, call in ways.items()

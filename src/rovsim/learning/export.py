@@ -1,8 +1,8 @@
-"""Trained residuals laid out for the kernels of `rovsim.dynamics.learned.predictor`, and checked."""
+"""Trained residuals laid out for the kernels of `rovsim.dynamics.learned`."""
 
 from dataclasses import dataclass
 from math import sqrt
-from typing import Any, Sequence
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -18,7 +18,6 @@ from rovsim.dynamics.learned.layout import (
     HEADER,
     KIND,
     LANES,
-    MOST_NEIGHBOURS,
     MOST_POINTS,
     NEIGHBOURS,
     OUTPUTS,
@@ -31,13 +30,10 @@ from rovsim.dynamics.learned.layout import (
     WEIGHTING,
     WIDTH,
     filled,
-    tree_levels,
 )
 from rovsim.learning.posterior_variance import Known
 from rovsim.learning.scaling import Scaling
 from rovsim.learning.tree import packed_tree, side_by_side
-
-AXES = 6  # outputs: surge, sway, heave, roll, pitch, yaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,50 +135,3 @@ def _header(kind: float, features: FeatureSettings, points: int, outputs: int, c
     header[[FORMAT, KIND, BLOCKS]] = VERSION, kind, blocks_code(features)
     header[[WIDTH, POINTS, OUTPUTS, COUNT]] = len(feature_names(features)), points, outputs, count
     return header
-
-
-def check_exported(data: Any, features: FeatureSettings, where: object) -> Array:
-    """Refuse an array that the kernels could not read safely.
-
-    Raises:
-        BadInput: wrong type, not finite, sizes that do not fit, or other features than named.
-    """
-    found = _fault(data, features)
-    if found is None:
-        return np.ascontiguousarray(data)
-    raise BadInput(
-        found,
-        where=where,
-        expected="a residual exported by rovsim, with the features its model file names",
-        remedy="Train the residual again.",
-    )
-
-
-def _fault(data: Any, features: FeatureSettings) -> str | None:
-    if not isinstance(data, np.ndarray) or data.dtype != np.float64 or data.ndim != 1:
-        return "the exported residual is not a flat float64 array"
-    if data.size < HEADER or not np.isfinite(data).all():
-        return "the exported residual is too short or not finite"
-    header = data[:HEADER]
-    if header[FORMAT] != VERSION or (header != np.floor(header)).any() or (header < 0).any():
-        return "the exported residual has an unknown format"
-    if header[BLOCKS] != blocks_code(features) or header[WIDTH] != len(feature_names(features)):
-        return "the exported residual sees other features than named"
-    if header[OUTPUTS] != AXES or data.size != _size(*header):
-        return f"the exported residual's sizes do not fit its {data.size} numbers"
-    return None
-
-
-def _size(*header: float) -> int:
-    """Length of an exported array with this header; 0 where no such array can exist."""
-    d, n, m, count = (int(header[slot]) for slot in (WIDTH, POINTS, OUTPUTS, COUNT))
-    length, wide, rank = filled(n, LANES), filled(d, PASS), filled(int(header[RANK]), PASS)
-    if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MOST_NEIGHBOURS):
-        boxes = sum(tree_levels(n)[1:]) * 2 * wide * LANES
-        return HEADER + (2 + wide) * d + boxes + length * (wide + 1) + n * (d + m)
-    sure = header[SURE] <= header[RANK] <= n <= MOST_POINTS
-    if header[KIND] == EXPANSION and count in (1, m) and n >= 1 and sure:
-        share = m // count
-        sheet = (filled(share, PASS) + rank + wide) * length
-        return HEADER + m + count * (2 + share + 2 * d + rank + sheet)
-    return 0

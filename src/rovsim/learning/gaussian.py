@@ -13,7 +13,8 @@ from numpy import ndarray as Array
 from pydantic import Field
 from scipy.spatial import cKDTree
 
-from rovsim.learning.export import AXES, Kernel, export_expansion
+from rovsim.dynamics.learned.checks import OUTPUT_AXES
+from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
 from rovsim.learning.posterior_variance import Known, rbf
 from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
@@ -91,7 +92,7 @@ def modules(Z: Array, outputs: int) -> tuple[Any, Any, Any]:
     kernel.base_kernel.lengthscale = torch.as_tensor(start).expand(*batch, 1, d)
     # its noise stays above 1e-4 of the targets' variance: 1 % of their size, and well conditioned
     likelihood = GaussianLikelihood(batch_shape=batch)
-    return ConstantMean(batch_shape=torch.Size([AXES])), kernel, likelihood
+    return ConstantMean(batch_shape=torch.Size([OUTPUT_AXES])), kernel, likelihood
 
 
 def optimise(

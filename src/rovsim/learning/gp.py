@@ -8,11 +8,11 @@ from numpy import ndarray as Array
 from pydantic import Field
 from scipy.linalg import eigh
 
+from rovsim.dynamics.learned.checks import OUTPUT_AXES
 from rovsim.dynamics.learned.layout import MOST_POINTS
 from rovsim.learning import gaussian
 from rovsim.learning.cross_validation import noise_factor
 from rovsim.learning.determinism import seeded_torch
-from rovsim.learning.export import AXES
 from rovsim.learning.learner import (
     Learner,
     Posterior,
@@ -103,7 +103,9 @@ def _model(Z: Array, T: Array, settings: GpSettings) -> Any:
     from gpytorch.distributions import MultivariateNormal
     from gpytorch.models import ExactGP
 
-    mean, kernel, likelihood = gaussian.modules(Z, 1 if settings.kernel == "shared" else AXES)
+    mean, kernel, likelihood = gaussian.modules(
+        Z, 1 if settings.kernel == "shared" else OUTPUT_AXES
+    )
 
     class Model(ExactGP):
         def __init__(self) -> None:
@@ -133,7 +135,7 @@ def _tune(model: Any, settings: GpSettings, progress: Progress) -> float:
         K = prior.lazy_covariance_matrix.add_diagonal(model.likelihood.noise)
         error = (T - prior.mean).mT
         square, determinant = K.inv_quad_logdet(error, logdet=True)
-        return 0.5 * (square + AXES * determinant) / len(Z)
+        return 0.5 * (square + OUTPUT_AXES * determinant) / len(Z)
 
     loss = shared if settings.kernel == "shared" else independent
     rounds, rate = settings.iterations, settings.learning_rate

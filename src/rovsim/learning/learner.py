@@ -12,10 +12,10 @@ from numpy import ndarray as Array
 import rovsim.learning
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import Section, checked
-from rovsim.dynamics.learned.features import FeatureSettings, feature_names
-from rovsim.dynamics.learned.layout import EXPANSION, KIND
-from rovsim.dynamics.learned.predictor import evaluate_many, posterior_many
-from rovsim.learning.export import AXES
+from rovsim.dynamics.learned.checks import OUTPUT_AXES, checked_rows, posterior
+from rovsim.dynamics.learned.features import FeatureSettings
+from rovsim.dynamics.learned.predictor import evaluate_many
+from rovsim.dynamics.learned.residual import Control, Residual
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
 Posterior = Callable[[Array], tuple[Array, Array]]  # the same -> mean and variance, (n, 6) each
@@ -54,6 +54,13 @@ class Trained:
     def features(self) -> FeatureSettings:
         """Features it was trained on."""
         return self.settings.features
+
+    def residual(self, control: Control) -> Residual:
+        """What a model holds of it; `control`: the runs it was trained on."""
+        settings = self.settings.model_dump(mode="json", exclude={"kind", "features"})
+        return Residual(
+            control, self.kind, self.features, settings, self.data, self.arrays, self.info
+        )
 
     def predict(self, X: Array) -> Array:
         """Residual acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
@@ -115,6 +122,25 @@ def learner_settings(content: Any, where: Any = "residual") -> LearnerSettings:
     return checked(learner(str(kind), where).settings, content, where)
 
 
+def settings_of(residual: Residual) -> LearnerSettings:
+    """What a stored residual was trained with.
+
+    Raises:
+        BadInput: no learner here has these settings.
+    """
+    features = {"blocks": residual.features.blocks, "scaling": residual.features.scaling}
+    return learner_settings(residual.settings | {"kind": residual.kind, "features": features})
+
+
+def library_of(residual: Residual) -> Predict:
+    """The library's own prediction, rebuilt from the stored arrays.
+
+    Raises:
+        BadInput: no learner here has these settings.
+    """
+    return learner(residual.kind).library_from(residual.arrays, settings_of(residual))
+
+
 def train(
     X: Array,
     Y: Array,
@@ -135,51 +161,14 @@ def train(
         BadInput: rows that are not finite, do not fit together or are too few.
     """
     X, Y = checked_rows(X, settings.features, finite=True), np.asarray(Y, dtype=np.float64)
-    if Y.shape != (len(X), AXES) or not np.isfinite(Y).all():
+    if Y.shape != (len(X), OUTPUT_AXES) or not np.isfinite(Y).all():
         raise BadInput(
             f"residual accelerations of shape {Y.shape}, {np.sum(~np.isfinite(Y))} not finite",
             where="training pairs",
-            expected=f"finite numbers of shape {(len(X), AXES)}",
+            expected=f"finite numbers of shape {(len(X), OUTPUT_AXES)}",
             remedy="Train on usable samples only.",
         )
     return learner(settings.kind).fit(X, Y, settings, seed, progress)
-
-
-def posterior(data: Array, X: Array, features: FeatureSettings) -> tuple[Array, Array]:
-    """Mean and variance (n, 6) of an exported process at unscaled features X (n, d); none fades.
-
-    In m/s2 and rad/s2, and their squares; the variance is the process' own, without noise.
-
-    Raises:
-        BadInput: the residual is no process, or X has other columns.
-    """
-    if data[KIND] == EXPANSION:
-        return posterior_many(data, checked_rows(X, features))
-    raise BadInput(
-        "nearest neighbours have no variance",
-        where="posterior of a residual",
-        expected="a residual of kind gp or svgp",
-        remedy="Train one, or use predict.",
-    )
-
-
-def checked_rows(X: Array, features: FeatureSettings, finite: bool = False) -> Array:
-    """Features as a contiguous float64 (n, d) with the columns that `features` name.
-
-    Raises:
-        BadInput: other shape; or, where `finite` is asked for, no rows or NaN.
-    """
-    X = np.ascontiguousarray(X, dtype=np.float64)
-    d = len(feature_names(features))
-    usable = not finite or (len(X) > 0 and np.isfinite(X).all())
-    if X.ndim == 2 and X.shape[1] == d and usable:
-        return X
-    raise BadInput(
-        f"features of shape {X.shape}, {np.sum(~np.isfinite(X))} not finite",
-        where="features of the residual",
-        expected=f"finite rows of {d} ({', '.join(features.blocks)})",
-        remedy="Assemble them with the residual's own feature settings, from usable samples.",
-    )
 
 
 def spread_rows(rows: int, most: int | None, seed: int) -> Array:

@@ -1,4 +1,4 @@
-"""A packed tree of bounding boxes around points, as `rovsim.dynamics.learned.neighbours` searches it.
+"""A packed tree of bounding boxes, as `rovsim.dynamics.learned.neighbours` searches it.
 
 Points are halved along their widest feature, at whole subtrees (White & Jain 1996, the VAMSplit
 R-tree): all leaves but the last are full, and no pointers are needed.

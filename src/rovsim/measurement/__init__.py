@@ -1,1 +1,1 @@
-"""TODO measurement."""
+"""What was recorded: campaigns, readers of raw exports, signals. Knows no dynamics."""

@@ -1,1 +1,1 @@
-"""TODO reporting."""
+"""What is shown: figures, tables, pages, the catalogue. Decides nothing, computes no physics."""

@@ -1,1 +1,1 @@
-"""TODO simulation."""
+"""Models driven by commands: replay, one step at a time, and a synthetic tank."""

@@ -14,12 +14,12 @@ from pydantic import PositiveFloat
 
 from rovsim.core.files import read_arrays, write_arrays
 from rovsim.core.rotations import normalized
+from rovsim.core.run import RunInfo
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.actuation import Between, Thrust
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Inputs, Jobs, Place
 from rovsim.dynamics.model import Model
-from rovsim.measurement.recording.recording import RunInfo
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.motion import Motion

@@ -15,11 +15,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import CommandKind, Commands, Site
 from rovsim.dynamics.body import packed
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Jobs, Place
 from rovsim.dynamics.model import Model
-from rovsim.measurement.recording.recording import CommandKind, Commands, Site
 from rovsim.simulation.replay import packed_inputs, residual_data, stacked
 
 LONGEST = 0.01  # s, an integration step; see `rovsim.simulation.replay.ReplaySettings`

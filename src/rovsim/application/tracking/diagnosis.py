@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any, Iterable, Mapping
 
-from rovsim.application.provenance import leaves
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.runs import flat, track
+from rovsim.core.mappings import leaves
 
 
 def track_diagnosis(

@@ -1,1 +1,1 @@
-"""TODO cli."""
+"""The command `rovsim`: one command a file in `commands`."""

@@ -14,10 +14,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Site
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.learning.pairs import samples
-from rovsim.measurement.recording.recording import Site
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import ReplaySettings

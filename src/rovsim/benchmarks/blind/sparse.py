@@ -15,10 +15,10 @@ from numpy import ndarray as Array
 from scipy.linalg import LinAlgWarning
 from sklearn.exceptions import ConvergenceWarning
 
+from rovsim.application.loading import campaign_vehicle
 from rovsim.benchmarks.blind.library import Problem, problem
 from rovsim.dynamics.effects import catalogue, effect
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.vehicle import campaign_vehicle
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean

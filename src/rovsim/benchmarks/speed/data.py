@@ -61,7 +61,7 @@ def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
     """A residual of that kind."""
     given = {"k": NEIGHBOURS, **more} if kind == "knn" else more
     trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **given}), seed=0)
-    return Residual("6dof", trained.settings, trained.data, trained.arrays, trained.info)
+    return trained.residual("6dof")
 
 
 def unfading(residual: Residual) -> Residual:

@@ -16,6 +16,7 @@ from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many, posterior_many
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.evaluation.latency import latency
+from rovsim.learning.learner import library_of
 
 BUSY = 100  # us: about what the slowest of our own paths to be counted takes
 CHECKED = 500  # queries whose predictions are compared
@@ -143,7 +144,7 @@ def _six_kernels(clock: Clock, points: int, seconds: float) -> None:
 def _inducing(clock: Clock, seconds: float) -> None:
     svgp = unfading(fitted("svgp", clock.pairs.first(2_000)))
     points = svgp.points
-    clock.beside("svgp", ours(svgp), points, {"gpytorch_svgp": svgp.library()}, seconds)
+    clock.beside("svgp", ours(svgp), points, {"gpytorch_svgp": library_of(svgp)}, seconds)
     theirs = {"gpytorch_svgp_variance": libraries.variances(svgp)["gpytorch_variance"]}
     clock.beside("svgp_variance", both(svgp), points, theirs, seconds)
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.learning.learner import Predict, learner
+from rovsim.learning.learner import Predict, learner, library_of, settings_of
 from rovsim.learning.scaling import Scaling
 
 Ways = dict[str, Predict]
@@ -19,10 +19,10 @@ def neighbours(residual: Residual) -> Ways:
     from scipy.spatial import cKDTree
 
     points, targets, scaling = _known(residual)
-    k = residual.settings.k  # type: ignore[attr-defined]
+    k = residual.settings["k"]
     with_tree: dict[str, Any] = {"scipy_knn": cKDTree(points), "pykdtree_knn": KDTree(points)}
     return {
-        "sklearn_knn": residual.library(),
+        "sklearn_knn": library_of(residual),
         **{name: _mean_of(tree.query, targets, scaling, k) for name, tree in with_tree.items()},
     }
 
@@ -47,7 +47,7 @@ def _mean_of(query: Callable[..., Any], targets: Array, scaling: Scaling, k: int
 
 def means(residual: Residual) -> Ways:
     """GPyTorch, scikit-learn and NumPy with stored weights; all with the same hyperparameters."""
-    found = {"gpytorch_mean": residual.library()}
+    found = {"gpytorch_mean": library_of(residual)}
     if len(residual.arrays["lengthscale"]) == 1:
         found |= {"sklearn_gp_mean": _sklearn(residual), "numpy_gp_mean": _numpy(residual)}
     return found
@@ -58,8 +58,8 @@ def variances(residual: Residual) -> dict[str, Callable[[Array], tuple[Array, Ar
     make = learner(residual.kind).posterior_from
     assert make is not None
     return {
-        "gpytorch_variance": make(residual.arrays, residual.settings),
-        "gpytorch_love": make(residual.arrays, residual.settings, fast=True),
+        "gpytorch_variance": make(residual.arrays, settings_of(residual)),
+        "gpytorch_love": make(residual.arrays, settings_of(residual), fast=True),
     }
 
 

@@ -23,10 +23,10 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.rotations import Rigid
+from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.parameters import Parameter, Signature
 from rovsim.dynamics.engine.types import At, Vector6
-from rovsim.measurement.recording.recording import CommandKind, Site
 
 
 class Effect(ABC):

@@ -8,10 +8,10 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.effects.base import Autopilot, Parameter, Wrench
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.engine.vectors import inlined
-from rovsim.measurement.recording.recording import CommandKind, Site
 
 SPEEDS = ("m/s", "rad/s")
 # Where a fit of loops on all axes begins: what this vehicle reaches at full stick (Blue Robotics:

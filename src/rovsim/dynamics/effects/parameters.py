@@ -47,8 +47,8 @@ def per_axis(
 class Signature:
     """How the catalogue page shows an effect: hidden with these values, in the error of one axis.
 
-    The mean error, or its `size` (RMS), is drawn over a condition of `rovsim.evaluation.error_conditions`, or over a
-    measured acceleration ("surge acceleration").
+    The mean error, or its `size` (RMS), is drawn over a condition of
+    `rovsim.evaluation.error_conditions`, or over a measured acceleration ("surge acceleration").
     """
 
     values: Mapping[str, float]

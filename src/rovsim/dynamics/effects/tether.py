@@ -3,10 +3,10 @@
 from math import sqrt
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.engine.vectors import cross, dot3, inlined, into_body
-from rovsim.measurement.recording.recording import CommandKind, Site
 
 ATTACHMENT = tuple(
     Parameter(f"attachment_{axis}", "m", f"{axis}_t", default=x, scale=0.1, fitted=False)

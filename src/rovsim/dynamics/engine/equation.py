@@ -1,7 +1,7 @@
 """Fossen's equation of motion, compiled by Numba. With `integration` this file is a template.
 
-`rovsim.dynamics.engine.compiled` writes a copy of both in which `extra` calls the wrench kernels of one
-model, so that LLVM inlines them and Numba caches the result on disk.
+`rovsim.dynamics.engine.compiled` writes a copy of both in which `extra` calls the wrench kernels
+of one model, so that LLVM inlines them and Numba caches the result on disk.
 
     M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r + g(eta)
         = tau_thrust + tau_extra                                      (Fossen 2021, eq. 6.1, 10.135)

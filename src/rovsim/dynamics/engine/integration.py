@@ -1,7 +1,7 @@
 """Integration of the equation of motion. With `equation` this file is a template.
 
-`rovsim.dynamics.engine.compiled` writes both into one module, where these functions meet the `slope` of one
-model instead of the imported one.
+`rovsim.dynamics.engine.compiled` writes both into one module, where these functions meet the
+`slope` of one model instead of the imported one.
 """
 
 from math import exp, sqrt

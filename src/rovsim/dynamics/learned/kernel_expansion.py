@@ -5,8 +5,8 @@ variance, as a share of the prior variance (Rasmussen & Williams 2006, eqs. 2.25
 
     rho = 1 - identity |k|^2 - sum_j spectrum_j (v_j' k)^2
 
-is 0 where the process is certain and 1 where it has seen nothing. `rovsim.learning.posterior_variance` says
-how identity, spectrum and vectors come about. The correction fades: it counts fully up to the
+is 0 where the process is certain and 1 where it has seen nothing; identity, spectrum and vectors
+come from `rovsim.learning.posterior_variance`. The correction fades: it counts fully up to the
 `limit` of rho, from there in proportion to what is known, 1 - rho, and not at all where rho = 1.
 """
 

@@ -12,19 +12,10 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.files import plain, read_arrays, write_arrays
 from rovsim.core.schema import Section, checked
+from rovsim.dynamics.learned.checks import check_exported, checked_rows, posterior
 from rovsim.dynamics.learned.features import Block, FeatureSettings
 from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many
-from rovsim.learning.export import check_exported
-from rovsim.learning.learner import (
-    LearnerSettings,
-    Predict,
-    Trained,
-    checked_rows,
-    learner,
-    learner_settings,
-    posterior,
-)
 
 Control = Literal["3dof", "6dof", "all"]  # runs a residual learns from
 LIBRARY = "library."  # prefix of the arrays from which the library's own model is rebuilt
@@ -47,24 +38,17 @@ class StoredResidual(Section):
 class Residual:
     """A trained residual, as a model holds it.
 
-    `data` goes into the compiled replay. `arrays` rebuild the library's own model.
+    `data` goes into the compiled replay. `settings` and `arrays` are what the library that trained
+    it needs to be rebuilt (`rovsim.learning.learner`); `info` what training reported.
     """
 
-    control: str
-    settings: LearnerSettings
+    control: Control
+    kind: str
+    features: FeatureSettings
+    settings: dict[str, Any]
     data: Array
     arrays: dict[str, Array]
     info: dict[str, Any]
-
-    @property
-    def kind(self) -> str:
-        """Name of the learner."""
-        return self.settings.kind
-
-    @property
-    def features(self) -> FeatureSettings:
-        """Features it sees."""
-        return self.settings.features
 
     @property
     def points(self) -> int:
@@ -76,32 +60,23 @@ class Residual:
         return evaluate_many(self.data, checked_rows(X, self.features))
 
     def posterior(self, X: Array) -> tuple[Array, Array]:
-        """Mean and variance of a process. See `rovsim.learning.learner.posterior`."""
+        """Mean and variance of a process. See `rovsim.dynamics.learned.checks.posterior`."""
         return posterior(self.data, X, self.features)
 
-    def library(self) -> Predict:
-        """The library's own prediction, rebuilt from the stored arrays."""
-        return learner(self.kind).library_from(self.arrays, self.settings)
 
-
-def write_residual(
-    folder: Path, trained: Trained, control: Control, name: str = "residual.npz"
-) -> dict[str, Any]:
-    """Write the arrays to `folder/name`; returns the plain description for the model file."""
-    library = {LIBRARY + key: array for key, array in trained.arrays.items()}
-    write_arrays(folder / name, data=trained.data, **library)
-    settings = trained.settings.model_dump(mode="json", exclude={"kind", "features"})
-    return plain(
-        {
-            "kind": trained.kind,
-            "control": control,
-            "file": name,
-            "sha256": _digest(folder / name),
-            "features": trained.features.blocks,
-            "scaling": trained.features.scaling,
-            "settings": settings,
-            "info": trained.info,
-        }
+def write_residual(folder: Path, residual: Residual, name: str = "residual.npz") -> StoredResidual:
+    """Write the arrays to `folder/name`; returns the description for the model file."""
+    library = {LIBRARY + key: array for key, array in residual.arrays.items()}
+    write_arrays(folder / name, data=residual.data, **library)
+    return StoredResidual(
+        kind=residual.kind,
+        control=residual.control,
+        file=name,
+        sha256=_digest(folder / name),
+        features=residual.features.blocks,
+        scaling=residual.features.scaling,
+        settings=plain(residual.settings),
+        info=plain(residual.info),
     )
 
 
@@ -114,18 +89,22 @@ def read_residual(description: Any, folder: Path, where: object = "residual") ->
         where: the model file, for messages.
 
     Raises:
-        BadInput: unknown kind or key, missing, damaged or altered file, arrays that do not fit.
+        BadInput: unknown key, missing, damaged or altered file, arrays that do not fit.
     """
     stored = checked(StoredResidual, description, str(where))
-    features = {"blocks": stored.features, "scaling": stored.scaling}
-    content = stored.settings | {"kind": stored.kind, "features": features}
-    settings = learner_settings(content, f"{where}, settings")
+    features = checked(
+        FeatureSettings,
+        {"blocks": stored.features, "scaling": stored.scaling},
+        f"{where}, features",
+    )
     path = folder / stored.file
     _refuse_altered(path, stored.sha256)
     arrays = read_arrays(path)
-    data = check_exported(arrays.pop("data", None), settings.features, path)
+    data = check_exported(arrays.pop("data", None), features, path)
     library = {key.removeprefix(LIBRARY): _finite(a, key, path) for key, a in arrays.items()}
-    return Residual(stored.control, settings, data, library, stored.info)
+    return Residual(
+        stored.control, stored.kind, features, stored.settings, data, library, stored.info
+    )
 
 
 def _digest(path: Path) -> str:

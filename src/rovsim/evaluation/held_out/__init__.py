@@ -1,1 +1,1 @@
-"""TODO held_out."""
+"""Each run held out once: folds, others' published errors beside ours, pitfalls repeated."""

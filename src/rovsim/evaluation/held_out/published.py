@@ -16,8 +16,8 @@ import numpy as np
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
+from rovsim.core.run import Commands
 from rovsim.evaluation.scores import number
-from rovsim.measurement.recording.recording import Commands
 
 SCHEMA = "rovsim.marks/1"
 COUNTED = ("acceleration_rmse", "velocity_mae")  # a model is judged by these

@@ -1,8 +1,9 @@
 """Raw exports in, recordings out: one module per format, axes converted once, quality told."""
 
+from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.recording.quality import quality_report, usable_reason
 from rovsim.measurement.recording.reading import Anomalies, read_run, site
-from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.measurement.recording.recording import Recording
 
 __all__ = [
     "Anomalies",

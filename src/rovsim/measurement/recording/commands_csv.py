@@ -6,10 +6,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import CommandKind
 from rovsim.measurement.campaign import AXES, CommandLog
 from rovsim.measurement.recording.csv import csv_lines
 from rovsim.measurement.recording.readers import CommandExport, command_reader, finite_rows
-from rovsim.measurement.recording.recording import CommandKind
 from rovsim.measurement.recording.table import (
     Lines,
     column_places,

@@ -10,8 +10,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
+from rovsim.core.run import CommandKind
 from rovsim.measurement.campaign import CommandLog, Mocap
-from rovsim.measurement.recording.recording import CommandKind
 
 # Named in the campaign format but not readable yet, and the way around.
 LATER = {

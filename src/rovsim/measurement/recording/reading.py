@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import axes_signs, multiply
+from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.campaign import Campaign, Mocap
 from rovsim.measurement.recording.readers import (
     CommandExport,
@@ -16,7 +17,7 @@ from rovsim.measurement.recording.readers import (
     mocap_readers,
     reader_of,
 )
-from rovsim.measurement.recording.recording import Commands, Recording, RunInfo, Site
+from rovsim.measurement.recording.recording import Recording
 
 RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
 

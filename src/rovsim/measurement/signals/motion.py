@@ -7,7 +7,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.files import read_arrays, write_arrays
-from rovsim.measurement.recording.recording import Commands, RunInfo, Site, labels, unlabelled
+from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.measurement.recording.recording import labels, unlabelled
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """Figures of the study. A module here with a `draw` function is a figure; its name is its file's.
 
 Every `draw` takes plain arrays and dictionaries by keyword and returns a Matplotlib `Figure`;
-`rovsim.reporting.figures.style.save` writes it. `SECTION` says where the report shows it, `CAPTION` what the
-reader sees, in one or two plain sentences (it is the alternative text as well).
+`rovsim.reporting.figures.style.save` writes it. `SECTION` says where the report shows it,
+`CAPTION` what the reader sees, in one or two plain sentences (it is the alternative text as well).
 """
 
 from dataclasses import dataclass

@@ -9,9 +9,9 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from latex2mathml.converter import convert
 from markupsafe import Markup
 
-from rovsim.application.provenance import leaves
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
+from rovsim.core.mappings import leaves
 from rovsim.reporting.figures import SECTIONS, kind
 from rovsim.reporting.figures.inference_time import RATES
 from rovsim.reporting.figures.marks import AXES, number, significant

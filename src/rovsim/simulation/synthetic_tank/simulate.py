@@ -11,9 +11,9 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import HALF_TURN_X
+from rovsim.core.run import CommandKind, Commands, Site
 from rovsim.dynamics.engine.types import Inputs, Place
 from rovsim.dynamics.model import Model
-from rovsim.measurement.recording.recording import CommandKind, Commands, Site
 from rovsim.simulation.synthetic_tank.pilot import Pilot
 from rovsim.simulation.synthetic_tank.settings import TankSettings, Turbulence
 

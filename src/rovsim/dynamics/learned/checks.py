@@ -1,0 +1,117 @@
+"""Arrays that the kernels can read safely, and rows that fit them."""
+
+from typing import Any
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.dynamics.learned.features import FeatureSettings, blocks_code, feature_names
+from rovsim.dynamics.learned.layout import (
+    BLOCKS,
+    COUNT,
+    EXPANSION,
+    FORMAT,
+    HEADER,
+    KIND,
+    LANES,
+    MOST_NEIGHBOURS,
+    MOST_POINTS,
+    NEIGHBOURS,
+    OUTPUTS,
+    PASS,
+    POINTS,
+    RANK,
+    SURE,
+    VERSION,
+    WIDTH,
+    filled,
+    tree_levels,
+)
+from rovsim.dynamics.learned.predictor import posterior_many
+
+OUTPUT_AXES = 6  # surge, sway, heave, roll, pitch, yaw
+
+
+def check_exported(data: Any, features: FeatureSettings, where: object) -> Array:
+    """Refuse an array that the kernels could not read safely.
+
+    Raises:
+        BadInput: wrong type, not finite, sizes that do not fit, or other features than named.
+    """
+    found = _fault(data, features)
+    if found is None:
+        return np.ascontiguousarray(data)
+    raise BadInput(
+        found,
+        where=where,
+        expected="a residual exported by rovsim, with the features its model file names",
+        remedy="Train the residual again.",
+    )
+
+
+def _fault(data: Any, features: FeatureSettings) -> str | None:
+    if not isinstance(data, np.ndarray) or data.dtype != np.float64 or data.ndim != 1:
+        return "the exported residual is not a flat float64 array"
+    if data.size < HEADER or not np.isfinite(data).all():
+        return "the exported residual is too short or not finite"
+    header = data[:HEADER]
+    if header[FORMAT] != VERSION or (header != np.floor(header)).any() or (header < 0).any():
+        return "the exported residual has an unknown format"
+    if header[BLOCKS] != blocks_code(features) or header[WIDTH] != len(feature_names(features)):
+        return "the exported residual sees other features than named"
+    if header[OUTPUTS] != OUTPUT_AXES or data.size != _size(*header):
+        return f"the exported residual's sizes do not fit its {data.size} numbers"
+    return None
+
+
+def _size(*header: float) -> int:
+    """Length of an exported array with this header; 0 where no such array can exist."""
+    d, n, m, count = (int(header[slot]) for slot in (WIDTH, POINTS, OUTPUTS, COUNT))
+    length, wide, rank = filled(n, LANES), filled(d, PASS), filled(int(header[RANK]), PASS)
+    if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MOST_NEIGHBOURS):
+        boxes = sum(tree_levels(n)[1:]) * 2 * wide * LANES
+        return HEADER + (2 + wide) * d + boxes + length * (wide + 1) + n * (d + m)
+    sure = header[SURE] <= header[RANK] <= n <= MOST_POINTS
+    if header[KIND] == EXPANSION and count in (1, m) and n >= 1 and sure:
+        share = m // count
+        sheet = (filled(share, PASS) + rank + wide) * length
+        return HEADER + m + count * (2 + share + 2 * d + rank + sheet)
+    return 0
+
+
+def posterior(data: Array, X: Array, features: FeatureSettings) -> tuple[Array, Array]:
+    """Mean and variance (n, 6) of an exported process at unscaled features X (n, d); none fades.
+
+    In m/s2 and rad/s2, and their squares; the variance is the process' own, without noise.
+
+    Raises:
+        BadInput: the residual is no process, or X has other columns.
+    """
+    if data[KIND] == EXPANSION:
+        return posterior_many(data, checked_rows(X, features))
+    raise BadInput(
+        "nearest neighbours have no variance",
+        where="posterior of a residual",
+        expected="a residual of kind gp or svgp",
+        remedy="Train one, or use predict.",
+    )
+
+
+def checked_rows(X: Array, features: FeatureSettings, finite: bool = False) -> Array:
+    """Features as a contiguous float64 (n, d) with the columns that `features` name.
+
+    Raises:
+        BadInput: other shape; or, where `finite` is asked for, no rows or NaN.
+    """
+    X = np.ascontiguousarray(X, dtype=np.float64)
+    d = len(feature_names(features))
+    usable = not finite or (len(X) > 0 and np.isfinite(X).all())
+    if X.ndim == 2 and X.shape[1] == d and usable:
+        return X
+    raise BadInput(
+        f"features of shape {X.shape}, {np.sum(~np.isfinite(X))} not finite",
+        where="features of the residual",
+        expected=f"finite rows of {d} ({', '.join(features.blocks)})",
+        remedy="Assemble them with the residual's own feature settings, from usable samples.",
+    )
