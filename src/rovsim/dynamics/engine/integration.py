@@ -10,9 +10,9 @@ import numpy as np
 
 # <equation>
 from rovsim.dynamics.engine.equation import flow, rotation, slope
-from rovsim.dynamics.engine.types import Constants, State
 
 # </equation>
+from rovsim.dynamics.engine.types import Constants, State
 from rovsim.dynamics.engine.vectors import (
     add3,
     add4,

@@ -20,9 +20,9 @@ from rovsim.dynamics.engine.integration import (
     state_of,
     step_of,
 )
-from rovsim.dynamics.engine.types import State
 
 # </equation>
+from rovsim.dynamics.engine.types import State
 from rovsim.dynamics.engine.vectors import (
     add3,
     add6,
