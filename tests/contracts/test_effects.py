@@ -30,7 +30,7 @@ def driven(world):
     value, kind = (sticks(1)[:, :6], "demand") if demands else (sticks(1), "thruster")
     run = motion(value, kind, seconds=1.0, start=start, site=tank())
     path = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
-    return world.view.states(path)
+    return world.mocap_view.states(path)
 
 
 @EVERY

@@ -104,7 +104,9 @@ def test_a_process_fades_where_it_has_seen_nothing(trained):
     whole = np.isclose(faded, mean, rtol=1e-12)
     assert (whole | (np.abs(faded) < np.abs(mean))).all()
     assert whole.mean() > 0.95
-    plain = settings_of(trained.kind, trained.settings.model_dump() | {"trusted": None})
+    plain = settings_of(
+        trained.kind, trained.settings.model_dump() | {"extrapolation_quantile": None}
+    )
     never = train(*pairs(plain), plain, seed=3)
     assert never.predict(far) == pytest.approx(never.posterior(far)[0], rel=1e-12)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim.learning.gaussian import GaussianSettings, tempered
+from rovsim.learning.gaussian import GaussianSettings, huberize
 from rovsim.learning.knn import best_k
 
 
@@ -32,7 +32,7 @@ def test_far_off_targets_come_back_to_their_neighbours():
     X, true, Y = rows(0.1, count=3000)
     spoilt = np.arange(0, 3000, 30)
     Y[spoilt] += 5.0
-    found = tempered(X, Y, GaussianSettings(kind="any"))
+    found = huberize(X, Y, GaussianSettings(kind="any"))
     assert np.max(np.abs(found - true)[spoilt]) < 1.0
     fine = np.setdiff1d(np.arange(3000), spoilt)
     changed = np.abs(found - Y)[fine] > 0.0
@@ -41,6 +41,6 @@ def test_far_off_targets_come_back_to_their_neighbours():
 
 def test_targets_are_left_alone_when_asked():
     X, _, Y = rows(1.0)
-    np.testing.assert_array_equal(tempered(X, Y, GaussianSettings(kind="any", tempered=None)), Y)
-    few = tempered(X[:10], Y[:10], GaussianSettings(kind="any"))
+    np.testing.assert_array_equal(huberize(X, Y, GaussianSettings(kind="any", huberized=None)), Y)
+    few = huberize(X[:10], Y[:10], GaussianSettings(kind="any"))
     np.testing.assert_array_equal(few, Y[:10])

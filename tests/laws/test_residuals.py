@@ -24,7 +24,7 @@ from rovsim.dynamics.learned.layout import BLOCKS, HEADER
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.simd import exponentials
 from rovsim.learning.export import Kernel, export_expansion, export_neighbours
-from rovsim.learning.posterior_variance import EXACT, ROUGH, of_exact, rbf
+from rovsim.learning.posterior_variance import EXACT, ROUGH, decompose_exact, rbf
 from rovsim.learning.scaling import fit_scaling
 
 BLOCK_SETS = st.sets(st.sampled_from(list(COLUMNS)), min_size=1).map(tuple)
@@ -65,11 +65,11 @@ def test_exponentials_are_those_of_numpy():
 def test_the_variance_is_exact_within_its_bound_for_any_query(seed, noise):
     rng = np.random.default_rng(seed)
     Z, length = rng.normal(size=(150, 6)), rng.uniform(0.5, 6.0, 6)
-    K, known = rbf(Z, Z, length), of_exact(*eigh(rbf(Z, Z, length)), noise)
+    K, known = rbf(Z, Z, length), decompose_exact(*eigh(rbf(Z, Z, length)), noise)
     k = rbf(np.concatenate([Z[:20], 2.0 * rng.normal(size=(80, 6))]), Z, length)
     exact = 1.0 - (k * np.linalg.solve(K + noise * np.eye(150), k.T).T).sum(1)
-    assert np.abs(known.unsure(k, len(known.spectrum)) - exact).max() < EXACT + 1e-9
-    assert np.abs(known.unsure(k, known.sure) - exact).max() < ROUGH + 1e-9
+    assert np.abs(known.prior_share(k, len(known.spectrum)) - exact).max() < EXACT + 1e-9
+    assert np.abs(known.prior_share(k, known.fading_rank) - exact).max() < ROUGH + 1e-9
 
 
 def grid(seed, n, m):

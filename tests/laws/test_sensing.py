@@ -36,7 +36,7 @@ BAD = seen([0.1, -0.05, 0.2], [0.05, 0.1, -0.2], [0.03, -0.04])
 @given(state=states, offset=places, turn=places, tilt=places)
 def test_seen_and_turned_back_is_the_truth(state, offset, turn, tilt):
     state[3:7] = normalized(state[3:7])
-    view = seen(offset, turn, tilt).view
+    view = seen(offset, turn, tilt).mocap_view
     np.testing.assert_allclose(view.inverse.states(view.states(state)), state, atol=1e-12)
     np.testing.assert_allclose(view.inverse.twist @ view.twist, np.eye(6), atol=1e-12)
 
@@ -46,14 +46,14 @@ def test_a_pose_is_seen_as_the_contract_says(state, offset, turn, tilt):
     """p = W (p_CO + R offset), R = W R exp(turn): written out with matrices."""
     state[3:7] = normalized(state[3:7])
     W, R, T = (matrix(q) for q in (exp(np.array([*tilt[:2], 0])), state[3:7], exp(turn)))
-    found = seen(offset, turn, tilt).view.poses(state[:7])
+    found = seen(offset, turn, tilt).mocap_view.poses(state[:7])
     np.testing.assert_allclose(found[:3], W @ (state[:3] + R @ offset), atol=1e-12)
     np.testing.assert_allclose(matrix(found[3:]), W @ R @ T, atol=1e-12)
 
 
 def test_a_view_that_changes_nothing_gives_back_the_same_array():
     state = np.random.default_rng(0).normal(size=(5, 13))
-    view = seen(np.zeros(3), np.zeros(3), np.zeros(3)).view
+    view = seen(np.zeros(3), np.zeros(3), np.zeros(3)).mocap_view
     assert view.states(state) is state
     assert view.inverse.poses(state) is state
     assert view.twists(state) is state
@@ -66,7 +66,7 @@ def driven(world, seconds=4.0):
     start[7:] = [0.2, 0.1, -0.1, 0.1, 0.2, -0.2]
     run = motion(0.6 * sticks(7, 1), seconds=seconds, start=start)
     true = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
-    shown = world.view.states(true)
+    shown = world.mocap_view.states(true)
     nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN)
     usable = (run.time > 0.2) & (run.time < seconds - 0.2)
     return true, replace(

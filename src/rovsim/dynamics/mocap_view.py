@@ -12,7 +12,7 @@ from rovsim.dynamics.body import cross_matrix
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class MocapView:
     """Reported pose = world o true pose o body, with two constant rigid transforms.
 
     The inverse turns what was reported into what was true. Where both transforms are identities,
@@ -23,12 +23,12 @@ class View:
     body: Rigid
 
     @staticmethod
-    def through(parts: Iterable[tuple[Rigid, Rigid]]) -> "View":
+    def through(parts: Iterable[tuple[Rigid, Rigid]]) -> "MocapView":
         """All parts in order, the first one next to the vehicle."""
         world, body = Rigid.by(), Rigid.by()
         for outer, inner in parts:
             world, body = outer.after(world), body.after(inner)
-        return View(world, body)
+        return MocapView(world, body)
 
     @cached_property
     def identity(self) -> bool:
@@ -42,9 +42,9 @@ class View:
         return np.concatenate([*self.world, *self.body]).tobytes()
 
     @cached_property
-    def inverse(self) -> "View":
+    def inverse(self) -> "MocapView":
         """From reported to true."""
-        return View(self.world.inverse, self.body.inverse)
+        return MocapView(self.world.inverse, self.body.inverse)
 
     def poses(self, eta: Array) -> Array:
         """Poses (..., 7) as this view shows them."""

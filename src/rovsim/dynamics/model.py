@@ -21,7 +21,7 @@ from rovsim.dynamics.effects.base import Coefficients, Effect, Sensing, Wrench
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual, StoredResidual, read_residual
-from rovsim.dynamics.mocap_view import View
+from rovsim.dynamics.mocap_view import MocapView
 from rovsim.dynamics.vehicle import VEHICLES, Thrusters, Vehicle, check_layout, load_vehicle
 
 SCHEMA = "rovsim.model/1"
@@ -152,10 +152,10 @@ class Model:
         return [e for e in self.effects if isinstance(e, Wrench)]
 
     @cached_property
-    def view(self) -> View:
+    def mocap_view(self) -> MocapView:
         """What the motion capture makes of the true motion."""
         sensing = sorted((e for e in self.effects if isinstance(e, Sensing)), key=lambda e: e.rank)
-        return View.through(e.transforms() for e in sensing)
+        return MocapView.through(e.transforms() for e in sensing)
 
     def check(self, site: Site, kind: CommandKind) -> None:
         """Refuse a run that lacks what an effect needs.

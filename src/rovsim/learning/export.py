@@ -14,6 +14,7 @@ from rovsim.dynamics.learned.layout import (
     COUNT,
     DISTANCE,
     EXPANSION,
+    FADING_RANK,
     FORMAT,
     HEADER,
     KIND,
@@ -24,14 +25,13 @@ from rovsim.dynamics.learned.layout import (
     PASS,
     POINTS,
     RANK,
-    SURE,
     UNIFORM,
     VERSION,
     WEIGHTING,
     WIDTH,
     filled,
 )
-from rovsim.learning.posterior_variance import Known
+from rovsim.learning.posterior_variance import PosteriorVariance
 from rovsim.learning.scaling import Scaling
 from rovsim.learning.tree import packed_tree, side_by_side
 
@@ -41,15 +41,15 @@ class Kernel:
     """sum_i weights_i exp(-|(z - points_i) / lengthscale|^2 / 2) of scaled features z.
 
     `points` (n, d) in scaled features, `lengthscale` (d,), `weights` (n, outputs of this kernel).
-    `prior` (outputs of this kernel,) is the variance before anything was seen and `known` what
-    reduces it; without `known` the variance is the prior's and nothing fades.
+    `prior` (outputs of this kernel,) is the variance before anything was seen and `variance` what
+    reduces it; without `variance` the variance is the prior's and nothing fades.
     """
 
     points: Array
     lengthscale: Array
     weights: Array
     prior: Array | None = None
-    known: Known | None = None
+    variance: PosteriorVariance | None = None
 
 
 def export_neighbours(
@@ -97,10 +97,10 @@ def export_expansion(
             expected=f"at most {MOST_POINTS}",
             remedy="Set residual.max_points, or use svgp.",
         )
-    known = [kernel.known for kernel in kernels if kernel.known]
+    variances = [kernel.variance for kernel in kernels if kernel.variance]
     header = _header(EXPANSION, features, points, len(mean), len(kernels))
-    header[RANK] = max((len(k.spectrum) for k in known), default=0)
-    header[SURE] = max((k.sure for k in known), default=0) if fades else 0
+    header[RANK] = max((len(v.spectrum) for v in variances), default=0)
+    header[FADING_RANK] = max((v.fading_rank for v in variances), default=0) if fades else 0
     parts = [_part(kernel, scaling, int(header[RANK])) for kernel in kernels]
     return np.concatenate([header, mean, *parts])
 
@@ -108,14 +108,14 @@ def export_expansion(
 def _part(kernel: Kernel, scaling: Scaling, rank: int) -> Array:
     """One kernel, as `layout` orders it."""
     n, share = kernel.weights.shape
-    known = kernel.known or Known(0.0, np.zeros(0), np.zeros((0, n)), 0)
+    variance = kernel.variance or PosteriorVariance(0.0, np.zeros(0), np.zeros((0, n)), 0)
     length, wide = sqrt(2.0) * kernel.lengthscale, filled(n, LANES)
     prior = np.zeros(share) if kernel.prior is None else kernel.prior
     pieces = [
-        np.array([known.identity, known.limit]), prior, scaling.shift, scaling.scale * length,
-        side_by_side(kernel.points / length), _row(known.spectrum, filled(rank, PASS)),
+        np.array([variance.identity, variance.limit]), prior, scaling.shift, scaling.scale * length,
+        side_by_side(kernel.points / length), _row(variance.spectrum, filled(rank, PASS)),
         _sheet(kernel.weights.T, filled(share, PASS), wide),
-        _sheet(known.vectors, filled(rank, PASS), wide),
+        _sheet(variance.vectors, filled(rank, PASS), wide),
     ]  # fmt: skip
     return np.concatenate([piece.ravel() for piece in pieces])
 

@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from rovsim.dynamics.learned.checks import OUTPUT_AXES
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
-from rovsim.learning.posterior_variance import Known, rbf
+from rovsim.learning.posterior_variance import PosteriorVariance, rbf
 from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
 
 NEARBY = 20  # rows: their median's own noise is a quarter of a row's
@@ -29,24 +29,24 @@ class GaussianSettings(LearnerSettings):
 
     # Share of the training rows at which the correction counts fully; beyond what these show it
     # fades, to nothing where nothing was seen. null: it never fades (docs/benchmark_speed.md).
-    trusted: float | None = Field(default=1.0, gt=0, le=1)
+    extrapolation_quantile: float | None = Field(default=1.0, gt=0, le=1)
     # Robust standard deviations by which a target may differ from its neighbours'. null: any
-    tempered: float | None = Field(default=4.0, gt=0)
+    huberized: float | None = Field(default=4.0, gt=0)
 
 
-def tempered(X: Array, Y: Array, settings: GaussianSettings) -> Array:
-    """Targets (n, 6) brought within `tempered` robust standard deviations of what is usual there.
+def huberize(X: Array, Y: Array, settings: GaussianSettings) -> Array:
+    """Targets (n, 6) brought within `huberized` robust standard deviations of what is usual there.
 
     Usual is the median of the nearest rows in X (n, d), unscaled. A command that falls inside a
     sample leaves an acceleration far off, and a Gaussian likelihood explains such with lengthscales
     too short for anything else. These are Huber's pseudo-values (Huber & Ronchetti 2009, sec. 7.8).
     """
-    if settings.tempered is None or len(X) <= NEARBY:
+    if settings.huberized is None or len(X) <= NEARBY:
         return Y
     Z = fit_scaling("standard", X).apply(X)
     _, near = cKDTree(Z).query(Z, NEARBY + 1)
     usual = np.median(Y[np.asarray(near)[:, 1:]], axis=1)
-    reach = settings.tempered * MAD * np.median(np.abs(Y - usual), axis=0)
+    reach = settings.huberized * MAD * np.median(np.abs(Y - usual), axis=0)
     return usual + np.clip(Y - usual, -reach, reach)
 
 
@@ -191,7 +191,7 @@ def export(
     arrays: Mapping[str, Array],
     Z: Array,
     weights: Array,
-    known: Sequence[Known],
+    variances: Sequence[PosteriorVariance],
 ) -> Array:
     """Kernel expansion around scaled points Z (n, d) with weights (6, n) in scaled units."""
     mean = arrays["target_shift"] + arrays["target_scale"] * arrays["mean"]
@@ -202,25 +202,25 @@ def export(
     kernels = [
         Kernel(Z, *of_one)
         for of_one in zip(
-            arrays["lengthscale"], columns, np.split(prior, parts), known, strict=True
+            arrays["lengthscale"], columns, np.split(prior, parts), variances, strict=True
         )
     ]
-    fades = settings.trusted is not None
+    fades = settings.extrapolation_quantile is not None
     return export_expansion(settings.features, _features(arrays), mean, kernels, fades)
 
 
-def trusting(
-    known: Sequence[Known],
+def fade_beyond(
+    variances: Sequence[PosteriorVariance],
     arrays: Mapping[str, Array],
     points: Array,
     X: Array,
     settings: GaussianSettings,
-) -> list[Known]:
+) -> list[PosteriorVariance]:
     """The same, fading beyond what the training features X (n, d) show."""
-    if settings.trusted is None:
-        return list(known)
+    if settings.extrapolation_quantile is None:
+        return list(variances)
     some = _features(arrays).apply(X[spread_rows(len(X), SHOWN, seed=0)])
     return [
-        one.fully_at(rbf(some, points, lengthscale), settings.trusted)
-        for one, lengthscale in zip(known, arrays["lengthscale"], strict=True)
+        one.faded_from(rbf(some, points, lengthscale), settings.extrapolation_quantile)
+        for one, lengthscale in zip(variances, arrays["lengthscale"], strict=True)
     ]

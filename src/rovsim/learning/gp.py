@@ -21,7 +21,7 @@ from rovsim.learning.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.learning.posterior_variance import Known, of_exact, rbf
+from rovsim.learning.posterior_variance import PosteriorVariance, decompose_exact, rbf
 
 Spectrum = tuple[Array, Array]  # eigenvalues (n,) and eigenvectors (n, n) of a kernel matrix
 
@@ -44,7 +44,7 @@ class GpSettings(gaussian.GaussianSettings):
 
 def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress) -> Trained:
     """Tune on some rows, condition on more. See `rovsim.learning.learner.train`."""
-    start, Y = perf_counter(), gaussian.tempered(X, Y, settings)
+    start, Y = perf_counter(), gaussian.huberize(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     some = rows[spread_rows(len(rows), settings.tuning_points, seed)]
     arrays = gaussian.scalings(settings.features.scaling, X, Y)
@@ -59,8 +59,8 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
         _condition(model, Z, T)
         library = gaussian.library_predictor(model, arrays)
         weights = model.prediction_strategy.mean_cache.numpy()
-    known = gaussian.trusting(_known(arrays, spectra), arrays, Z, X, settings)
-    data = gaussian.export(settings, arrays, Z, weights, known)
+    variances = gaussian.fade_beyond(_posterior_variances(arrays, spectra), arrays, Z, X, settings)
+    data = gaussian.export(settings, arrays, Z, weights, variances)
     info = {"points": len(rows), "tuning_points": len(some), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
     info["seconds"] = round(perf_counter() - start, 3)
@@ -92,10 +92,12 @@ def _factors(arrays: Mapping[str, Array], spectra: Sequence[Spectrum]) -> Array:
     return np.array([noise_factor(*spectrum, *rest) for spectrum, *rest in kernels])
 
 
-def _known(arrays: Mapping[str, Array], spectra: Sequence[Spectrum]) -> list[Known]:
-    """What each kernel's process knows."""
+def _posterior_variances(
+    arrays: Mapping[str, Array], spectra: Sequence[Spectrum]
+) -> list[PosteriorVariance]:
+    """What reduces the variance of each kernel's process."""
     noise = arrays["noise"] / arrays["outputscale"]
-    return [of_exact(*own, float(ratio)) for own, ratio in zip(spectra, noise, strict=True)]
+    return [decompose_exact(*own, float(ratio)) for own, ratio in zip(spectra, noise, strict=True)]
 
 
 def _model(Z: Array, T: Array, settings: GpSettings) -> Any:

@@ -1,4 +1,4 @@
-"""How sure a Gaussian process is, cheap enough for a control loop and exact within a stated bound.
+"""The variance of a Gaussian process, cheap enough for a control loop, exact within a bound.
 
 The variance needs k' (K + s2)^-1 k: n^2 numbers to read. In the eigenvectors v_j of K this is
 
@@ -17,34 +17,36 @@ from scipy.linalg import eigh
 from scipy.spatial.distance import cdist
 
 EXACT = 1e-6  # of the prior variance: what the exported variance may differ from the process' own
-ROUGH = 5e-2  # the same for fading, at a tenth of the cost; known stays right within a quarter
+ROUGH = 5e-2  # the same for fading, at a tenth of the cost; 1 - rho stays right within a quarter
 
 
 @dataclass(frozen=True, eq=False)
-class Known:
-    """What a process knows at a query with kernel values k (n,): its share of the prior variance is
+class PosteriorVariance:
+    """What reduces the prior variance at a query with kernel values k (n,), to the share
 
     rho = 1 - identity |k|^2 - sum_j spectrum_j (vectors_j k)^2.
 
-    `spectrum` (r,), `vectors` (r, n), the weightiest first; fading uses the first `sure` of them,
-    and counts a correction fully where rho is at most `limit`.
+    `spectrum` (r,), `vectors` (r, n), the weightiest first; fading uses the first `fading_rank` of
+    them, and counts a correction fully where rho is at most `limit`.
     """
 
     identity: float
     spectrum: Array
     vectors: Array
-    sure: int
+    fading_rank: int
     limit: float = 0.0
 
-    def unsure(self, k: Array, rank: int) -> Array:
+    def prior_share(self, k: Array, rank: int) -> Array:
         """rho (q,) at kernel values k (q, n), from the first `rank` vectors."""
         seen = (k @ self.vectors[:rank].T) ** 2 @ self.spectrum[:rank]
         return np.clip(1.0 - self.identity * (k**2).sum(1) - seen, 0.0, 1.0)
 
-    def fully_at(self, k: Array, share: float) -> "Known":
+    def faded_from(self, k: Array, share: float) -> "PosteriorVariance":
         """The same with the limit that leaves this share of the queries as they are."""
-        limit = float(np.quantile(self.unsure(k, self.sure), share))
-        return Known(self.identity, self.spectrum, self.vectors, self.sure, limit)
+        limit = float(np.quantile(self.prior_share(k, self.fading_rank), share))
+        return PosteriorVariance(
+            self.identity, self.spectrum, self.vectors, self.fading_rank, limit
+        )
 
 
 def rbf(X: Array, Z: Array, lengthscale: Array) -> Array:
@@ -52,7 +54,7 @@ def rbf(X: Array, Z: Array, lengthscale: Array) -> Array:
     return np.exp(-0.5 * cdist(X / lengthscale, Z / lengthscale, "sqeuclidean"))
 
 
-def of_exact(values: Array, vectors: Array, noise: float) -> Known:
+def decompose_exact(values: Array, vectors: Array, noise: float) -> PosteriorVariance:
     """An exact process with noise variance > 0.
 
     Args:
@@ -63,8 +65,10 @@ def of_exact(values: Array, vectors: Array, noise: float) -> Known:
     kept = values > _least(noise, EXACT)
     values, vectors = values[kept][::-1], vectors[:, kept][:, ::-1]
     spectrum = -values / (noise * (values + noise))
-    sure = int(np.sum(values > _least(noise, ROUGH)))
-    return Known(1.0 / noise, spectrum, np.ascontiguousarray(vectors.T), max(sure, 1))
+    fading_rank = int(np.sum(values > _least(noise, ROUGH)))
+    return PosteriorVariance(
+        1.0 / noise, spectrum, np.ascontiguousarray(vectors.T), max(fading_rank, 1)
+    )
 
 
 def _least(noise: float, bound: float) -> float:
@@ -72,8 +76,10 @@ def _least(noise: float, bound: float) -> float:
     return 0.5 * noise * (bound + np.sqrt(bound * bound + 4.0 * bound))
 
 
-def of_quadratic(A: Array) -> Known:
+def decompose_quadratic(A: Array) -> PosteriorVariance:
     """A process with rho = 1 - k' A k, for a symmetric A (n, n)."""
     values, vectors = eigh(0.5 * (A + A.T))
     order = np.argsort(-np.abs(values))
-    return Known(0.0, values[order], np.ascontiguousarray(vectors[:, order].T), len(values))
+    return PosteriorVariance(
+        0.0, values[order], np.ascontiguousarray(vectors[:, order].T), len(values)
+    )

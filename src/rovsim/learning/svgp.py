@@ -19,7 +19,7 @@ from rovsim.learning.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.learning.posterior_variance import Known, of_quadratic
+from rovsim.learning.posterior_variance import PosteriorVariance, decompose_quadratic
 
 
 class SvgpSettings(gaussian.GaussianSettings):
@@ -36,7 +36,7 @@ class SvgpSettings(gaussian.GaussianSettings):
 
 def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progress) -> Trained:
     """Maximise the evidence bound by minibatches. See `rovsim.learning.learner.train`."""
-    start, Y = perf_counter(), gaussian.tempered(X, Y, settings)
+    start, Y = perf_counter(), gaussian.huberize(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     arrays = gaussian.scalings(settings.features.scaling, X, Y)
     Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])
@@ -45,9 +45,9 @@ def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progres
         loss = _train(model, Z, T, settings, progress)
         arrays |= gaussian.hyperparameters(model) | _variational(model)
         library = gaussian.library_predictor(model, arrays)
-        weights, known = _weights(model), _known(model, arrays)
-    known = gaussian.trusting(known, arrays, arrays["inducing"], X, settings)
-    data = gaussian.export(settings, arrays, arrays["inducing"], weights, known)
+        weights, variances = _weights(model), _posterior_variances(model, arrays)
+    variances = gaussian.fade_beyond(variances, arrays, arrays["inducing"], X, settings)
+    data = gaussian.export(settings, arrays, arrays["inducing"], weights, variances)
     info = {"points": len(arrays["inducing"]), "rows": len(rows), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
     info["seconds"] = round(perf_counter() - start, 3)
@@ -166,8 +166,8 @@ def _root(model: Any) -> Any:
     return torch.linalg.cholesky(K)
 
 
-def _known(model: Any, arrays: Mapping[str, Array]) -> list[Known]:
-    """What each axis' process knows: A = L^-T (I - S) L^-1 with whitened covariance S."""
+def _posterior_variances(model: Any, arrays: Mapping[str, Array]) -> list[PosteriorVariance]:
+    """What reduces each axis' variance: A = L^-T (I - S) L^-1 with whitened covariance S."""
     import torch
 
     with torch.no_grad():
@@ -177,7 +177,7 @@ def _known(model: Any, arrays: Mapping[str, Array]) -> list[Known]:
         root = torch.as_tensor(np.tril(arrays["variational_root"]))
         A = (inverse.mT @ (one - root @ root.mT) @ inverse).numpy()
     return [
-        of_quadratic(quadratic * scale)
+        decompose_quadratic(quadratic * scale)
         for quadratic, scale in zip(A, arrays["outputscale"], strict=True)
     ]
 

@@ -213,7 +213,7 @@ def replay(
 
 def as_true(model: Model, motion: Motion) -> Motion:
     """The motion behind the reported one, if the motion capture sees as the model says."""
-    back = model.view.inverse
+    back = model.mocap_view.inverse
     return motion if back.identity else replace(
         motion, eta=back.poses(motion.eta), nu=back.twists(motion.nu),
         nu_dot=back.twists(motion.nu_dot), state_nu=back.twists(motion.state_nu),
@@ -267,7 +267,7 @@ def _predict_samples(model, motion, spans, signals, settings) -> Prediction:
     stride, period = clock(motion, settings.step).stride, float(motion.time[1] - motion.time[0])
     state = motion.state
     starts = [(a * stride, b - a, state[a]) for a, b in spans]
-    paths = model.view.states(np.stack(trajectories(model, motion, starts, settings)))
+    paths = model.mocap_view.states(np.stack(trajectories(model, motion, starts, settings)))
     nu, nu_dot = np.full((2, *paths.shape[:-1], 6), np.inf)
     stayed = np.isfinite(paths).all(axis=(1, 2))
     if stayed.any():
@@ -295,7 +295,7 @@ def _predict_bins(model, motion, spans, signals, settings) -> Prediction:
     ):
         fine = steps.edges[k : k + count + 1]
         edges = np.clip(starts[a : b + 1], fine[0], fine[-1])
-        means = bin_means(fine, model.view.states(path), edges)
+        means = bin_means(fine, model.mocap_view.states(path), edges)
         found.eta[a:b] = np.hstack([means[:, :3], normalized(means[:, 3:7])])
         found.nu[a:b] = means[:, 7:]
         found.nu_dot[a:b] = backward_difference(means[:, 7:], motion.time[a:b])

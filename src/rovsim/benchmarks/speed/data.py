@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.learned.features import FeatureSettings
-from rovsim.dynamics.learned.layout import SURE
+from rovsim.dynamics.learned.layout import FADING_RANK
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.learning.export import Kernel, export_expansion, export_neighbours
 from rovsim.learning.learner import learner_settings, train
@@ -65,7 +65,7 @@ def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
 
 
 def unfading(residual: Residual) -> Residual:
-    """The same residual, as `trusted=null` would train it."""
+    """The same residual, as `extrapolation_quantile=null` would train it."""
     data = residual.data.copy()
-    data[SURE] = 0.0
+    data[FADING_RANK] = 0.0
     return replace(residual, data=data)

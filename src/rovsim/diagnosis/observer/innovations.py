@@ -41,7 +41,7 @@ def observe(
         readings, row, tuning.gains, tuning.decay(watch.h), watch.motion.binned, out,
     )  # fmt: skip
     e = out.reshape(len(models), -1, 6)
-    reported = np.stack([m.view.twists(own) for m, own in zip(models, e, strict=True)])
+    reported = np.stack([m.mocap_view.twists(own) for m, own in zip(models, e, strict=True)])
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 
 
@@ -130,7 +130,7 @@ def _seen(models: Sequence[Model], watch: Watch) -> tuple[Array, Array, Array]:
     views: dict[bytes, int] = {}
     readings, starts, row = [], [], []
     for model in models:
-        back = model.view.inverse
+        back = model.mocap_view.inverse
         key = back.key
         if key not in views:
             views[key] = len(views)

@@ -63,7 +63,7 @@ def differences(
         starts = np.tile(watch.motion.state[own], (len(models), 1, 1))
     paths = _paths(models, watch, spans, starts, between, pushes)
     nu = [
-        [m.view.twists(p[:, 7:]) for p in of_model]
+        [m.mocap_view.twists(p[:, 7:]) for p in of_model]
         for m, of_model in zip(models, paths, strict=True)
     ]
     return np.array([_all_readings(watch, spans, of_model) for of_model in nu])
@@ -83,7 +83,7 @@ def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:
         inputs = inputs._replace(wrench=wrench, force=force, row=np.arange(len(models)))
     first = np.array([watch.ends[a] for a, _ in spans], np.int64)
     steps = np.array([watch.ends[b] - watch.ends[a] for a, b in spans], np.int64)
-    begin = np.array([m.view.inverse.states(s) for m, s in zip(models, starts, strict=True)])
+    begin = np.array([m.mocap_view.inverse.states(s) for m, s in zip(models, starts, strict=True)])
     count, total = len(models), int(steps.sum())
     rows = np.concatenate([[0], np.cumsum(np.tile(steps, count))])
     jobs = Jobs(

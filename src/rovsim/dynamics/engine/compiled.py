@@ -78,10 +78,10 @@ def _chain(wrenches: tuple[Any, ...]) -> str:
         at += count
     names = [
         f"Named_{i}, kernel_{i} = WRENCHES[{i}].named_parameters(), "
-        f"woven(WRENCHES[{i}].wrench)  # {wrench.id}"
+        f"inline_internal(WRENCHES[{i}].wrench)  # {wrench.id}"
         for i, wrench in enumerate(wrenches)
     ]
-    head = ["", *names, "", "", "@woven", "def extra(at, p):"]
+    head = ["", *names, "", "", "@inline_internal", "def extra(at, p):"]
     start = "    tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)"
     return "\n".join([*head, start, *lines, "    return tau"])
 

@@ -15,21 +15,21 @@ from rovsim.dynamics.engine.types import At, State
 from rovsim.dynamics.engine.vectors import (
     add3,
     add6,
-    called,
     cross,
     dot3,
+    inline_internal,
+    internal,
     into_body,
     into_world,
     times6,
     vector3,
     vector6,
-    woven,
 )  # fmt: skip
 
 # <extra>
 
 
-@woven
+@inline_internal
 def extra(at, p):
     """Wrench of the model's further effects, parameters p (k,)."""
     return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -38,7 +38,7 @@ def extra(at, p):
 # </extra>
 
 
-@woven
+@inline_internal
 def rotation(q):
     """Rotation matrix body to world, by rows (Fossen 2021, eq. 2.73).
 
@@ -53,7 +53,7 @@ def rotation(q):
     )
 
 
-@woven
+@inline_internal
 def quaternion_rate(q, nu):
     """Rate of the quaternion under body rates (Fossen 2021, eq. 2.78)."""
     a, b, c = 0.5 * nu[3], 0.5 * nu[4], 0.5 * nu[5]
@@ -65,7 +65,7 @@ def quaternion_rate(q, nu):
     )
 
 
-@woven
+@inline_internal
 def coriolis(M, v):
     """C(v) v of a body with inertia M (6, 6), from its momentum (Fossen 2021, eq. 6.43).
 
@@ -77,7 +77,7 @@ def coriolis(M, v):
     return force[0], force[1], force[2], moment[0], moment[1], moment[2]
 
 
-@woven
+@inline_internal
 def flow(current, R, nu):
     """Velocity through the water, and the rate of change of the current seen in body axes."""
     c = into_body(R, current)
@@ -86,13 +86,13 @@ def flow(current, R, nu):
     return nu_r, (rate[0], rate[1], rate[2], 0.0, 0.0, 0.0)
 
 
-@woven
+@inline_internal
 def damping_term(linear, quadratic, v):
     """Damping force of one axis."""
     return -(linear + quadratic * abs(v)) * v
 
 
-@woven
+@inline_internal
 def damping(a, b, v):
     """Linear (a) and quadratic (b) diagonal damping (Fossen 2021, eq. 6.75)."""
     return (
@@ -102,14 +102,14 @@ def damping(a, b, v):
     )  # fmt: skip
 
 
-@woven
+@inline_internal
 def restoring(heaviness, righting, R):
     """Weight and buoyancy; the world's down in body axes is the last row of R."""
     d, m = R[2], cross(righting, R[2])
     return heaviness * d[0], heaviness * d[1], heaviness * d[2], m[0], m[1], m[2]
 
 
-@called
+@internal
 def coupled_damping(coupling, v):
     """Damping of each axis by motion along the others: linear, then quadratic matrix."""
     tau = np.zeros(6)
@@ -119,7 +119,7 @@ def coupled_damping(coupling, v):
     return vector6(tau)
 
 
-@called
+@internal
 def thrust_loss(force, advance, B, directions, nu_r):
     """Change of the thruster wrench with inflow: F -> F (1 - c sign(F) d.v_r)."""
     tau = np.zeros(6)
@@ -130,7 +130,7 @@ def thrust_loss(force, advance, B, directions, nu_r):
     return vector6(tau)
 
 
-@woven
+@inline_internal
 def accelerate(at, body, p, thrust, force):
     """Body acceleration under a thruster wrench (6,) made of thruster forces (n,)."""
     tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
@@ -147,7 +147,7 @@ def accelerate(at, body, p, thrust, force):
     return times6(body.M_inv, tau)
 
 
-@woven
+@inline_internal
 def diagonal(a, b):
     """Diagonal of the sum of two matrices."""
     return (
@@ -156,7 +156,7 @@ def diagonal(a, b):
     )  # fmt: skip
 
 
-@woven
+@inline_internal
 def slope(t, x, body, p, step, correction, site):
     """Rate of change of the state at time t; `correction` (6,) adds to the acceleration."""
     thrust, force, demand, duration = step

@@ -17,14 +17,14 @@ from rovsim.dynamics.engine.vectors import (
     add3,
     add4,
     add6,
-    called,
     compiled,
     each6,
+    inline_internal,
+    internal,
     matrix6,
     times6,
     vector3,
     vector6,
-    woven,
 )
 from rovsim.dynamics.learned.features import FEATURES, assemble_one
 from rovsim.dynamics.learned.predictor import evaluate
@@ -32,7 +32,7 @@ from rovsim.dynamics.learned.predictor import evaluate
 ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@woven
+@inline_internal
 def moved(x, h, dx):
     """x + h dx."""
     return State(
@@ -42,7 +42,7 @@ def moved(x, h, dx):
     )
 
 
-@woven
+@inline_internal
 def renormalised(x):
     """The state with its quaternion scaled to unit length."""
     w, i, j, k = x.attitude
@@ -50,7 +50,7 @@ def renormalised(x):
     return State(x.position, (w / length, i / length, j / length, k / length), x.nu)
 
 
-@woven
+@inline_internal
 def runge_kutta(t, x, h, body, p, step, correction, site):
     """One classical Runge-Kutta 4 step."""
     k1 = slope(t, x, body, p, step, correction, site)
@@ -61,40 +61,40 @@ def runge_kutta(t, x, h, body, p, step, correction, site):
     return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
 
 
-@woven
+@inline_internal
 def through_water(x, body):
     """Velocity through the water."""
     return flow(body.current, rotation(x.attitude), x.nu)[0]
 
 
-@woven
+@inline_internal
 def lagged(memory, nu_r, time):
     """What is remembered after a time, in time constants, of going at nu_r."""
     kept = exp(-time)
     return add6(add6(ZERO6, kept, memory), 1.0 - kept, nu_r)
 
 
-@woven
+@inline_internal
 def memory_push(body, memory):
     """Acceleration by the water that still moves as the vehicle did."""
     return times6(body.M_inv, each6(body.memory, memory))
 
 
-@called
+@internal
 def push_over_step(x, memory, h, body):
     """The same at the middle of a step that begins at x; held, it is of second order."""
     ahead = lagged(memory, through_water(x, body), 0.5 * h * body.forgets)
     return memory_push(body, ahead)
 
 
-@called
+@internal
 def memory_after(memory, x, after, h, body):
     """Memory after a step from one state to another."""
     mean = add6(through_water(x, body), 1.0, through_water(after, body))
     return lagged(memory, add6(ZERO6, 0.5, mean), h * body.forgets)
 
 
-@called
+@internal
 def learned(t, x, body, p, step, push, data, site, features, a_res):
     """Learned acceleration error at x. tau_res = M a_res, so it simply adds to nu_dot."""
     base = slope(t, x, body, p, step, push, site)
@@ -103,7 +103,7 @@ def learned(t, x, body, p, step, push, data, site, features, a_res):
     return vector6(a_res)
 
 
-@woven
+@inline_internal
 def constants_of(bodies, m):
     """Constants of parameter set m alone, as tuples."""
     return Constants(
@@ -115,7 +115,7 @@ def constants_of(bodies, m):
     )  # fmt: skip
 
 
-@woven
+@inline_internal
 def step_of(inputs, row, k):
     """Commands of step k: thruster wrench, thruster forces, demand, duration of the recording."""
     return (
@@ -124,13 +124,13 @@ def step_of(inputs, row, k):
     )  # fmt: skip
 
 
-@woven
+@inline_internal
 def state_of(a):
     """State of an array (13,)."""
     return State((a[0], a[1], a[2]), (a[3], a[4], a[5], a[6]), vector6(a[7:]))
 
 
-@woven
+@inline_internal
 def store(x, out):
     """Write a state into an array (13,)."""
     for i in range(3):
@@ -141,7 +141,7 @@ def store(x, out):
         out[7 + i] = x.nu[i]
 
 
-@woven
+@inline_internal
 def site_of(site):
     """Walls (low, high per world axis) and MoCap axes as tuples."""
     tank = site.tank
@@ -149,7 +149,7 @@ def site_of(site):
     return walls, vector3(site.axes)
 
 
-@woven
+@inline_internal
 def stepped(t, x, memory, h, body, own, step, data, place, features, a_res):
     """State and memory one step later; a learned residual is held over the step."""
     push = ZERO6

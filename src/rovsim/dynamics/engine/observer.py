@@ -28,14 +28,14 @@ from rovsim.dynamics.engine.vectors import (
     add6,
     compiled,
     each6,
+    inline_internal,
     into_body,
     into_world,
     vector6,
-    woven,
 )
 
 
-@woven
+@inline_internal
 def turned(q, v):
     """q followed by a small rotation vector v in body axes; the length is restored later."""
     w, i, j, k = q
@@ -46,7 +46,7 @@ def turned(q, v):
     )  # fmt: skip
 
 
-@woven
+@inline_internal
 def pose_error(x, y):
     """Measured pose y (7,) minus the predicted one, in body axes: m and rad."""
     moved = (y[0] - x.position[0], y[1] - x.position[1], y[2] - x.position[2])
@@ -62,7 +62,7 @@ def pose_error(x, y):
     )  # fmt: skip
 
 
-@woven
+@inline_internal
 def velocity_error(mean, y):
     """Measured mean velocity, in y (13,) behind the pose, minus the predicted one."""
     return (
@@ -71,7 +71,7 @@ def velocity_error(mean, y):
     )  # fmt: skip
 
 
-@woven
+@inline_internal
 def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
     """The state after a reading; where velocities are read, poses are taken as measured."""
     nu = add6(x.nu, 1.0, each6(gain_nu, e))

@@ -9,8 +9,10 @@ MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}
 UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 inlined = njit(cache=True, forceinline=True, **MATHS)  # helpers of kernels
-woven = njit(cache=True, forceinline=True, **MATHS, **UNSEEN)  # the same, not called from Python
-called = njit(cache=True, **MATHS, **UNSEEN)  # too large or too rare to be inlined
+inline_internal = njit(
+    cache=True, forceinline=True, **MATHS, **UNSEEN
+)  # the same, not called from Python
+internal = njit(cache=True, **MATHS, **UNSEEN)  # too large or too rare to be inlined
 compiled = njit(cache=True, nogil=True, **MATHS)  # what Python calls, from any thread
 
 

@@ -11,6 +11,7 @@ from rovsim.dynamics.learned.layout import (
     BLOCKS,
     COUNT,
     EXPANSION,
+    FADING_RANK,
     FORMAT,
     HEADER,
     KIND,
@@ -22,7 +23,6 @@ from rovsim.dynamics.learned.layout import (
     PASS,
     POINTS,
     RANK,
-    SURE,
     VERSION,
     WIDTH,
     filled,
@@ -72,8 +72,8 @@ def _size(*header: float) -> int:
     if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MOST_NEIGHBOURS):
         boxes = sum(tree_levels(n)[1:]) * 2 * wide * LANES
         return HEADER + (2 + wide) * d + boxes + length * (wide + 1) + n * (d + m)
-    sure = header[SURE] <= header[RANK] <= n <= MOST_POINTS
-    if header[KIND] == EXPANSION and count in (1, m) and n >= 1 and sure:
+    ranked = header[FADING_RANK] <= header[RANK] <= n <= MOST_POINTS
+    if header[KIND] == EXPANSION and count in (1, m) and n >= 1 and ranked:
         share = m // count
         sheet = (filled(share, PASS) + rank + wide) * length
         return HEADER + m + count * (2 + share + 2 * d + rank + sheet)

@@ -1,4 +1,4 @@
-"""A sum of RBF kernels around points: the mean of a Gaussian process, and how unsure it is.
+"""A sum of RBF kernels around points: the mean of a Gaussian process, and its variance.
 
 With k_i = exp(-|z - z_i|^2 / 2) at scaled features z, the mean is `mean` + weights k, and the
 variance, as a share of the prior variance (Rasmussen & Williams 2006, eqs. 2.25 and 2.26),
@@ -16,13 +16,13 @@ from numba import njit
 
 from rovsim.dynamics.learned.layout import (
     COUNT,
+    FADING_RANK,
     HEADER,
     LANES,
     OUTPUTS,
     PASS,
     POINTS,
     RANK,
-    SURE,
     WIDTH,
 )
 from rovsim.dynamics.learned.simd import add_squares, exponentials, products, scaled
@@ -93,7 +93,7 @@ def _mean(data, part, k, out):
 
 
 @plain
-def _unsure(part, k, n, rank):
+def _variance_share(part, k, n, rank):
     """rho, from the first `rank` vectors; n points are real."""
     known = 0.0
     if part.identity != 0.0:
@@ -109,13 +109,13 @@ def _unsure(part, k, n, rank):
 
 @plain
 def faded(data, x, scratch, out):
-    """Mean out (m,), faded if the residual has a SURE rank."""
+    """Mean out (m,), faded if the residual has a FADING_RANK."""
     for number in range(int(data[COUNT])):
         part = _part(data, number)
         k = _kernel(data, part, x, scratch)
         _mean(data, part, k, out)
-        if data[SURE] > 0.0:
-            known = 1.0 - _unsure(part, k, int(data[POINTS]), int(data[SURE]))
+        if data[FADING_RANK] > 0.0:
+            known = 1.0 - _variance_share(part, k, int(data[POINTS]), int(data[FADING_RANK]))
             share = min(known / max(1.0 - part.limit, 1e-300), 1.0)
             for o in range(part.first, part.first + part.share):
                 out[o] *= share
@@ -128,6 +128,6 @@ def posterior(data, x, scratch, mean, variance):
         part = _part(data, number)
         k = _kernel(data, part, x, scratch)
         _mean(data, part, k, mean)
-        rho = _unsure(part, k, int(data[POINTS]), int(data[RANK]))
+        rho = _variance_share(part, k, int(data[POINTS]), int(data[RANK]))
         for o in range(part.share):
             variance[part.first + o] = part.prior[o] * rho

@@ -1,6 +1,7 @@
 """Where things stand in an exported residual: one flat float64 array, read by compiled kernels.
 
-    header     FORMAT, KIND, BLOCKS, WIDTH d, POINTS n, OUTPUTS m, COUNT, WEIGHTING, RANK, SURE
+    header     FORMAT, KIND, BLOCKS, WIDTH d, POINTS n, OUTPUTS m, COUNT, WEIGHTING, RANK,
+               FADING_RANK
     neighbours (COUNT = k): scaling, axes (d', d), boxes (b, 2, d', LANES) and points along these
                axes, rows (n'), points (n, d) as given, targets (n, m)
     expansion  (COUNT = p): mean (m), then p parts:
@@ -11,7 +12,7 @@ scaling = shift (d), scale (d); points = (n' / LANES, d', LANES). n' is n filled
 of LANES; d', r' (of RANK) and w' (of m / p) are filled up to multiples of PASS; all with zeros.
 """
 
-FORMAT, KIND, BLOCKS, WIDTH, POINTS, OUTPUTS, COUNT, WEIGHTING, RANK, SURE = range(10)
+FORMAT, KIND, BLOCKS, WIDTH, POINTS, OUTPUTS, COUNT, WEIGHTING, RANK, FADING_RANK = range(10)
 HEADER = 10
 VERSION = 2.0
 NEIGHBOURS, EXPANSION = 0.0, 1.0

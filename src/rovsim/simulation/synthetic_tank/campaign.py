@@ -106,7 +106,9 @@ def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, ra
     box = np.array([getattr(settings.tank, axis) for axis in "xyz"])
     tank = np.sort(box * HALF_TURN_X[:, None], axis=1)
     truth = simulate(model, settings, run.control, tank, random)
-    write_text(folder / f"{run.id}_6D.tsv", qtm_tsv(truth, settings.camera, model.view, random))
+    write_text(
+        folder / f"{run.id}_6D.tsv", qtm_tsv(truth, settings.camera, model.mocap_view, random)
+    )
     write_text(folder / f"{run.id}_commands.csv", commands_csv(truth, settings.log, random))
 
 

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
-from rovsim.dynamics.mocap_view import View
+from rovsim.dynamics.mocap_view import MocapView
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
 from rovsim.simulation.synthetic_tank.simulate import Truth
 
@@ -17,7 +17,7 @@ COLUMNS = (
 )
 
 
-def qtm_tsv(truth: Truth, camera: Camera, view: View, random) -> str:
+def qtm_tsv(truth: Truth, camera: Camera, view: MocapView, random) -> str:
     """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras."""
     stride = round(1.0 / (camera.rate * (truth.time[1] - truth.time[0])))
     time, state = truth.time[:-1:stride], truth.state[:-1:stride]
