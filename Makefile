@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study thesis test test-ui ui screenshots check bench bench-ui benchmark-hidden catalogue clean lock
+.PHONY: help setup study thesis test test-ui ui screenshots check bench bench-ui benchmark-blind catalogue clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -15,7 +15,7 @@ help:
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
 	@echo "make check   formatting, lint, types, layers"
 	@echo "make bench   replay and inference speed, into results/bench.json"
-	@echo "make benchmark-hidden   known physics hidden in the tank: is it found? SUITE=quick|standard|full"
+	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full"
 	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
 	@echo "make setup   the environment alone"
 
@@ -66,8 +66,8 @@ bench-ui: setup chromium
 bench: setup
 	$(BIN)/rovsim bench
 
-benchmark-hidden: setup
-	$(BIN)/rovsim hidden hidden.suite=$(SUITE) hidden.cores=$(CORES)
+benchmark-blind: setup
+	$(BIN)/rovsim blind blind.suite=$(SUITE) blind.cores=$(CORES)
 
 catalogue: setup
 	$(BIN)/python -m rovsim.reporting.catalogue

@@ -1,4 +1,4 @@
-"""The baseline of the hidden-effect benchmark finds a linear effect in data without noise."""
+"""The baseline of the blind benchmark finds a linear effect in data without noise."""
 
 from dataclasses import replace
 

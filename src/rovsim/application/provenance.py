@@ -11,7 +11,7 @@ import rovsim
 from rovsim.core.schema import Section
 
 SOURCE = Path(rovsim.__file__).parent
-UNRELATED = ("command", "tracking", "timing", "hidden", "bench", "output", "port", "open")
+UNRELATED = ("command", "tracking", "timing", "blind", "bench", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch")
 
 

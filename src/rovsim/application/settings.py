@@ -65,14 +65,14 @@ class BenchSettings(Section):
     page: str = "docs/benchmark_speed.md"
 
 
-class HiddenSettings(Section):
-    """The hidden-effect benchmark: which cases, who answers, on how many cores."""
+class BlindSettings(Section):
+    """The blind benchmark: which cases, who answers, on how many cores."""
 
     suite: Literal["quick", "standard", "full"] = "quick"
     seeds: Literal["development", "reporting"] = "reporting"
     methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")
     cores: PositiveInt = 2
-    page: str = "docs/benchmark_hidden.md"
+    page: str = "docs/benchmark_blind.md"
 
 
 class TrackingSettings(Section):
@@ -107,7 +107,7 @@ class Settings(Section):
     folds: FoldSettings
     timing: TimingSettings
     bench: BenchSettings
-    hidden: HiddenSettings
+    blind: BlindSettings
     tracking: TrackingSettings
 
     @property

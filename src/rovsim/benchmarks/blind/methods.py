@@ -54,9 +54,9 @@ def _regression(name: str, answer: Answer) -> Method:
     if find_spec("pysindy") is None:
         raise BadInput(
             "PySINDy is not installed",
-            where=f"hidden.methods, {name}",
+            where=f"blind.methods, {name}",
             expected="the packages of environment.lock",
-            remedy="Run `make setup`, or ask for hidden.methods=[diagnosis] alone.",
+            remedy="Run `make setup`, or ask for blind.methods=[diagnosis] alone.",
         )
     return Method(name, answer, ("rovsim.benchmarks.blind.sparse",))
 

@@ -1,4 +1,4 @@
-"""The tables of docs/benchmark_hidden.md."""
+"""The tables of docs/benchmark_blind.md."""
 
 from typing import Any, Mapping, Sequence
 
@@ -25,7 +25,7 @@ def tables(results: Mapping[str, Any]) -> str:
     """Markdown of `summary.json`."""
     first, last = SEEDS[results["seeds"]]
     parts = [
-        f"Made by `make benchmark-hidden SUITE={results['suite']}`; {results['seeds']} seeds "
+        f"Made by `make benchmark-blind SUITE={results['suite']}`; {results['seeds']} seeds "
         f"{first} to {last}.",
     ]
     for name, found in results["methods"].items():

@@ -18,7 +18,7 @@ from rovsim.benchmarks.blind.methods import Method
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json, write_json
 
-SCHEMA = "rovsim.hidden/1"
+SCHEMA = "rovsim.blind/1"
 TANK = (
     "rovsim.simulation.synthetic_tank",
     "rovsim.benchmarks.blind.flight",

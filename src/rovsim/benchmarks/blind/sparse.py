@@ -25,7 +25,7 @@ from rovsim.measurement.signals.chain import SignalSettings, clean
 
 Regression = Callable[[Array, Array], Array]
 
-# The best of `rovsim.benchmarks.blind.tuning`, on development seeds (docs/benchmark_hidden.md).
+# The best of `rovsim.benchmarks.blind.tuning`, on development seeds (docs/benchmark_blind.md).
 THRESHOLD, RIDGE = 0.17, 0.02
 LEAST_GAIN, MOST_TERMS = 0.05, 8
 

@@ -1,10 +1,10 @@
 """Hide known physics in the tank, ask what is missing, and keep the score.
 
-rovsim hidden [hidden.suite=quick|standard|full] [hidden.seeds=reporting|development]
-              [hidden.methods=[diagnosis,stlsq,frols]] [hidden.cores=2] [out=results/hidden]
+rovsim blind [blind.suite=quick|standard|full] [blind.seeds=reporting|development]
+             [blind.methods=[diagnosis,stlsq,frols]] [blind.cores=2] [out=results/blind]
 
 One JSON per case and method in OUT/SEEDS/METHOD/; what is there and still true is not asked again.
-Writes OUT/summary.json, and of reporting seeds the tables of docs/benchmark_hidden.md.
+Writes OUT/summary.json, and of reporting seeds the tables of docs/benchmark_blind.md.
 """
 
 from pathlib import Path
@@ -22,15 +22,15 @@ from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.reporting.html.marked import replace_tables
 
-SCHEMA = "rovsim.benchmarks.blind.summary/1"
+SCHEMA = "rovsim.blind.summary/1"
 
 
 def run(settings: Settings) -> None:
     """Run what is missing, then score all."""
-    asked = settings.hidden
-    out = Path(settings.out or "results/hidden")
+    asked = settings.blind
+    out = Path(settings.out or "results/blind")
     cases, methods = suite(asked.suite, asked.seeds), chosen(asked.methods)
-    with reported("hidden cases") as progress:
+    with reported("blind cases") as progress:
         run_cases(cases, methods, out / asked.seeds, asked.cores, progress)
     results: dict[str, Any] = {"schema": SCHEMA, "suite": asked.suite, "seeds": asked.seeds}
     results["methods"] = {

@@ -1,4 +1,4 @@
-"""The hidden-effect benchmark: valid cases, fair rules, and it goes on where it was."""
+"""The blind benchmark: valid cases, fair rules, and it goes on where it was."""
 
 import numpy as np
 import pytest
