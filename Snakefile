@@ -2,16 +2,16 @@
 
 import sys
 
-from rovsim.application.leave_one_run_out import Chapter
+from rovsim.application.leave_one_run_out import LeaveOneRunOut
 from rovsim.core.errors import RovsimError
 from rovsim.application.study import Study
 
 study = Study(config)
-chapter = Chapter(study)
+folds = LeaveOneRunOut(study)
 try:
     config["effects_file"] = study.effect_files
     study.on_effects
-    chapter.targets
+    folds.targets
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)
@@ -39,7 +39,7 @@ rule all:
         f"{R}/ladder.json",
         f"{R}/tables/ladder.tex",
         f"{R}/tracked.json",
-        chapter.targets,
+        folds.targets,
 
 
 include: "workflow/rules/recordings.smk"
@@ -50,6 +50,6 @@ include: "workflow/rules/residuals.smk"
 include: "workflow/rules/results.smk"
 
 
-if chapter.folds:
+if folds.runs:
 
     include: "workflow/rules/folds.smk"

@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 from rovsim import AXES
 from rovsim.evaluation.error_conditions import Blocks, Judged, content, explain
 from rovsim.evaluation.error_conditions.conditions import BLOCK, SPEEDS, THROUGHOUT, Condition
-from rovsim.evaluation.held_out.published import METRICS, Published, against
+from rovsim.evaluation.held_out.published_errors import METRICS, Published, against
 
 MODELS = (
     "nominal", "knn_3dof", "knn_6dof", "gp_3dof", "gp_6dof", "svgp_3dof", "svgp_6dof",
@@ -42,11 +42,11 @@ def study(
         **_forces(motion, rng),
     }
     tests = [run for run, split in runs.items() if split == "test"]
-    return found | {"marks": marks(found["comparison"], tests, seed)}
+    return found | {"published_errors": published_errors(found["comparison"], tests, seed)}
 
 
-def marks(comparison: dict[str, Any], runs: list[str], seed: int) -> dict[str, Any]:
-    """`marks.json` of runs for which two made-up models were published; nobody demanded roll."""
+def published_errors(comparison: dict[str, Any], runs: list[str], seed: int) -> dict[str, Any]:
+    """Errors against those made up for two models; nobody demanded roll."""
     rng = np.random.default_rng(seed)
 
     def errors() -> dict[str, float]:

@@ -54,8 +54,8 @@ def test_it_takes_any_models(name, models, tmp_path):
 def test_nothing_measured_is_said_not_crashed(name, tmp_path):
     content = study()
     for key in (
-        "comparison", "growth", "ladder", "timing", "quality", "where", "diagnosis", "marks",
-        "parts",
+        "comparison", "growth", "ladder", "timing", "quality", "where", "diagnosis",
+        "published_errors", "parts",
     ):  # fmt: skip
         content[key] = {}
     for key in ("nu", "nu_dot", "eta", "missing"):
@@ -119,9 +119,9 @@ def test_the_map_frames_the_findings():
 
 
 def test_each_cell_of_the_published_figure_is_error_over_mark():
-    found = study()["marks"]
+    found = study()["published_errors"]
     cells = [cell for cell in found["cells"] if cell["metric"] == "velocity_mae"]
-    axes = drawn("against_published", {"marks": found}).axes[1]
+    axes = drawn("against_published", {"published_errors": found}).axes[1]
     name = next(iter(found["models"]))
     expected = [min(cell["errors"][name] / cell["mark"], 4.0) for cell in cells]
     assert list(axes.lines[0].get_ydata()) == pytest.approx(expected)
@@ -136,7 +136,7 @@ def test_the_published_figure_shows_what_is_in_every_fold_and_stands_on_effects(
          "ratios": {n: 1.0 for n in names if "3dof" not in n or run == "b"}}
         for run in "ab" for metric in ("acceleration_rmse", "velocity_mae")
     ]  # fmt: skip
-    figure = drawn("against_published", {"marks": {"models": names, "cells": cells}})
+    figure = drawn("against_published", {"published_errors": {"models": names, "cells": cells}})
     (legend,) = figure.legends
     shown = [text.get_text() for text in legend.get_texts()]
     assert shown == ["nominal", "effects", "effects+knn_6dof"]

@@ -12,7 +12,7 @@ from rovsim import AXES
 from rovsim.core.files import write_json
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
-from rovsim.reporting.html import chapter_page, page, published, terminal
+from rovsim.reporting.html import leave_one_run_out, page, published_errors, terminal
 from rovsim.reporting.html.marked import BEGIN, END
 from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.html.verdict import verdict
@@ -139,27 +139,27 @@ def test_too_little_data_is_a_verdict_without_an_error():
     assert not any("noise" in remark for remark in said.remarks)
 
 
-def _write_chapter(folder, content):
-    """What a chapter leaves in its results; one fold knows two values only together."""
-    write_json(folder / "marks.json", content["marks"])
+def _write_folds(folder, content):
+    """What a study of folds leaves in its results; one fold knows two values only together."""
+    write_json(folder / "published_errors.json", content["published_errors"])
     write_json(folder / "timing.json", content["timing"])
-    for run, group in zip(content["marks"]["runs"], ([], JOINT), strict=True):
+    for run, group in zip(content["published_errors"]["runs"], ([], JOINT), strict=True):
         diagnosis = content["diagnosis"] | {"known_together": [group] if group else []}
         write_json(folder / "folds" / run / "diagnosis.json", diagnosis)
 
 
 def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
-    found = content["marks"]
-    html = page.render(page.ReportInputs("x", marks=found))
+    found = content["published_errors"]
+    html = page.render(page.ReportInputs("x", published_errors=found))
     assert re.findall(r"<h2>(.*?)</h2>", html) == ["Against the published numbers"]
     one = found["models"]["gp_6dof"]
     assert f'data-value="{one["geometric_mean"]}"' in html
     path = tmp_path / "page.md"
-    _write_chapter(tmp_path, content)
+    _write_folds(tmp_path, content)
     path.write_text(f"# Words\n\n{BEGIN}\nbefore\n{END}\nmore words\n")
-    chapter_page.main([str(tmp_path), str(path)])
+    leave_one_run_out.main([str(tmp_path), str(path)])
     text = path.read_text()
-    assert "mistakes" not in text
+    assert "pitfalls" not in text
     runs = " | ".join(f"without {run}" for run in found["runs"])
     assert f"| parameter | {runs} |" in text
     assert "| thruster_lag time_constant | 0.1500 ± 0.0078 s | 0.1500 ± 0.0078 s |" in text
@@ -177,7 +177,7 @@ def test_effects_and_residual_are_said_cell_by_cell():
     missed = [{"run": "a", "axis": "yaw", "metric": "velocity_mae", "ratio": 1.25}]
     missed += [{"run": "b", "axis": "yaw", "metric": "acceleration_rmse", "ratio": None}]
     one = {"cells": 24, "below": 22, "geometric_mean": None, "not_below": missed}
-    (sentence,) = published.said({"models": {"effects+knn_6dof": one, "nominal": one}})
+    (sentence,) = published_errors.said({"models": {"effects+knn_6dof": one, "nominal": one}})
     assert sentence == (
         "effects+knn_6dof: 22 of 24 cells below the mark, geometric mean of the ratios –. "
         "Not below: a yaw velocity MAE (1.25), b yaw acceleration RMSE (–)."
@@ -186,18 +186,20 @@ def test_effects_and_residual_are_said_cell_by_cell():
 
 def test_mistakes_are_said_run_by_run(content, tmp_path):
     cost = {"right": 0.5, "wrong": 1.25}
-    mistakes = {"runs": {"a": {"wrong clock": cost}, "b": {"wrong clock": cost | {"wrong": None}}}}
-    (sentence,) = published.repeated(mistakes)
+    pitfalls = {"runs": {"a": {"wrong clock": cost}, "b": {"wrong clock": cost | {"wrong": None}}}}
+    (sentence,) = published_errors.repeated(pitfalls)
     assert sentence == (
         "Wrong clock: bins of about 0.157 s replayed as if each lasted 0.1 s. Velocity RMSE of the "
         "open loop / spread: 0.500 becomes 1.25 (a), 0.500 becomes – (b)."
     )
-    html = page.render(page.ReportInputs("x", marks=content["marks"], mistakes=mistakes))
+    html = page.render(
+        page.ReportInputs("x", published_errors=content["published_errors"], pitfalls=pitfalls)
+    )
     assert sentence in unescape(html)
     (tmp_path / "page.md").write_text(f"{BEGIN}\n{END}\n")
-    _write_chapter(tmp_path, content)
-    write_json(tmp_path / "mistakes.json", mistakes)
-    chapter_page.main([str(tmp_path), str(tmp_path / "page.md")])
+    _write_folds(tmp_path, content)
+    write_json(tmp_path / "pitfalls.json", pitfalls)
+    leave_one_run_out.main([str(tmp_path), str(tmp_path / "page.md")])
     assert sentence in (tmp_path / "page.md").read_text()
 
 

@@ -65,7 +65,7 @@ use rule train as train_fold with:
         motions=lambda w: expand(
             f"{F}/motions/{{run}}.npz",
             fold=w.fold,
-            run=chapter.train_runs(w.fold, w.control),
+            run=folds.train_runs(w.fold, w.control),
         ),
         campaign=lambda w: study.campaign_file,
         base=lambda w: (
@@ -88,7 +88,7 @@ rule fold:
         models=lambda w: expand(
             f"{F}/models/{{model}}/model.yaml",
             fold=w.fold,
-            model=chapter.models(w.fold),
+            model=folds.models(w.fold),
         ),
     output:
         f"{F}/comparison.json",
@@ -103,45 +103,45 @@ rule fold:
         "../scripts/fold.py"
 
 
-if chapter.published:
+if folds.published:
 
     rule against_published:
         "The folds beside what others published for the same runs."
         input:
-            comparisons=expand(f"{F}/comparison.json", fold=chapter.folds),
-            motions=expand(f"{R}/motions/{{run}}.npz", run=chapter.folds),
-            published=str(chapter.published),
+            comparisons=expand(f"{F}/comparison.json", fold=folds.runs),
+            motions=expand(f"{R}/motions/{{run}}.npz", run=folds.runs),
+            published=str(folds.published),
         output:
-            marks=f"{R}/marks.json",
-            csv=f"{R}/tables/marks.csv",
-            tex=f"{R}/tables/marks.tex",
+            published_errors=f"{R}/published_errors.json",
+            csv=f"{R}/tables/published_errors.csv",
+            tex=f"{R}/tables/published_errors.tex",
         log:
             f"{R}/logs/against_published.log",
         benchmark:
             f"{R}/benchmarks/against_published.tsv"
         params:
-            runs=chapter.folds,
-            code=study.code("evaluation.held_out.published", "reporting.tables"),
+            runs=folds.runs,
+            code=study.code("evaluation.held_out.published_errors", "reporting.tables"),
         script:
             "../scripts/against_published.py"
 
 
-if chapter.mistakes:
+if folds.pitfalls:
 
-    rule mistakes:
+    rule pitfalls:
         "What four mistakes of the thesis' public code cost, on each held-out run."
         input:
-            motions=expand(f"{R}/motions/{{run}}.npz", run=chapter.folds),
-            models=expand(f"{F}/models/effects/model.yaml", fold=chapter.folds),
+            motions=expand(f"{R}/motions/{{run}}.npz", run=folds.runs),
+            models=expand(f"{F}/models/effects/model.yaml", fold=folds.runs),
         output:
-            f"{R}/mistakes.json",
+            f"{R}/pitfalls.json",
         log:
-            f"{R}/logs/mistakes.log",
+            f"{R}/logs/pitfalls.log",
         benchmark:
-            f"{R}/benchmarks/mistakes.tsv"
+            f"{R}/benchmarks/pitfalls.tsv"
         params:
             settings=study.section("replay", "signals"),
             learners={kind: study.learner(kind) for kind in ("knn", "gp")},
             code=study.code("evaluation.held_out.pitfalls", "dynamics.effects", "learning"),
         script:
-            "../scripts/mistakes.py"
+            "../scripts/pitfalls.py"

@@ -1,7 +1,7 @@
 from rovsim.reporting.report_data import ONCE, PER_RUN
 
-# Only a chapter with published numbers has marks.
-MARKS = [f"{R}/marks.json"] if chapter.published else []
+# Only where somebody published errors of the same runs.
+PUBLISHED_ERRORS = [f"{R}/published_errors.json"] if folds.published else []
 
 
 rule compare:
@@ -31,7 +31,7 @@ rule compare:
 
 
 # One rule a figure, so that each has its own caption and re-runs on its own edits.
-for figure in chapter.once:
+for figure in folds.once:
 
     rule:
         name:
@@ -43,7 +43,7 @@ for figure in chapter.once:
             timing=f"{R}/timing.json",
             where=f"{R}/where.json",
             diagnosis=f"{R}/diagnosis.json",
-            marks=MARKS if ONCE[figure] == "marks" else [],
+            published_errors=PUBLISHED_ERRORS if ONCE[figure] == "published_errors" else [],
             quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         output:
             png=report(
@@ -123,11 +123,11 @@ rule report:
         timing=f"{R}/timing.json",
         where=f"{R}/where.json",
         diagnosis=f"{R}/diagnosis.json",
-        marks=MARKS,
-        mistakes=[f"{R}/mistakes.json"] if chapter.mistakes else [],
+        published_errors=PUBLISHED_ERRORS,
+        pitfalls=[f"{R}/pitfalls.json"] if folds.pitfalls else [],
         quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         figures=expand(
-            f"{R}/figures/{{name}}.png", name=[*chapter.once, *study.figures()]
+            f"{R}/figures/{{name}}.png", name=[*folds.once, *study.figures()]
         ),
     output:
         report(f"{R}/report.html", caption="../report/report.rst", category="Study"),
@@ -150,7 +150,7 @@ rule track:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
         diagnosis=f"{R}/diagnosis.json",
-        figures=expand(f"{R}/figures/{{name}}.png", name=chapter.once),
+        figures=expand(f"{R}/figures/{{name}}.png", name=folds.once),
         report=f"{R}/report.html",
         models=expand(f"{R}/models/{{model}}/model.yaml", model=study.files),
     output:

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json, write_json
-from rovsim.evaluation.held_out.published import against, demanded, read_published
+from rovsim.evaluation.held_out.published_errors import against, demanded, read_published
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.tables import marks_table
+from rovsim.reporting.tables import published_errors_table
 
 
 def main(
@@ -16,7 +16,7 @@ def main(
     folds = {run: read_json(path) for run, path in comparisons.items()}
     moved = {run: demanded(Motion.read(path).commands) for run, path in motions.items()}
     found = against(read_published(published), folds, moved)
-    marks_table(found).write(tables, "marks")
+    published_errors_table(found).write(tables, "published_errors")
     write_json(out, found)
 
 

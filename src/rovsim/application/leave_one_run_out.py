@@ -1,4 +1,4 @@
-"""A chapter of the study: each run held out once, beside published numbers."""
+"""Each run of a study held out once, and set beside published errors."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,13 +14,13 @@ from rovsim.reporting.report_data import ONCE
 
 
 @dataclass(frozen=True)
-class Chapter:
+class LeaveOneRunOut:
     """The folds of a study; without any where `folds.leave_one_run_out` is off."""
 
     study: Study
 
     @cached_property
-    def folds(self) -> list[str]:
+    def runs(self) -> list[str]:
         """Runs to be held out, one after the other.
 
         Raises:
@@ -74,19 +74,20 @@ class Chapter:
         return [*PHYSICS, *trained, *(f"{EFFECTS}+{name}" for name in trained)]
 
     @property
-    def mistakes(self) -> bool:
+    def pitfalls(self) -> bool:
         """Whether the mistakes of the thesis' public code are repeated."""
-        return self.study.settings.folds.mistakes
+        return self.study.settings.folds.pitfalls
 
     @property
     def once(self) -> list[str]:
-        """Figures that the study draws once; that of the marks only where there are marks."""
-        return [name for name, content in ONCE.items() if content != "marks" or self.published]
+        """Figures that the study draws once; that of published errors only where there are any."""
+        lacking = "" if self.published else "published_errors"
+        return [name for name, content in ONCE.items() if content != lacking]
 
     @property
     def targets(self) -> list[str]:
-        """What the chapter adds to the results."""
+        """What this adds to the results of the study."""
         folder = self.study.folder
-        folds = [f"{folder}/folds/{run}/comparison.json" for run in self.folds]
-        asked = {"marks": self.published, "mistakes": self.mistakes}
+        folds = [f"{folder}/folds/{run}/comparison.json" for run in self.runs]
+        asked = {"published_errors": self.published, "pitfalls": self.pitfalls}
         return [*folds, *(f"{folder}/{name}.json" for name, yes in asked.items() if yes)]

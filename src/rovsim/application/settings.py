@@ -26,23 +26,23 @@ class StudySettings(Section):
 
 
 class FoldSettings(Section):
-    """The chapter in which each run is held out once.
+    """Each run held out once.
 
     `published` is a csv beside the recordings, of errors that others reached on the same runs. Each
     residual is trained on the nominal model and on the effects, on the runs of each control.
-    `mistakes`: also what four mistakes of the thesis' public code cost on these runs.
+    `pitfalls`: also what four mistakes of the thesis' public code cost on these runs.
     """
 
     leave_one_run_out: bool = False
     published: str | None = None
-    mistakes: bool = False
+    pitfalls: bool = False
     residuals: tuple[str, ...] = ("knn", "gp")
     controls: tuple[Control, ...] = ("6dof",)
 
     @model_validator(mode="after")
     def _only_held_out_runs(self) -> "FoldSettings":
-        if (self.published or self.mistakes) and not self.leave_one_run_out:
-            raise ValueError("published numbers and mistakes only with leave_one_run_out=true")
+        if (self.published or self.pitfalls) and not self.leave_one_run_out:
+            raise ValueError("published numbers and pitfalls only with leave_one_run_out=true")
         return self
 
 

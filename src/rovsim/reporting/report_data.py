@@ -28,7 +28,7 @@ class Evidence:
     quality: Mapping[str, Any] = field(default_factory=dict)
     where: Mapping[str, Any] = field(default_factory=dict)
     diagnosis: Mapping[str, Any] = field(default_factory=dict)
-    marks: Mapping[str, Any] = field(default_factory=dict)
+    published_errors: Mapping[str, Any] = field(default_factory=dict)
     budgets: Mapping[str, Budget] = field(default_factory=dict)
 
     def predicted(self, run: str, horizon: str, name: str, models: Sequence[str]) -> dict:
@@ -50,7 +50,7 @@ ONCE = {
     "excitation": "quality",
     "where": "where",
     "where_map": "where",
-    "against_published": "marks",
+    "against_published": "published_errors",
 }
 PER_RUN = ("budget", "velocities", "residual_series", "path_3d")
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.files import write_text
-from rovsim.evaluation.held_out.published import METRICS
+from rovsim.evaluation.held_out.published_errors import METRICS
 from rovsim.reporting.figures.marks import (
     ACCELERATION_UNITS,
     AXES,
@@ -147,9 +147,9 @@ def ladder_table(ladder: Mapping[str, Any]) -> Table:
     )
 
 
-def marks_table(marks: Mapping[str, Any]) -> Table:
-    """One row per model of `marks.json`, others' last; the metrics apart only in the CSV."""
-    models = marks.get("models", {})
+def published_errors_table(published_errors: Mapping[str, Any]) -> Table:
+    """One row per model of `published_errors.json`, others' last; metrics apart only in the CSV."""
+    models = published_errors.get("models", {})
     columns = [Column("not_below", "not below", "%"), Column("ratio", "all", "–")]
     columns += [Column(f"{axis}_ratio", axis, "–") for axis in AXES]
     columns += [Column(f"{metric}_ratio", metric, "–", printed=False) for metric in METRICS]
@@ -162,7 +162,7 @@ def marks_table(marks: Mapping[str, Any]) -> Table:
         caption="Held-out runs against the published numbers: cells (run, axis, metric) in which a "
         "model is not below the smallest published error, and the geometric mean of its error "
         "divided by that, over all cells and per axis. Lowest of each column in bold.",
-        label="tab:marks",
+        label="tab:published_errors",
         columns=columns,
         names=list(models),
         values=np.array(values, dtype=float).reshape(-1, len(columns)),

@@ -15,10 +15,10 @@ from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import OPEN_LOOP, ReplaySettings, replay
 
-SCHEMA = "rovsim.mistakes/1"
+SCHEMA = "rovsim.pitfalls/1"
 ERROR, SHARE = "velocity RMSE of the open loop / spread", "share of residual acceleration foretold"
 # What was done, and what `right` and `wrong` measure.
-MISTAKES = {
+PITFALLS = {
     "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", ERROR),
     "copied runs": ("a '6-DoF' training set that holds copies of a 3-DoF run (KNN)", SHARE),
     "lost data": ("a GP loaded with its hyperparameters but not its data", SHARE),
@@ -53,7 +53,7 @@ def explained(predict: Callable[[Array], Array], X: Array, Y: Array) -> float:
     return float(np.mean(1.0 - np.mean((Y - predict(X)) ** 2, axis=0) / np.mean(Y**2, axis=0)))
 
 
-def mistakes(
+def measure_pitfalls(
     model: Model,
     runs: Sequence[Motion],
     test: Motion,

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rovsim.evaluation.held_out.published import COUNTED, PUBLISHED
+from rovsim.evaluation.held_out.published_errors import COUNTED, PUBLISHED
 from rovsim.evaluation.ladder import EFFECTS
 from rovsim.reporting.figures.marks import legend, note, nothing, number, short
 from rovsim.reporting.figures.palette import Look, looks
@@ -27,27 +27,27 @@ TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 
 
 @styled()
-def draw(*, marks: Mapping[str, Any]) -> Figure:
-    """Draw the ratios of `marks.json`, one panel a metric."""
-    names = _shown(marks)
+def draw(*, published_errors: Mapping[str, Any]) -> Figure:
+    """Draw the ratios of `published_errors.json`, one panel a metric."""
+    names = _shown(published_errors)
     style = looks(names)
     figure = sheet(60 + 60 * len(COUNTED))
     for axes, metric in zip(figure.subplots(len(COUNTED), 1), COUNTED, strict=True):
-        cells = [cell for cell in marks.get("cells", []) if cell["metric"] == metric]
+        cells = [cell for cell in published_errors.get("cells", []) if cell["metric"] == metric]
         _panel(axes, cells, style)
         axes.set_ylabel(f"{LABELS[metric]} / mark (–)")
     legend(
         figure, [Line2D([], [], label=short(n), **_look(k, style[n])) for k, n in enumerate(names)]
     )
-    beyond = any(_ratio(c, n) > HIGHEST for c in marks.get("cells", []) for n in names)
+    beyond = any(_ratio(c, n) > HIGHEST for c in published_errors.get("cells", []) for n in names)
     note(figure, [f"On the upper edge: {HIGHEST:g} or more, or no value." if beyond else ""])
     return figure
 
 
-def _shown(marks: Mapping[str, Any]) -> list[str]:
+def _shown(published_errors: Mapping[str, Any]) -> list[str]:
     """Our models of every cell; of residuals those on top of effects, if there are any."""
-    cells = marks.get("cells", [])
-    ours = [n for n in marks.get("models", {}) if not n.startswith(PUBLISHED)]
+    cells = published_errors.get("cells", [])
+    ours = [n for n in published_errors.get("models", {}) if not n.startswith(PUBLISHED)]
     whole = [n for n in ours if all(n in cell["ratios"] for cell in cells)]
     stacked = {n.partition("+")[2] for n in whole if n.startswith(f"{EFFECTS}+")}
     return [n for n in whole if n not in stacked]

@@ -15,13 +15,13 @@ from rovsim.core.mappings import leaves
 from rovsim.reporting.figures import SECTIONS, kind
 from rovsim.reporting.figures.inference_time import RATES
 from rovsim.reporting.figures.marks import AXES, number, significant
-from rovsim.reporting.html.published import repeated, said
+from rovsim.reporting.html.published_errors import repeated, said
 from rovsim.reporting.html.sentences import summary
 from rovsim.reporting.html.verdict import verdict
-from rovsim.reporting.tables import Table, errors_table, ladder_table, marks_table
+from rovsim.reporting.tables import Table, errors_table, ladder_table, published_errors_table
 
 # The JSON files of a study that the report reads.
-CONTENTS = ("comparison", "ladder", "timing", "where", "diagnosis", "marks", "mistakes")
+CONTENTS = ("comparison", "ladder", "timing", "where", "diagnosis", "published_errors", "pitfalls")
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
     ("2", "velocity_rmse"),
@@ -73,9 +73,9 @@ class Picture:
 class ReportInputs:
     """Everything the report shows; a section without content is left out.
 
-    `comparison`, `ladder`, `timing`, `where`, `diagnosis`, `marks`, `mistakes`: contents of the
-    JSON files of those names. `quality`: the quality reports by run. `pictures`: in the order of
-    appearance. `provenance`: nested plain values (settings, code digest, versions).
+    `comparison`, `ladder`, `timing`, `where`, `diagnosis`, `published_errors`, `pitfalls`: contents
+    of the JSON files of those names. `quality`: the quality reports by run. `pictures`: in order
+    of appearance. `provenance`: nested plain values (settings, code digest, versions).
     """
 
     campaign: str
@@ -87,8 +87,8 @@ class ReportInputs:
     provenance: Mapping[str, Any] = field(default_factory=dict)
     where: Mapping[str, Any] = field(default_factory=dict)
     diagnosis: Mapping[str, Any] = field(default_factory=dict)
-    marks: Mapping[str, Any] = field(default_factory=dict)
-    mistakes: Mapping[str, Any] = field(default_factory=dict)
+    published_errors: Mapping[str, Any] = field(default_factory=dict)
+    pitfalls: Mapping[str, Any] = field(default_factory=dict)
 
 
 def render(inputs: ReportInputs) -> str:
@@ -110,9 +110,9 @@ def render(inputs: ReportInputs) -> str:
         where=inputs.where.get("models", {}),
         errors=_errors(inputs.comparison) if inputs.comparison else [],
         ladder=ladder_table(inputs.ladder),
-        marks=marks_table(inputs.marks),
-        published=said(inputs.marks),
-        mistakes=repeated(inputs.mistakes),
+        published_errors=published_errors_table(inputs.published_errors),
+        published=said(inputs.published_errors),
+        pitfalls=repeated(inputs.pitfalls),
         timing=inputs.timing.get("inference", {}),
         rates=RATES,
         quality=inputs.quality,

@@ -6,7 +6,7 @@ import pytest
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
-from rovsim.evaluation.held_out.published import against, demanded, read_published
+from rovsim.evaluation.held_out.published_errors import against, demanded, read_published
 
 HEAD = "run,control,variant,model,axis,acceleration_rmse,velocity_mae,velocity_rmse"
 LINES = [

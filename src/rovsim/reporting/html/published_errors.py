@@ -1,18 +1,18 @@
-"""`marks.json` and `mistakes.json` in words and tables: for the report, and docs/thesis.md."""
+"""`published_errors.json`, `pitfalls.json` in words and tables: for the report, docs/thesis.md."""
 
 from typing import Any, Mapping
 
-from rovsim.evaluation.held_out.pitfalls import MISTAKES
-from rovsim.evaluation.held_out.published import COUNTED, METRICS, PUBLISHED
+from rovsim.evaluation.held_out.pitfalls import PITFALLS
+from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED
 from rovsim.evaluation.ladder import EFFECTS
 from rovsim.reporting.figures.marks import significant
 from rovsim.reporting.html.marked import table
 from rovsim.reporting.tables import QUANTITIES
 
 
-def said(marks: Mapping[str, Any]) -> list[str]:
+def said(published_errors: Mapping[str, Any]) -> list[str]:
     """One sentence for each residual on top of effects: how many cells, how far, which not."""
-    models = marks.get("models", {})
+    models = published_errors.get("models", {})
     return [_sentence(n, found) for n, found in models.items() if n.startswith(f"{EFFECTS}+")]
 
 
@@ -27,12 +27,12 @@ def _sentence(name: str, found: Mapping[str, Any]) -> str:
     ).strip()
 
 
-def repeated(mistakes: Mapping[str, Any]) -> list[str]:
+def repeated(pitfalls: Mapping[str, Any]) -> list[str]:
     """One sentence for each mistake: what was done, and what it cost on each run."""
-    runs = mistakes.get("runs", {})
+    runs = pitfalls.get("runs", {})
     return [
         f"{name[0].upper()}{name[1:]}: {done}. {measure[0].upper()}{measure[1:]}: {costs}."
-        for name, (done, measure) in MISTAKES.items()
+        for name, (done, measure) in PITFALLS.items()
         if (costs := _costs(runs, name))
     ]
 
@@ -45,34 +45,34 @@ def _costs(runs: Mapping[str, Any], name: str) -> str:
     )
 
 
-def text(marks: Mapping[str, Any]) -> list[str]:
-    """Paragraphs of Markdown of `marks.json`."""
-    lacking = marks["without_published"]
-    parts = [*said(marks), _standings(marks)]
-    parts += [part for metric in METRICS for part in _cells(marks, metric)]
+def text(published_errors: Mapping[str, Any]) -> list[str]:
+    """Paragraphs of Markdown of `published_errors.json`."""
+    lacking = published_errors["without_published"]
+    parts = [*said(published_errors), _standings(published_errors)]
+    parts += [part for metric in METRICS for part in _cells(published_errors, metric)]
     return parts + ([f"Nothing is published for {', '.join(lacking)}."] if lacking else [])
 
 
-def _standings(marks: Mapping[str, Any]) -> str:
+def _standings(published_errors: Mapping[str, Any]) -> str:
     head = ["model", "below the mark", "geometric mean of the ratios",
             *(QUANTITIES[metric][0] for metric in METRICS)]  # fmt: skip
     rows = [
         [name, f"{found['below']} of {found['cells']}", _number(found["geometric_mean"]),
          *(_number(found["by_metric"][m]["geometric_mean"]) for m in METRICS)]
-        for name, found in marks["models"].items()
+        for name, found in published_errors["models"].items()
     ]  # fmt: skip
     return table(head, rows)
 
 
-def _cells(marks: Mapping[str, Any], metric: str) -> list[str]:
+def _cells(published_errors: Mapping[str, Any], metric: str) -> list[str]:
     """Heading and table of one metric: the mark, whose it is, and the ratios of our models."""
     heading, units = QUANTITIES[metric]
-    ours = [name for name in marks["models"] if not name.startswith(PUBLISHED)]
+    ours = [name for name in published_errors["models"] if not name.startswith(PUBLISHED)]
     rows = [
         [cell["run"], cell["axis"] if cell["demanded"] else f"({cell['axis']})",
          significant(cell["mark"]), f"{cell['best']['model']}, {cell['best']['variant']}",
          *(_number(cell["ratios"].get(name)) for name in ours)]
-        for cell in marks["cells"] if cell["metric"] == metric
+        for cell in published_errors["cells"] if cell["metric"] == metric
     ]  # fmt: skip
     extra = "" if metric in COUNTED else ", not counted above"
     units_text = " and ".join(dict.fromkeys(units))

@@ -1,6 +1,6 @@
-"""The tables of docs/thesis.md, from what a chapter of folds left in its results.
+"""The tables of docs/thesis.md, from the results of a study that held each run out once.
 
-python -m rovsim.reporting.html.chapter_page results/kth_tank_2025 docs/thesis.md
+python -m rovsim.reporting.html.leave_one_run_out results/kth_tank_2025 docs/thesis.md
 """
 
 import argparse
@@ -11,7 +11,7 @@ from typing import Any, Iterator, Mapping, Sequence
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json
 from rovsim.reporting.html.marked import replace_tables, table
-from rovsim.reporting.html.published import repeated, text
+from rovsim.reporting.html.published_errors import repeated, text
 from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.html.verdict import interval
 
@@ -40,25 +40,26 @@ def together(diagnoses: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def page(results: Path) -> str:
-    """Markdown of all that the chapter found."""
-    marks = read_json(results / "marks.json")
-    diagnoses = {run: read_json(results / f"folds/{run}/diagnosis.json") for run in marks["runs"]}
+    """Markdown of all that was found."""
+    published_errors = read_json(results / "published_errors.json")
+    runs = published_errors["runs"]
+    diagnoses = {run: read_json(results / f"folds/{run}/diagnosis.json") for run in runs}
     parts = [
-        *text(marks),
+        *text(published_errors),
         "### What was found while each run was held out",
         found(diagnoses),
         together(diagnoses),
         "### Time of a prediction",
         *timing_sentences(read_json(results / "timing.json")),
     ]
-    mistakes = results / "mistakes.json"
-    if mistakes.exists():
-        parts += ["### The public code's mistakes, repeated", *repeated(read_json(mistakes))]
+    pitfalls = results / "pitfalls.json"
+    if pitfalls.exists():
+        parts += ["### The public code's pitfalls, repeated", *repeated(read_json(pitfalls))]
     return "\n\n".join(parts)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Put what a chapter found into a page."""
+    """Put what was found into a page."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("results", type=Path)
     parser.add_argument("page", type=Path)

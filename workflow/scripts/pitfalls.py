@@ -5,7 +5,7 @@ from pathlib import Path
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.dynamics.model import read_model
-from rovsim.evaluation.held_out.pitfalls import SCHEMA, mistakes
+from rovsim.evaluation.held_out.pitfalls import SCHEMA, measure_pitfalls
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import rule_settings
@@ -19,7 +19,7 @@ def main(
     known = {kind: learner_settings(given, "conf/residual") for kind, given in learners.items()}
     signals, how = rule_settings(settings)
     found = {
-        test.run.id: mistakes(
+        test.run.id: measure_pitfalls(
             read_model(path), [r for r in runs if r is not test], test, known, signals, how
         )
         for test, path in zip(runs, models, strict=True)

@@ -9,7 +9,7 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.held_out.folds import held_out
-from rovsim.evaluation.held_out.published import METRICS, Published, against, standing
+from rovsim.evaluation.held_out.published_errors import METRICS, Published, against, standing
 from rovsim.learning.pairs import training_runs
 from rovsim.measurement.signals.motion import Poses
 

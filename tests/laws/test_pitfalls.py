@@ -7,7 +7,7 @@ import pytest
 
 from flown import watched
 from rovsim.dynamics.model import EffectEntry
-from rovsim.evaluation.held_out.pitfalls import MISTAKES, SAID, mistakes, on_wrong_clock
+from rovsim.evaluation.held_out.pitfalls import PITFALLS, SAID, measure_pitfalls, on_wrong_clock
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.replay import ReplaySettings
@@ -34,13 +34,13 @@ def flown(tmp_path_factory):
 
 
 def cost(model, runs, test):
-    return mistakes(model, runs, test, LEARNERS, SignalSettings(), ReplaySettings())
+    return measure_pitfalls(model, runs, test, LEARNERS, SignalSettings(), ReplaySettings())
 
 
 def test_what_is_wrong_costs(flown):
     model, (*runs, test) = flown
     found = cost(model, runs, test)
-    assert set(found) == set(MISTAKES) - {"wrong clock"}  # sampled: there are no bins
+    assert set(found) == set(PITFALLS) - {"wrong clock"}  # sampled: there are no bins
     for one in found.values():
         assert one["wrong"] < one["right"] < 1.0
     assert found["lost data"]["right"] > 0.3

@@ -19,7 +19,7 @@ from rovsim.core.files import read_text
 from rovsim.core.run import Commands
 from rovsim.evaluation.scores import number
 
-SCHEMA = "rovsim.marks/1"
+SCHEMA = "rovsim.published_errors/1"
 COUNTED = ("acceleration_rmse", "velocity_mae")  # a model is judged by these
 METRICS = (*COUNTED, "velocity_rmse")
 PUBLISHED = "published "  # in front of the names of others' models
@@ -88,7 +88,7 @@ def against(
     comparisons: Mapping[str, Mapping[str, Any]],
     moved: Mapping[str, Mapping[str, bool]],
 ) -> dict[str, Any]:
-    """`marks.json`: every cell, and how each model stands.
+    """`published_errors.json`: every cell, and how each model stands.
 
     Args:
         published: what others reached.

@@ -1,4 +1,4 @@
-"""The chapter of folds: what it asks for, and what it says when something is not there."""
+"""Each run held out once: what it asks for, and what it says when something is not there."""
 
 import os
 import re
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from recordings import write_campaign, write_lines
-from rovsim.application.leave_one_run_out import Chapter
+from rovsim.application.leave_one_run_out import LeaveOneRunOut
 from rovsim.application.settings import compose
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
@@ -47,14 +47,14 @@ def folder(tmp_path):
     return write_campaign(folder, content | {"runs": runs, "source": "Ask the harbour master."})
 
 
-def chapter(folder, *words):
+def folds_of(folder, *words):
     overrides = ["folds.leave_one_run_out=true", "folds.published=published.csv", *words]
-    return Chapter(Study({"campaign": str(folder), "overrides": overrides}))
+    return LeaveOneRunOut(Study({"campaign": str(folder), "overrides": overrides}))
 
 
 def test_every_run_is_held_out_once_and_learners_have_runs_to_learn_from(folder):
-    found = chapter(folder, "folds.controls=[3dof,6dof]", "folds.residuals=[knn]")
-    assert found.folds == list(CONTROLS)
+    found = folds_of(folder, "folds.controls=[3dof,6dof]", "folds.residuals=[knn]")
+    assert found.runs == list(CONTROLS)
     assert found.train_runs("three", "6dof") == ["two"]
     physics = ["refitted", "effects"]
     assert found.models("one") == [*physics, "knn_6dof", "effects+knn_6dof"]
@@ -65,19 +65,19 @@ def test_every_run_is_held_out_once_and_learners_have_runs_to_learn_from(folder)
     assert "against_published" in found.once
 
 
-def test_a_study_without_a_chapter_has_none(folder):
-    found = Chapter(Study({"campaign": str(folder)}))
-    assert (found.folds, found.published, found.targets) == ([], None, [])
+def test_a_study_without_folds_has_none(folder):
+    found = LeaveOneRunOut(Study({"campaign": str(folder)}))
+    assert (found.runs, found.published, found.targets) == ([], None, [])
     assert "against_published" not in found.once
 
 
-def test_what_a_chapter_lacks_is_said(folder):
+def test_what_folds_lack_is_said(folder):
     (folder / "published.csv").unlink()
     with pytest.raises(BadInput, match=r"published\.csv: no such file.*Ask the harbour master"):
-        _ = chapter(folder).published
+        _ = folds_of(folder).published
     with pytest.raises(BadInput, match="Did you mean 'knn'"):
-        _ = chapter(folder, "folds.residuals=[knnn]").folds
-    for word in ("folds.published=published.csv", "folds.mistakes=true"):
+        _ = folds_of(folder, "folds.residuals=[knnn]").runs
+    for word in ("folds.published=published.csv", "folds.pitfalls=true"):
         with pytest.raises(BadInput, match="only with leave_one_run_out=true"):
             compose([word])
 
@@ -144,7 +144,7 @@ def test_the_workflow_plans_every_fold_with_its_learners(folder, tmp_path):
         f"campaign={folder.name}",
         "folds.leave_one_run_out=true",
         "folds.published=published.csv",
-        "folds.mistakes=true",
+        "folds.pitfalls=true",
     ]
     done = snakemake(tmp_path, " ".join(words))
     assert done.returncode == 0, done.stderr
@@ -153,4 +153,4 @@ def test_the_workflow_plans_every_fold_with_its_learners(folder, tmp_path):
     assert {name: planned.count(name) for name in each} == dict.fromkeys(each, 3)
     assert planned.count("train_fold") == 3 * 4  # knn and gp, on nominal and on effects
     assert planned.count("against_published") == planned.count("figure_against_published") == 1
-    assert planned.count("mistakes") == 1
+    assert planned.count("pitfalls") == 1
