@@ -1,0 +1,1 @@
+"""Results as they are written and read: one frozen model for each JSON file."""

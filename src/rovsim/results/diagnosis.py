@@ -1,0 +1,98 @@
+"""`diagnosis.json`: which physical effects a model lacks, and how sure that is."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field, JsonValue
+
+from rovsim.core.schema import Section
+from rovsim.results.base import Result, Sparse
+from rovsim.results.error_conditions import ConditionShare
+from rovsim.results.ladder import Ladder
+
+Verdict = Literal["missing_effects", "adequate", "unexplained", "insufficient_data"]
+
+
+class FittedValue(Sparse):
+    """A parameter's value; `std` where it was fitted together with all others that act."""
+
+    value: float | None
+    std: float | None = None
+    unit: str | None = None
+
+
+class FittedEffect(Section):
+    """An effect with its values, the share of the error it removes, how likely its name is."""
+
+    effect: str
+    parameters: dict[str, FittedValue]
+    error_reduction: float | None = None
+    probability: float | None = None
+
+
+class Unexplained(Section):
+    """Structure that no effect of the catalogue explains: its share of the innovations."""
+
+    fraction: float | None
+    significant: bool
+    hint: str
+
+
+class DiagnosisErrors(Section):
+    """`windows_2s` on the test runs: of the base, with the selected effects, of a perfect model."""
+
+    nominal: float | None
+    with_effects: float | None
+    noise_floor: float | None
+
+
+class RivalEffect(Section):
+    """An effect tried `instead_of` another; `deficit` in -2 log likelihood."""
+
+    effect: str
+    instead_of: str
+    deficit: float | None
+
+
+class FittedNoise(Sparse):
+    """Six values each: disturbance m/s2, rad/s2; its memory s; reading m, rad. Empty if unknown."""
+
+    disturbance: tuple[float | None, ...] = ()
+    memory_s: tuple[float | None, ...] = ()
+    reading: tuple[float | None, ...] = ()
+
+
+class Answer(Section):
+    """What any method says is missing, the part of a diagnosis that can be judged by the truth."""
+
+    verdict: Verdict
+    selected: tuple[FittedEffect, ...]
+    ranking: tuple[FittedEffect, ...] = ()
+    indistinguishable: tuple[tuple[str, ...], ...] = ()
+
+
+class Diagnosis(Result):
+    """The verdict and all that led to it; `base` is the diagnosed model's file."""
+
+    noun: ClassVar[str] = "diagnosis"
+    command: ClassVar[str] = "`rovsim diagnose`"
+
+    schema_: Literal["rovsim.diagnosis/1"] = Field(default="rovsim.diagnosis/1", alias="schema")
+    verdict: Verdict
+    selected: tuple[FittedEffect, ...]
+    ranking: tuple[FittedEffect, ...]
+    indistinguishable: tuple[tuple[str, ...], ...]
+    known_together: tuple[tuple[str, ...], ...] = ()
+    where: tuple[ConditionShare, ...]
+    unexplained: Unexplained
+    next_experiment: str
+    error: DiagnosisErrors
+    not_excited: tuple[str, ...] = ()
+    rivals: tuple[RivalEffect, ...] = ()
+    noise: FittedNoise = FittedNoise()
+    base: dict[str, JsonValue]
+    ladder: Ladder
+
+    @property
+    def fitted(self) -> dict[str, FittedEffect]:
+        """All effects that have values, by id; of a selected one those of the final model."""
+        return {one.effect: one for one in (*self.ranking, *self.selected)}

@@ -1,0 +1,54 @@
+"""`ladder.json`: the error falling, step by step, on runs that no step was fitted to."""
+
+from typing import ClassVar, Literal, Sequence
+
+from pydantic import Field
+
+from rovsim.core.schema import Section
+from rovsim.results.base import ByAxis, Result
+
+EFFECTS, NOISE_FLOOR = "effects", "noise_floor"
+
+
+class Step(Section):
+    """Errors of one model in 2 s windows, all runs of the split pooled; None where unknown.
+
+    `windows_2s` is the velocity RMSE in units of the measured velocity's spread, mean over axes.
+    """
+
+    model: str
+    split: str = "test"
+    acceleration_rmse: ByAxis = ByAxis()
+    velocity_mae: ByAxis = ByAxis()
+    windows_2s: float | None = None
+
+
+class Ladder(Result):
+    """Steps from the first model down; the noise floor, a bound and no model, comes last."""
+
+    noun: ClassVar[str] = "ladder"
+    command: ClassVar[str] = "the study"
+
+    schema_: Literal["rovsim.ladder/1"] = Field(default="rovsim.ladder/1", alias="schema")
+    steps: tuple[Step, ...]
+
+    @property
+    def models(self) -> list[Step]:
+        """The steps but the noise floor."""
+        return [step for step in self.steps if step.model != NOISE_FLOOR]
+
+    @property
+    def noise_floor(self) -> float | None:
+        """`windows_2s` of a perfect model, if known."""
+        return next((s.windows_2s for s in self.steps if s.model == NOISE_FLOOR), None)
+
+    @staticmethod
+    def with_diagnosis(models: Sequence[Step], diagnosed: Sequence[Step]) -> "Ladder":
+        """Models and a diagnosis: its effects one by one, its noise floor last.
+
+        The effects stand where the model that has all of them would.
+        """
+        added = [s for s in diagnosed if s.model.startswith("+")]
+        floor = [s for s in diagnosed if s.model == NOISE_FLOOR]
+        steps = [s for m in models for s in (added if m.model == EFFECTS else [m])]
+        return Ladder(steps=(*steps, *floor))

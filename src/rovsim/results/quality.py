@@ -1,0 +1,78 @@
+"""`quality/RUN.json`: how good a recording is."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from rovsim.core.schema import Section
+from rovsim.results.base import Result
+
+
+class Rate(Section):
+    """Frames a second, Hz: as the file says, and as its times are."""
+
+    nominal: float
+    median: float
+
+
+class Gap(Section):
+    """A stretch without a pose, s."""
+
+    start_s: float
+    duration_s: float
+
+
+class CommandLog(Section):
+    """What the command log holds."""
+
+    kind: str
+    lines: int
+    start_s: float
+    end_s: float
+    median_step_s: float | None
+    longest_step_s: float | None
+    varies: bool
+
+
+class Excitation(Section):
+    """Standard deviation of the body velocity on one axis, and whether it suffices to judge it."""
+
+    std: float
+    unit: str
+    excited: bool
+
+
+class PoseNoise(Section):
+    """Noise of one sample; None with too few."""
+
+    position_m: float | None
+    attitude_rad: float | None
+
+
+class Quality(Result):
+    """One run.
+
+    `repairs` counts what was mended, by kind; `outliers` is None when not looked for; `unusable`
+    says why a run cannot be used; `remarks` are sentences its owner can act on.
+    """
+
+    noun: ClassVar[str] = "quality report"
+    command: ClassVar[str] = "the study"
+
+    schema_: Literal["rovsim.quality/1"] = Field(default="rovsim.quality/1", alias="schema")
+    run: str
+    split: str
+    control: str
+    rate_hz: Rate
+    duration_s: float
+    frames: int
+    not_found: int
+    longest_gap_s: float
+    gaps: tuple[Gap, ...]
+    outliers: int | None
+    repairs: dict[str, int]
+    commands: CommandLog
+    excitation: dict[str, Excitation]
+    noise: PoseNoise
+    unusable: str | None
+    remarks: tuple[str, ...] = ()
