@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rovsim.application.loading import campaign_vehicle
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.campaign import load_campaign
@@ -13,12 +13,12 @@ from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 
 
-def watched(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[Watch]]:
+def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[ObservedRun]]:
     """The nominal model, and one train run; `tank` are settings of the tank."""
     run = TankRun(id="a", control=control, split="train")
     make_campaign(TankSettings(runs=(run,), **tank), folder / "raw")
     campaign = load_campaign(folder / "raw")
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    watches = Runs({"a": motion}, {"a": stage}).watches("train", 0.01)
-    return nominal(campaign_vehicle(campaign)), watches
+    runs = Runs({"a": motion}, {"a": stage}).prepare("train", 0.01)
+    return nominal(campaign_vehicle(campaign)), runs

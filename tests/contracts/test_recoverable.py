@@ -7,11 +7,11 @@ from rovsim.application.loading import measured
 from rovsim.application.settings import compose
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import hiding
-from rovsim.diagnosis.diagnose import FIRST_NOISE
-from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.candidates import candidates
-from rovsim.diagnosis.selection.fit import fit
+from rovsim.diagnosis.procedure import FIRST_NOISE
+from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.dynamics.effects import built_in
 from rovsim.dynamics.model import nominal
 
@@ -23,14 +23,14 @@ def test_a_tank_that_hides_it_gives_it_back(name, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
     settings = compose([f"campaign='{tmp_path / 'raw'}'"])
     data = measured(settings)
-    base, runs = nominal(data.vehicle), data.runs.watches("train", settings.replay.step)
-    observatory = Observatory.built(runs, base, FIRST_NOISE, "held")
+    base, runs = nominal(data.vehicle), data.runs.prepare("train", settings.replay.step)
+    bank = FilterBank.design(runs, base, FIRST_NOISE, "held")
     hidden = flown.hidden[0].build().given()
-    known = [c for c in candidates(runs) if c.effect.id == name and set(hidden) <= set(c.free)]
+    known = [c for c in list_candidates(runs) if c.effect.id == name and set(hidden) <= set(c.free)]
     starts = [c.term(list(hidden)) for c in known]
-    fits = [fit(Hypothesis(base, (term,)), observatory, FIRST_NOISE) for term in starts]
+    fits = [fit(Hypothesis(base, (term,)), bank, FIRST_NOISE) for term in starts]
     best = max(fits, key=lambda one: one.likelihood)
-    fresh = observatory.suiting(best.hypothesis.model, best.noise)
+    fresh = bank.redesign(best.hypothesis.model, best.noise)
     best = fit(best.hypothesis, fresh, best.noise)
     (term,) = best.hypothesis.terms
     sure = dict(zip(term.free, best.std * [p.scale for p in term.parameters], strict=True))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flown import watched
+from flown import observed
 from rovsim.dynamics.model import EffectEntry
 from rovsim.evaluation.held_out.pitfalls import PITFALLS, SAID, measure_pitfalls, on_wrong_clock
 from rovsim.learning.learner import learner_settings
@@ -26,7 +26,7 @@ def flown(tmp_path_factory):
     """The nominal model, and four runs of a tank in which it drags too little."""
     runs = []
     for k, (name, control) in enumerate(zip("abcd", ("3dof", "6dof", "6dof", "6dof"), strict=True)):
-        model, (one,) = watched(
+        model, (one,) = observed(
             tmp_path_factory.mktemp(name), control, duration=20.0, seed=k, effects=HIDDEN
         )
         runs.append(replace(one.motion, run=replace(one.motion.run, id=name)))

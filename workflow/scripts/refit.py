@@ -6,7 +6,7 @@ from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.core.schema import checked
 from rovsim.diagnosis.of_campaign import Runs
-from rovsim.diagnosis.selection.refit_nominal import refitted
+from rovsim.diagnosis.selection.nominal_refit import refit_nominal
 from rovsim.dynamics.model import nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.simulation.replay import ReplaySettings
@@ -17,9 +17,9 @@ def main(
 ) -> None:
     base = nominal(campaign_vehicle(load_campaign(campaign)))
     how = checked(ReplaySettings, settings["replay"], "conf")
-    train = Runs.read(motions, stages).watches("train", how.step)
+    train = Runs.read(motions, stages).prepare("train", how.step)
     story = {"base": "nominal", "train_runs": [one.motion.run.id for one in train]}
-    refitted(base, train, how.commands).write(out, provenance=story)
+    refit_nominal(base, train, how.commands).write(out, provenance=story)
 
 
 if __name__ == "__main__":

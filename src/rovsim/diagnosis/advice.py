@@ -2,7 +2,7 @@
 
 from typing import Sequence
 
-from rovsim.diagnosis.diagnose import Diagnosis
+from rovsim.diagnosis.procedure import Diagnosis
 from rovsim.dynamics.effects import effect
 
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Mapping, Sequence
 
-from rovsim.diagnosis.checks.noise_floor import noise_floor
-from rovsim.diagnosis.diagnose import Diagnosis, diagnose
-from rovsim.diagnosis.observer.observed_run import Watch, watch
+from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
+from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
+from rovsim.diagnosis.procedure import Diagnosis, diagnose
 from rovsim.diagnosis.result import content
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.model import Model
@@ -38,10 +38,10 @@ class Runs:
             {motion.run.id: stage for motion, stage in usable},
         )
 
-    def watches(self, split: str, step: float) -> list[Watch]:
+    def prepare(self, split: str, step: float) -> list[ObservedRun]:
         """The runs of one split as the observer sees them."""
         chosen = {run: m for run, m in self.motions.items() if m.run.split == split}
-        return [watch(self.stages[run], motion, step) for run, motion in chosen.items()]
+        return [prepare_run(self.stages[run], motion, step) for run, motion in chosen.items()]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ def diagnosed(
 ) -> Diagnosed:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
-    train, test = (runs.watches(split, settings.replay.step) for split in ("train", "test"))
+    train, test = (runs.prepare(split, settings.replay.step) for split in ("train", "test"))
     between, seed = settings.replay.commands, settings.seed
     found = diagnose(base, train, settings.search, between, seed, stage)
     stage("scoring")
@@ -70,7 +70,7 @@ def diagnosed(
 
 
 def _steps(
-    found: Diagnosis, test: list[Watch], settings: DiagnosisSettings
+    found: Diagnosis, test: list[ObservedRun], settings: DiagnosisSettings
 ) -> list[dict[str, Any]]:
     """The base, the effects one after the other, and the noise floor, on the test runs."""
     motions = [w.motion for w in test]
@@ -84,12 +84,12 @@ def _steps(
 
 
 def _floor(
-    found: Diagnosis, test: list[Watch], settings: DiagnosisSettings, reached: list[float]
+    found: Diagnosis, test: list[ObservedRun], settings: DiagnosisSettings, reached: list[float]
 ) -> float | None:
     """At most what was reached: where a model came below, part of the noise is structure."""
     if found.fit is None or not test:
         return None
-    floor = noise_floor(
+    floor = simulate_noise_floor(
         found.models()[-1], test, found.fit.noise, settings.signals, settings.replay.commands,
         settings.seed,
     )  # fmt: skip

@@ -3,10 +3,10 @@
 from typing import Any, Mapping, Sequence
 
 from rovsim.diagnosis.advice import next_experiment
-from rovsim.diagnosis.checks.identifiability import known_together
-from rovsim.diagnosis.diagnose import Diagnosis, Ranked, Selected
+from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.search import SURE, Rival
+from rovsim.diagnosis.procedure import Diagnosis, Ranked, Selected
+from rovsim.diagnosis.selection.forward_selection import SURE, Rival
 
 SCHEMA = "rovsim.diagnosis/1"
 LISTED = 10  # effects of the ranking
@@ -27,7 +27,7 @@ def content(
         base: the base model's own content, so that `rovsim add` needs nothing else.
     """
     alike = indistinguishable(found.rivals)
-    joint = known_together(found.fit) if found.fit else []
+    joint = group_joint_parameters(found.fit) if found.fit else []
     return {
         "schema": SCHEMA,
         "verdict": found.verdict,

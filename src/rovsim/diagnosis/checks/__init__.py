@@ -1,1 +1,1 @@
-"""What is asked of an answer: is structure left, is a name stretched, which values are known."""
+"""What is asked of an answer: is structure left, is a name imitation, what is known."""

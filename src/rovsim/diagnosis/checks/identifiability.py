@@ -3,13 +3,13 @@
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from rovsim.diagnosis.selection.fit import Fit
+from rovsim.diagnosis.selection.gauss_newton import Fit
 
 ALIKE = 0.95  # correlation; each would be three times as sure if the other were known
 UNSURE = 2.0  # standard deviations: the value could as well be that of absence
 
 
-def known_together(found: Fit) -> list[list[str]]:
+def group_joint_parameters(found: Fit) -> list[list[str]]:
     """Groups of parameters, as `effect.parameter`, the largest group first."""
     h, std = found.hypothesis, np.maximum(found.std, 1e-12)
     names = [f"{term.id}.{p.name}" for term in h.terms for p in term.parameters]

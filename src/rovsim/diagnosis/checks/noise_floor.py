@@ -13,7 +13,7 @@ from numpy import ndarray as Array
 
 from rovsim.core import rotations
 from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import SECONDS, differences
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
@@ -26,9 +26,9 @@ DRAWS = 8
 PAD = 1.0  # s before and after, so that the filter has settled
 
 
-def noise_floor(
+def simulate_noise_floor(
     model: Model,
-    watches: Sequence[Watch],
+    runs: Sequence[ObservedRun],
     noise: Noise,
     signals: SignalSettings,
     between: Between,
@@ -36,35 +36,35 @@ def noise_floor(
 ) -> float | None:
     """The `windows_2s` error (see scores.normalised) of a perfect model on these runs."""
     random = np.random.default_rng(seed)
-    errors = [_errors(model, w, noise, signals, between, random) for w in watches]
-    return normalised([w.motion for w in watches], rms(np.concatenate(errors)))
+    errors = [_errors(model, w, noise, signals, between, random) for w in runs]
+    return normalised([w.motion for w in runs], rms(np.concatenate(errors)))
 
 
-def _errors(model, watch, noise, signals, between, random) -> Array:
+def _errors(model, run, noise, signals, between, random) -> Array:
     """Errors (n, 6) of a perfect model on one run, all draws."""
-    pushes = _pushes(model, watch, noise, random)
-    anchors = np.array([a for a, _ in windows(watch.motion, SECONDS)], int)
-    reported = [_noisy(watch, noise, signals, random) for _ in range(DRAWS)]
-    truth = np.tile(watch.motion.state[anchors], (DRAWS, 1, 1))
+    pushes = _pushes(model, run, noise, random)
+    anchors = np.array([a for a, _ in windows(run.motion, SECONDS)], int)
+    reported = [_noisy(run, noise, signals, random) for _ in range(DRAWS)]
+    truth = np.tile(run.motion.state[anchors], (DRAWS, 1, 1))
     starts = np.array([state[anchors] for state in reported])
-    happened = differences([model] * DRAWS, watch, between, truth, pushes)
-    predicted = differences([model] * DRAWS, watch, between, starts)
-    at = _rows(watch)
-    read = np.array([state[at, 7:] - watch.motion.state[at, 7:] for state in reported])
+    happened = differences([model] * DRAWS, run, between, truth, pushes)
+    predicted = differences([model] * DRAWS, run, between, starts)
+    at = _rows(run)
+    read = np.array([state[at, 7:] - run.motion.state[at, 7:] for state in reported])
     return (predicted - happened - read).reshape(-1, 6)
 
 
-def _rows(watch: Watch) -> Array:
+def _rows(run: ObservedRun) -> Array:
     """Samples or bins of all windows, in the order of `differences`."""
-    shift = 0 if watch.motion.binned else 1
-    parts = [np.arange(a + shift, b + shift) for a, b in windows(watch.motion, SECONDS)]
+    shift = 0 if run.motion.binned else 1
+    parts = [np.arange(a + shift, b + shift) for a, b in windows(run.motion, SECONDS)]
     return np.concatenate([np.arange(0), *parts])
 
 
-def _pushes(model: Model, watch: Watch, noise: Noise, random) -> Array:
+def _pushes(model: Model, run: ObservedRun, noise: Noise, random) -> Array:
     """Wrench (draws, k, 6) of the disturbance over the integration steps."""
-    fade = np.exp(-watch.h / noise.memory)
-    kicks = random.normal(size=(len(watch.edges) - 1, DRAWS, 6)) * np.sqrt(1.0 - fade**2)
+    fade = np.exp(-run.h / noise.memory)
+    kicks = random.normal(size=(len(run.edges) - 1, DRAWS, 6)) * np.sqrt(1.0 - fade**2)
     a, x = np.empty_like(kicks), random.normal(size=(DRAWS, 6))
     for k, kick in enumerate(kicks):
         x = fade * x + kick
@@ -72,19 +72,19 @@ def _pushes(model: Model, watch: Watch, noise: Noise, random) -> Array:
     return (a * noise.level).swapaxes(0, 1) @ model.body.M.T
 
 
-def _noisy(watch: Watch, noise: Noise, signals: SignalSettings, random) -> Array:
+def _noisy(run: ObservedRun, noise: Noise, signals: SignalSettings, random) -> Array:
     """States (n, 13) as another measurement of the same motion would have reported them."""
-    state = watch.motion.state.copy()
-    if watch.motion.binned:
+    state = run.motion.state.copy()
+    if run.motion.binned:
         state[:, 7:] += noise.reading * random.normal(size=(len(state), 6))
         return state
-    pad = round(PAD / watch.period)
+    pad = round(PAD / run.period)
     kicks = noise.reading * random.normal(size=(len(state) + 2 * pad, 6))
     poses = np.hstack([kicks[:, :3], rotations.exp(kicks[:, 3:])])  # about a vehicle at rest
     inside = slice(pad, len(poses) - pad)
     poses, nu = (
-        filter_eta(poses, watch.period, signals.filter),
-        velocities(poses, watch.period, signals)[0],
+        filter_eta(poses, run.period, signals.filter),
+        velocities(poses, run.period, signals)[0],
     )
     state[:, :3] += rotations.rotate(state[:, 3:7], poses[inside, :3])
     state[:, 3:7] = rotations.multiply(state[:, 3:7], poses[inside, 3:])

@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 
 from rovsim import AXES
 from rovsim.core.rotations import matrix
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 
 SMOOTH = 0.02  # m/s or rad/s: a sign that turns over within the noise of the velocity
 # The measured velocity at an instant holds some noise of the readings around it, and so would agree
@@ -17,13 +17,13 @@ EARLIER = 0.2  # s
 MEMORIES = (0.5, 2.0)  # s
 
 
-def shapes(watch: Watch) -> dict[str, Array]:
+def evaluate_regressors(run: ObservedRun) -> dict[str, Array]:
     """Functions (n,) of state, place and time at the readings of one run, by their names."""
-    past = max(1, round(EARLIER / watch.period))
-    at = np.clip(watch.index - past, 0, len(watch.motion.time) - 1)
-    state = np.nan_to_num(watch.motion.state[at])
+    past = max(1, round(EARLIER / run.period))
+    at = np.clip(run.index - past, 0, len(run.motion.time) - 1)
+    state = np.nan_to_num(run.motion.state[at])
     nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
-    t = 2.0 * watch.time / max(watch.time[-1], 1e-9) - 1.0 if len(watch.time) else watch.time
+    t = 2.0 * run.time / max(run.time[-1], 1e-9) - 1.0 if len(run.time) else run.time
     found = {"nothing (a constant)": np.ones(len(t)), "time": t, "time squared": t**2}
     for i, axis in enumerate(AXES):
         v = nu[:, i]
@@ -33,7 +33,7 @@ def shapes(watch: Watch) -> dict[str, Array]:
         found[f"{axis} velocity, cubed"] = v**3
         found[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
         for memory in MEMORIES:
-            found[f"{axis} velocity some {memory:g} s ago"] = _remembered(v, watch, memory)
+            found[f"{axis} velocity some {memory:g} s ago"] = _remembered(v, run, memory)
     for i, j in combinations(range(6), 2):
         found[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
     for name, x in zip(("north", "east", "down"), place.T, strict=True):
@@ -46,9 +46,9 @@ def shapes(watch: Watch) -> dict[str, Array]:
     return found
 
 
-def _remembered(v: Array, watch: Watch, memory: float) -> Array:
+def _remembered(v: Array, run: ObservedRun, memory: float) -> Array:
     """v through a first-order lag, stretch by stretch."""
-    keep, out = np.exp(-watch.period / memory), np.empty_like(v)
-    for first, last in watch.rows:
+    keep, out = np.exp(-run.period / memory), np.empty_like(v)
+    for first, last in run.rows:
         out[first:last] = lfilter([1.0 - keep], [1.0, -keep], v[first:last])
     return out

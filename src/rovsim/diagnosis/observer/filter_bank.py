@@ -8,10 +8,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.innovations import damping_rates, observe
-from rovsim.diagnosis.observer.least_squares import coarse
-from rovsim.diagnosis.observer.noise import Noise, Tuning, fit_noise, tuning, whitened
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.innovations import estimate_damping, observe
+from rovsim.diagnosis.observer.least_squares import coarsen
+from rovsim.diagnosis.observer.noise import Noise, Tuning, fit_noise, tune, whiten
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 
@@ -19,57 +19,57 @@ STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
 
 
 @dataclass(frozen=True, eq=False)
-class Observatory:
+class FilterBank:
     """The runs, and the filters they are observed with."""
 
-    watches: tuple[Watch, ...]
+    runs: tuple[ObservedRun, ...]
     damping: Array
     tunings: tuple[Tuning, ...]
     between: Between
 
     @staticmethod
-    def built(
-        watches: Sequence[Watch], base: Model, noise: Noise, between: Between
-    ) -> "Observatory":
-        """An observatory whose filters suit this noise."""
-        damping = damping_rates(base, watches, between)
-        found = tuple(tuning(noise, damping, w) for w in watches)
-        return Observatory(tuple(watches), damping, found, between)
+    def design(
+        runs: Sequence[ObservedRun], base: Model, noise: Noise, between: Between
+    ) -> "FilterBank":
+        """A filter bank that suits this noise."""
+        damping = estimate_damping(base, runs, between)
+        found = tuple(tune(noise, damping, w) for w in runs)
+        return FilterBank(tuple(runs), damping, found, between)
 
-    def suiting(self, model: Model, noise: Noise) -> "Observatory":
+    def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""
-        return Observatory.built(self.watches, model, noise, self.between)
+        return FilterBank.design(self.runs, model, noise, self.between)
 
-    def innovations(self, models: Sequence[Model]) -> list[Array]:
+    def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
         return [
-            of_possible(models, len(watch.time), partial(self._of_run, watch, own))
-            for watch, own in zip(self.watches, self.tunings, strict=True)
+            of_possible(models, len(run.time), partial(self._of_run, run, own))
+            for run, own in zip(self.runs, self.tunings, strict=True)
         ]
 
-    def _of_run(self, watch: Watch, tuning: Tuning, models: Sequence[Model]) -> Array:
-        return observe(models, watch, tuning, self.between)
+    def _of_run(self, run: ObservedRun, tuning: Tuning, models: Sequence[Model]) -> Array:
+        return observe(models, run, tuning, self.between)
 
-    def white(self, e: Sequence[Array], noise: Noise) -> Array:
+    def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
-        return whitened(e, self.watches, self.tunings, self.tuned(noise))
+        return whiten(e, self.runs, self.tunings, self.tune(noise))
 
-    def coarse(self, rows: Sequence[Array], noise: Noise) -> Array:
+    def coarsen(self, rows: Sequence[Array], noise: Noise) -> Array:
         """Rows (q, 6, n_run) of each run, whitened, a few neighbours together: (q, m)."""
-        found = coarse(self.white(rows, noise))
+        found = coarsen(self.whiten(rows, noise))
         return found.reshape(len(found), -1)
 
-    def tuned(self, noise: Noise) -> list[Tuning]:
+    def tune(self, noise: Noise) -> list[Tuning]:
         """Filters of each run that suit another noise."""
-        return [tuning(noise, self.damping, w) for w in self.watches]
+        return [tune(noise, self.damping, w) for w in self.runs]
 
-    def noise(self, e: Sequence[Array], start: Noise) -> tuple[Noise, float]:
+    def fit_noise(self, e: Sequence[Array], start: Noise) -> tuple[Noise, float]:
         """The most likely noise of innovations (6, n) of each run; twice its log likelihood."""
-        return fit_noise(e, self.watches, self.tunings, self.damping, start)
+        return fit_noise(e, self.runs, self.tunings, self.damping, start)
 
-    def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
+    def linearise(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
-        return linearised(at, self.innovations)
+        return linearise(at, self.evaluate)
 
 
 def of_possible(
@@ -83,7 +83,7 @@ def of_possible(
     return e
 
 
-def linearised(
+def linearise(
     at: Hypothesis, errors: Callable[[Sequence[Model]], list[Array]]
 ) -> tuple[list[Array], list[Array]]:
     """Errors (6, n) of each run, and their derivatives (k, 6, n) to the k scaled parameters.

@@ -12,7 +12,7 @@ MOST = 12  # columns of one effect: more is not an effect but a fit of everythin
 RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
 
 
-def coarse(white: Array) -> Array:
+def coarsen(white: Array) -> Array:
     """Means of a few neighbours (..., n // few), still of unit variance.
 
     What a vehicle of this size does is slower than 10 Hz; frames come ten times as fast.
@@ -26,7 +26,7 @@ def inner_products(rows: Array) -> Array:
     return rows @ rows.T
 
 
-def solved(H: Array, b: Array) -> Array:
+def solve(H: Array, b: Array) -> Array:
     """H^-1 b for a symmetric, perhaps singular H."""
     if not len(H):
         return np.zeros_like(b)
@@ -40,7 +40,7 @@ def solved(H: Array, b: Array) -> Array:
 def without(M: Array, columns: Sequence[int]) -> Array:
     """Inner products after projecting some columns out of all others."""
     C = list(columns)
-    return M - M[:, C] @ solved(M[np.ix_(C, C)], M[C])
+    return M - M[:, C] @ solve(M[np.ix_(C, C)], M[C])
 
 
 @dataclass(frozen=True)
@@ -77,13 +77,13 @@ def greedy(H: Array, b: Array, price: float) -> Gain:
         if worth[best] < price:
             break
     while len(chosen) > 1:
-        x = solved(H[np.ix_(chosen, chosen)], b[chosen])
-        variance = np.diag(solved(H[np.ix_(chosen, chosen)], np.eye(len(chosen))))
+        x = solve(H[np.ix_(chosen, chosen)], b[chosen])
+        variance = np.diag(solve(H[np.ix_(chosen, chosen)], np.eye(len(chosen))))
         weakest = int(np.argmin(x**2 / variance))
         if x[weakest] ** 2 / variance[weakest] >= price:
             break
         chosen.pop(weakest)
-    x = -solved(H[np.ix_(chosen, chosen)], b[chosen])
+    x = -solve(H[np.ix_(chosen, chosen)], b[chosen])
     return Gain(float(-b[chosen] @ x), tuple(chosen), x)
 
 
@@ -91,7 +91,7 @@ def _worth(H: Array, b: Array, chosen: list[int]) -> Array:
     """Decrease (k,) of the sum of squares by each further column."""
     if not chosen:
         return b**2 / np.maximum(np.diag(H), 1e-300)
-    solution = solved(H[np.ix_(chosen, chosen)], np.column_stack([H[chosen], b[chosen]]))
+    solution = solve(H[np.ix_(chosen, chosen)], np.column_stack([H[chosen], b[chosen]]))
     rest = np.diag(H) - np.einsum("ij,ij->j", H[chosen], solution[:, :-1])
     product = b - H[chosen].T @ solution[:, -1]
     independent = rest > 1e-6 * np.diag(H)

@@ -18,7 +18,7 @@ from scipy.optimize import minimize
 
 from rovsim import AXES
 from rovsim.diagnosis.observer.kalman import AxisFilter, axis_filter, filter_kept, sum_of_squares
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
 
 # Eddies as large as the vehicle (0.2 to 0.5 m) pass it within 0.3 to 3 s at 0.15 to 0.7 m/s.
@@ -59,37 +59,40 @@ class Tuning:
         return np.array([f.variance for f in self.filters])
 
 
-def tuning(noise: Noise, damping: Array, watch: Watch) -> Tuning:
+def tune(noise: Noise, damping: Array, run: ObservedRun) -> Tuning:
     """The filters for one noise."""
     of_axes = zip(damping, noise.level, noise.memory, noise.reading, strict=True)
-    found = [axis_filter(watch.motion.binned, watch.period, *one) for one in of_axes]
-    return Tuning(tuple(found), watch.period)
+    found = [axis_filter(run.motion.binned, run.period, *one) for one in of_axes]
+    return Tuning(tuple(found), run.period)
 
 
-def whitened(
-    e: Sequence[Array], watches: Sequence[Watch], found: Sequence[Tuning], wanted: Sequence[Tuning]
+def whiten(
+    e: Sequence[Array],
+    runs: Sequence[ObservedRun],
+    found: Sequence[Tuning],
+    wanted: Sequence[Tuning],
 ) -> Array:
     """Innovations of unit variance (..., 6, n) of all runs, those not settled left out.
 
     Args:
         e: innovations (..., 6, n_run) of each run.
-        watches: the runs.
+        runs: the runs.
         found: the tuning each was found with.
         wanted: the tuning that should make them white.
     """
     return np.concatenate(
-        [_white_run(*one) for one in zip(e, watches, found, wanted, strict=True)], axis=-1
+        [_white_run(*one) for one in zip(e, runs, found, wanted, strict=True)], axis=-1
     )
 
 
-def _white_run(e: Array, watch: Watch, found: Tuning, wanted: Tuning) -> Array:
+def _white_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Array:
     pairs = zip(wanted.filters, found.filters, strict=True)
     b, a = (np.array(c) for c in zip(*(new.whitening(old) for new, old in pairs), strict=True))
     rows = e.reshape(int(np.prod(e.shape[:-2])), *e.shape[-2:])
-    out = np.empty((*rows.shape[:-1], int(watch.settled.sum())), e.dtype)
+    out = np.empty((*rows.shape[:-1], int(run.settled.sum())), e.dtype)
     scale = 1.0 / np.sqrt(wanted.variance)
     on_cores(
-        lambda k: filter_kept(b, a, rows[k], watch.rows, watch.settled, scale, out[k]),
+        lambda k: filter_kept(b, a, rows[k], run.rows, run.settled, scale, out[k]),
         np.ones(len(rows)),
     )
     return out.reshape(*e.shape[:-1], out.shape[-1])
@@ -97,7 +100,7 @@ def _white_run(e: Array, watch: Watch, found: Tuning, wanted: Tuning) -> Array:
 
 def fit_noise(
     e: Sequence[Array],
-    watches: Sequence[Watch],
+    runs: Sequence[ObservedRun],
     found: Sequence[Tuning],
     damping: Array,
     start: Noise,
@@ -106,23 +109,23 @@ def fit_noise(
 
     The memory has a prior: turbulence remembers about a second, within a factor of two.
     """
-    fitted = [_fit_axis(i, e, watches, found, damping, start) for i in range(len(AXES))]
+    fitted = [_fit_axis(i, e, runs, found, damping, start) for i in range(len(AXES))]
     level, memory, reading = np.array([f[0] for f in fitted]).T
     return Noise(level, memory, reading), -2.0 * sum(f[1] for f in fitted)
 
 
-def _fit_axis(i, e, watches, found, damping, start) -> tuple[Array, float]:
+def _fit_axis(i, e, runs, found, damping, start) -> tuple[Array, float]:
     def cost(x: Array) -> float:
         level, memory, reading = np.exp(x)
         outside = max(0.0, memory / LONGEST_MEMORY - 1.0) + max(0.0, SHORTEST_MEMORY / memory - 1.0)
         prior = 0.5 * (np.log(memory / TYPICAL_MEMORY) / MEMORY_SPREAD) ** 2 + 1e3 * outside
         new = {
             w.period: axis_filter(w.motion.binned, w.period, damping[i], level, memory, reading)
-            for w in watches
+            for w in runs
         }
         return prior + sum(
-            _unlikely(one[i], watch, old.filters[i], new[watch.period])
-            for one, watch, old in zip(e, watches, found, strict=True)
+            _unlikely(one[i], run, old.filters[i], new[run.period])
+            for one, run, old in zip(e, runs, found, strict=True)
         )
 
     first = np.log([start.level[i], start.memory[i], start.reading[i]])
@@ -134,7 +137,7 @@ def _fit_axis(i, e, watches, found, damping, start) -> tuple[Array, float]:
     return np.exp(best.x), float(best.fun)
 
 
-def _unlikely(e: Array, watch: Watch, old: AxisFilter, new: AxisFilter) -> float:
+def _unlikely(e: Array, run: ObservedRun, old: AxisFilter, new: AxisFilter) -> float:
     """Negative log likelihood of one axis (n,) of one run, up to a constant."""
-    squares, count = sum_of_squares(*new.whitening(old), e, watch.rows, watch.settled)
+    squares, count = sum_of_squares(*new.whitening(old), e, run.rows, run.settled)
     return 0.5 * float(squares / new.variance + count * np.log(new.variance))

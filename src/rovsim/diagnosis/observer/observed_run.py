@@ -21,7 +21,7 @@ BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are indep
 
 
 @dataclass(frozen=True, eq=False)
-class Watch:
+class ObservedRun:
     """One run, ready to be observed.
 
     `readings` (k, 13): pose NED, and mean velocity since the reading before where velocities were
@@ -89,7 +89,7 @@ class Watch:
         return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
-def watch(stage: Stage, motion: Motion, step: float) -> Watch:
+def prepare_run(stage: Stage, motion: Motion, step: float) -> ObservedRun:
     """A run as the observer sees it; without usable stretches it has no spans.
 
     Args:
@@ -105,13 +105,13 @@ def watch(stage: Stage, motion: Motion, step: float) -> Watch:
     period = float(motion.time[1] - motion.time[0])
     spans = [(a, b - 1) for a, b in motion.segments() if (b - a) * period > SHORTEST]
     ends = np.arange(len(motion.time)) * steps.stride
-    return Watch(
+    return ObservedRun(
         motion, readings, ends, steps.edges, tuple(spans),
         np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13),
     )  # fmt: skip
 
 
-def _bins(motion: Motion, edges: Array) -> Watch:
+def _bins(motion: Motion, edges: Array) -> ObservedRun:
     """Readings at the ends of bins: the pose there, and the mean velocity of the bin."""
     h = edges[1] - edges[0]
     ends = np.round((motion.time - motion.time[0]) / h).astype(int)
@@ -121,13 +121,13 @@ def _bins(motion: Motion, edges: Array) -> Watch:
         (a, b - 1) for a, b in motion.segments() if motion.time[b - 1] - motion.time[a] > SHORTEST
     ]
     starts = np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13)
-    return Watch(motion, readings, ends, edges, tuple(spans), starts)
+    return ObservedRun(motion, readings, ends, edges, tuple(spans), starts)
 
 
-def blocks(watches: Sequence[Watch]) -> Array:
+def blocks(runs: Sequence[ObservedRun]) -> Array:
     """Number of the block of some 10 s that each settled innovation lies in, over all runs."""
     parts, count = [np.arange(0)], 0
-    for one in watches:
+    for one in runs:
         number = (one.time[one.settled] / BLOCK).astype(int)
         kept, own = np.unique(number, return_inverse=True)
         parts.append(own + count)

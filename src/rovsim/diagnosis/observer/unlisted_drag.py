@@ -1,6 +1,6 @@
 """Drag laws that the catalogue does not have, but that its linear and quadratic drag imitate.
 
-They stand beside the catalogue in a diagnosis and are never named as effects (stretched.py).
+They stand beside the catalogue in a diagnosis and are never named as effects (imitation.py).
 """
 
 from rovsim.dynamics.effects.base import Wrench
@@ -54,4 +54,4 @@ class CubicDrag(Wrench):
         )  # fmt: skip
 
 
-STRANGERS = (DryFriction, CubicDrag)
+UNLISTED_DRAG = (DryFriction, CubicDrag)

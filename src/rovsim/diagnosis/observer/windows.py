@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.innovations import batch, remembered
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.body import packed
 from rovsim.dynamics.engine.parallel import run_jobs
@@ -23,25 +23,25 @@ from rovsim.simulation.replay import place, windows
 SECONDS = 2.0  # contract, section 3
 
 
-def window_errors(
-    models: Sequence[Model], watches: Sequence[Watch], between: Between = "held"
+def score_windows(
+    models: Sequence[Model], runs: Sequence[ObservedRun], between: Between = "held"
 ) -> tuple[Array, list[float | None]]:
     """Velocity RMSE (m, 6) of models in windows of 2 s, and the normalised mean of each.
 
     NaN for models that cannot exist.
     """
     able = [m for m in models if m.possible]
-    parts = [differences(able, w, between) for w in watches]
+    parts = [differences(able, w, between) for w in runs]
     rmse = np.full((len(models), 6), np.nan)
     rmse[[m.possible for m in models]] = [
         rms(np.concatenate([p[k] for p in parts])) for k in range(len(able))
     ]
-    return rmse, [normalised([w.motion for w in watches], row) for row in rmse]
+    return rmse, [normalised([w.motion for w in runs], row) for row in rmse]
 
 
 def differences(
     models: Sequence[Model],
-    watch: Watch,
+    run: ObservedRun,
     between: Between = "held",
     starts: Array | None = None,
     pushes: Array | None = None,
@@ -51,50 +51,50 @@ def differences(
 
     Args:
         models: to predict with.
-        watch: the run.
+        run: the run.
         between: how commands are held between two lines.
         starts: states (m, w, 13) as measured to start from; None: the measured ones.
         pushes: further wrench (m, k, 6) over the integration steps, N and N m.
         seconds: length of the windows.
     """
-    spans = list(windows(watch.motion, seconds))
+    spans = list(windows(run.motion, seconds))
     own = np.array([a for a, _ in spans], int)
     if starts is None:
-        starts = np.tile(watch.motion.state[own], (len(models), 1, 1))
-    paths = _paths(models, watch, spans, starts, between, pushes)
+        starts = np.tile(run.motion.state[own], (len(models), 1, 1))
+    paths = _paths(models, run, spans, starts, between, pushes)
     nu = [
         [m.mocap_view.twists(p[:, 7:]) for p in of_model]
         for m, of_model in zip(models, paths, strict=True)
     ]
-    return np.array([_all_readings(watch, spans, of_model) for of_model in nu])
+    return np.array([_all_readings(run, spans, of_model) for of_model in nu])
 
 
-def _all_readings(watch: Watch, spans: Sequence[tuple[int, int]], nu: Sequence[Array]) -> Array:
-    parts = [_at_readings(watch, span, v) for span, v in zip(spans, nu, strict=True)]
+def _all_readings(run: ObservedRun, spans: Sequence[tuple[int, int]], nu: Sequence[Array]) -> Array:
+    parts = [_at_readings(run, span, v) for span, v in zip(spans, nu, strict=True)]
     return np.concatenate([np.empty((0, 6)), *parts])
 
 
-def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:
+def _paths(models, run, spans, starts, between, pushes) -> list[list[Array]]:
     """States (steps + 1, 13) of each model and window, every integration step."""
-    module, inputs, p = batch(models, watch, between)
+    module, inputs, p = batch(models, run, between)
     if pushes is not None:
         wrench = inputs.wrench[inputs.row] + pushes
         force = inputs.force[inputs.row]
         inputs = inputs._replace(wrench=wrench, force=force, row=np.arange(len(models)))
-    first = np.array([watch.ends[a] for a, _ in spans], np.int64)
-    steps = np.array([watch.ends[b] - watch.ends[a] for a, b in spans], np.int64)
+    first = np.array([run.ends[a] for a, _ in spans], np.int64)
+    steps = np.array([run.ends[b] - run.ends[a] for a, b in spans], np.int64)
     begin = np.array([m.mocap_view.inverse.states(s) for m, s in zip(models, starts, strict=True)])
     count, total = len(models), int(steps.sum())
     rows = np.concatenate([[0], np.cumsum(np.tile(steps, count))])
     jobs = Jobs(
-        begin.reshape(-1, 13), np.tile(first * watch.h, count), np.tile(first, count),
+        begin.reshape(-1, 13), np.tile(first * run.h, count), np.tile(first, count),
         np.tile(steps, count), np.repeat(np.arange(count), len(spans)), rows[:-1],
-        remembered(models, watch, first),
+        remembered(models, run, first),
     )  # fmt: skip
     out = np.empty((count * total, 13))
     run_jobs(
-        module.integrate, jobs, watch.h, 1, packed([m.body for m in models]), inputs, p,
-        np.empty(0), place(watch.motion), out,
+        module.integrate, jobs, run.h, 1, packed([m.body for m in models]), inputs, p,
+        np.empty(0), place(run.motion), out,
     )  # fmt: skip
     found = [
         np.vstack([s, out[a:b]]) for s, a, b in zip(jobs.state, rows[:-1], rows[1:], strict=True)
@@ -102,16 +102,16 @@ def _paths(models, watch, spans, starts, between, pushes) -> list[list[Array]]:
     return [found[i : i + len(spans)] for i in range(0, len(found), len(spans))]
 
 
-def _at_readings(watch: Watch, span: tuple[int, int], nu: Array) -> Array:
+def _at_readings(run: ObservedRun, span: tuple[int, int], nu: Array) -> Array:
     """Predicted minus measured velocity at the samples or bins of one window."""
     a, b = span
-    at, measured = watch.ends[a : b + 1] - watch.ends[a], watch.motion.nu[readings(watch, span)]
-    if not watch.motion.binned:
+    at, measured = run.ends[a : b + 1] - run.ends[a], run.motion.nu[readings(run, span)]
+    if not run.motion.binned:
         return nu[at[1:]] - measured
     return bin_means(np.arange(len(nu), dtype=float), nu, at) - measured
 
 
-def readings(watch: Watch, span: tuple[int, int]) -> slice:
+def readings(run: ObservedRun, span: tuple[int, int]) -> slice:
     """The samples or bins at which a window is compared: it starts from its first sample."""
-    first = 0 if watch.motion.binned else 1
+    first = 0 if run.motion.binned else 1
     return slice(span[0] + first, span[1] + first)

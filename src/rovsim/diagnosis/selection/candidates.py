@@ -5,7 +5,7 @@ from typing import Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Effect
 
@@ -28,22 +28,22 @@ class Candidate:
         return Term(self.start, self.free if free is None else tuple(free))
 
 
-def candidates(watches: Sequence[Watch]) -> list[Candidate]:
+def list_candidates(runs: Sequence[ObservedRun]) -> list[Candidate]:
     """All candidates that these runs could show."""
-    site = watches[0].motion.site
+    site = runs[0].motion.site
     found = []
     for cls in catalogue().values():
         for values in cls.starts_at(site):
             start = cls(**values)
-            if _possible(start, watches):
+            if _possible(start, runs):
                 found.append(Candidate(cls, start, cls.free_at(values)))
     return found
 
 
-def _possible(start: Effect, watches: Sequence[Watch]) -> bool:
+def _possible(start: Effect, runs: Sequence[ObservedRun]) -> bool:
     """Whether all runs have what the effect needs."""
     try:
-        for one in watches:
+        for one in runs:
             start.check(one.motion.site, one.motion.commands.kind)
     except BadInput:
         return False

@@ -3,30 +3,30 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import Observatory
-from rovsim.diagnosis.observer.least_squares import inner_products, solved
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import blocks
-from rovsim.diagnosis.selection.fit import Fit
+from rovsim.diagnosis.selection.gauss_newton import Fit
 
 FOLDS = 6
 
 
-def held_out_gain(found: Fit, smaller: Fit, observatory: Observatory) -> float:
+def cross_validate(found: Fit, smaller: Fit, bank: FilterBank) -> float:
     """Decrease of the squared innovations on held-out blocks by what `found` has more.
 
     Both are fitted to all blocks; each fold's parameters are theirs, less what that fold made of
     them, to first order.
     """
-    fold = blocks(observatory.watches) % FOLDS
-    costs = [_held_out(one, observatory, found.noise, fold) for one in (smaller, found)]
+    fold = blocks(bank.runs) % FOLDS
+    costs = [_held_out(one, bank, found.noise, fold) for one in (smaller, found)]
     return costs[0] - costs[1]
 
 
-def _held_out(one: Fit, observatory: Observatory, noise: Noise, fold: Array) -> float:
+def _held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> float:
     """Sum of the squared innovations of all blocks, each with the others' parameters."""
     stacked = [np.concatenate([e[None], J]) for e, J in zip(one.e, one.J, strict=True)]
-    rows = observatory.white(stacked, noise)
+    rows = bank.whiten(stacked, noise)
     parts = [_products(rows[..., fold == k]) for k in np.unique(fold)]
     total = sum(parts)
     return sum(_cost(part, _step(total - part)) for part in parts)
@@ -38,7 +38,7 @@ def _products(rows: Array) -> Array:
 
 def _step(M: Array) -> Array:
     """Best step (k,) of all parameters on these products."""
-    return -solved(M[1:, 1:], M[1:, 0])
+    return -solve(M[1:, 1:], M[1:, 0])
 
 
 def _cost(M: Array, x: Array) -> float:

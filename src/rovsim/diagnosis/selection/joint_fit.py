@@ -13,10 +13,10 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.fit import REACH, Fit
-from rovsim.diagnosis.selection.nominal import DRAG, uncertain
-from rovsim.diagnosis.selection.search import Rival, without_parameters
-from rovsim.diagnosis.selection.workspace import Desk
+from rovsim.diagnosis.selection.forward_selection import Rival, without_parameters
+from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
+from rovsim.diagnosis.selection.nominal_terms import DRAG, free_terms
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
 from rovsim.dynamics.model import Model
 
@@ -27,19 +27,21 @@ ALWAYS = (
 )  # fmt: skip
 
 
-def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, list[Rival]]:
+def fit_jointly(
+    workspace: SearchWorkspace, base: Model, still: Sequence[str]
+) -> tuple[SearchWorkspace, Fit, list[Rival]]:
     """The likeliest of all joint fits, pruned; the other ways to act are its rivals.
 
     Args:
-        desk: where the search one by one ended.
+        workspace: where the search one by one ended.
         base: the model that is diagnosed.
         still: axes that nobody moved; nothing can be said about them.
     """
-    kind = desk.observatory.watches[0].motion.commands.kind
-    tried = [_joint(desk, start) for start in _starts(base, still, kind)]
+    kind = workspace.bank.runs[0].motion.commands.kind
+    tried = [_joint(workspace, start) for start in _starts(base, still, kind)]
     tried.sort(key=lambda one: one[0].score(one[1]), reverse=True)
     best, found = tried[0]
-    found = _pruned(best, found)
+    found = _prune(best, found)
     named = {term.id for term in found.hypothesis.terms}
     rivals = [
         Rival(term.id, own.id, best.score(found) - other.score(fit))
@@ -53,32 +55,32 @@ def at_once(desk: Desk, base: Model, still: Sequence[str]) -> tuple[Desk, Fit, l
 
 def _starts(base: Model, still: Sequence[str], kind: str) -> list[Hypothesis]:
     moved = [axis for axis in AXES if axis not in still]
-    common = uncertain(base, moved, ALWAYS)
-    found = [(*common, *uncertain(base, moved, ACTUATION[:1]))]
+    common = free_terms(base, moved, ALWAYS)
+    found = [(*common, *free_terms(base, moved, ACTUATION[:1]))]
     if kind == "demand":
         loops = Term(OnboardControl(**EVERY_AXIS), OnboardControl.free_at(EVERY_AXIS))
         found.append((*common, loops))
     return [Hypothesis(base, terms) for terms in found]
 
 
-def _joint(desk: Desk, start: Hypothesis) -> tuple[Desk, Fit]:
+def _joint(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspace, Fit]:
     """Fitted, with filters and noise that follow."""
-    found = desk.fit(start, REACH)
+    found = workspace.fit(start, REACH)
     for _ in range(ROUNDS):
-        desk = desk.renewed(found)
-        found = desk.fit(found.hypothesis, REACH)
-    return desk, found
+        workspace = workspace.renew(found)
+        found = workspace.fit(found.hypothesis, REACH)
+    return workspace, found
 
 
-def _pruned(desk: Desk, found: Fit) -> Fit:
+def _prune(workspace: SearchWorkspace, found: Fit) -> Fit:
     """Without all parameters that are not worth their price, until all are."""
     while True:
         h = found.hypothesis
-        weak = _weak(found, desk.price)
+        weak = _weak(found, workspace.price)
         if not weak.any():
             return found
-        smaller = desk.fit(without_parameters(h, weak), REACH)
-        if desk.score(smaller) < desk.score(found):
+        smaller = workspace.fit(without_parameters(h, weak), REACH)
+        if workspace.score(smaller) < workspace.score(found):
             return found
         found = smaller
 

@@ -7,11 +7,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.observer.observed_run import Watch
-from rovsim.diagnosis.observer.windows import window_errors
-from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.search import Rival
-from rovsim.diagnosis.selection.workspace import Desk, Proposal
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.windows import score_windows
+from rovsim.diagnosis.selection.forward_selection import Rival
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.workspace import Proposal, SearchWorkspace
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 
@@ -35,17 +35,17 @@ class Ranked:
     probability: float
 
 
-def selected(
-    found: Fit, rivals: Sequence[Rival], watches: Sequence[Watch], between: Between
+def rank_selected(
+    found: Fit, rivals: Sequence[Rival], runs: Sequence[ObservedRun], between: Between
 ) -> list[Selected]:
     """Selected effects, the one that removes most error first, then the next on top of it."""
     left, order, errors = list(range(len(found.hypothesis.terms))), [], []
     model = found.hypothesis.base
-    start = _error([model], watches, between)[0]
+    start = _error([model], runs, between)[0]
     now = start
     while left:
         tried = [model + found.hypothesis.terms[i].effect for i in left]
-        after = _error(tried, watches, between)
+        after = _error(tried, runs, between)
         best = int(np.argmin(after))
         order.append(left.pop(best))
         errors.append((now - after[best]) / start)
@@ -58,10 +58,8 @@ def selected(
     ]
 
 
-def _error(models: Sequence[Model], watches: Sequence[Watch], between: Between) -> Array:
-    return np.array(
-        [np.nan if e is None else e for e in window_errors(models, watches, between)[1]]
-    )
+def _error(models: Sequence[Model], runs: Sequence[ObservedRun], between: Between) -> Array:
+    return np.array([np.nan if e is None else e for e in score_windows(models, runs, between)[1]])
 
 
 def _std(found: Fit, i: int) -> dict[str, float]:
@@ -80,23 +78,25 @@ def _probability(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
     return float(1.0 / (1.0 + odds))
 
 
-def ranking(desk: Desk, nothing: Fit, alone: Sequence[Proposal], found: Fit) -> list[Ranked]:
+def rank_alone(
+    workspace: SearchWorkspace, nothing: Fit, alone: Sequence[Proposal], found: Fit
+) -> list[Ranked]:
     """Every effect by itself: those refitted first, by their likelihood, then the others' promise.
 
     The probability is that of the name if one effect alone is missing, or none.
     """
     named = {term.id for term in found.hypothesis.terms}
     starts = [(p, nothing.hypothesis.with_term(p.term)) for p in alone]
-    fits = [desk.fit(h) for p, h in starts if p.term.id in named or desk.knows(h)]
-    fits.sort(key=desk.score, reverse=True)
+    fits = [workspace.fit(h) for p, h in starts if p.term.id in named or workspace.has_fitted(h)]
+    fits.sort(key=workspace.score, reverse=True)
     terms = [one.hypothesis.terms[0] for one in fits]
     terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
-    gain = np.array([0.5 * (desk.score(one) - desk.score(nothing)) for one in fits])
+    gain = np.array([0.5 * (workspace.score(one) - workspace.score(nothing)) for one in fits])
     weight = np.exp(gain - np.max(gain, initial=0.0))
     share = weight / (weight.sum() + np.exp(-np.max(gain, initial=0.0)))
-    observatory, base = desk.observatory, nothing.hypothesis.base
+    bank, base = workspace.bank, nothing.hypothesis.base
     models = [base, *(base + term.effect for term in terms)]
-    error = _error(models, observatory.watches, observatory.between)
+    error = _error(models, bank.runs, bank.between)
     sure = np.append(share, np.zeros(len(terms) - len(fits)))
     return [
         Ranked(term, float(max(0.0, 1.0 - e / error[0])), float(p))

@@ -14,13 +14,13 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import Observatory, linearised, of_possible
+from rovsim.diagnosis.observer.filter_bank import FilterBank, linearise, of_possible
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import inner_products, solved
+from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import Watch
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import differences, readings
-from rovsim.diagnosis.selection.fit import REACH, Fit, descend, judged
+from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, descend, judge
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 from rovsim.simulation.replay import windows
@@ -33,65 +33,65 @@ SMALLEST = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not co
 class Replays:
     """Errors of velocity and acceleration in windows, each in units of how much it varies."""
 
-    watches: tuple[Watch, ...]
+    runs: tuple[ObservedRun, ...]
     between: Between
 
     @cached_property
     def spread(self) -> tuple[Array, Array]:
         """Standard deviations (6,) of the measured velocity and acceleration."""
-        nu = np.concatenate([w.motion.nu[w.motion.usable] for w in self.watches])
-        nu_dot = np.concatenate([w.motion.nu_dot[w.motion.usable] for w in self.watches])
+        nu = np.concatenate([w.motion.nu[w.motion.usable] for w in self.runs])
+        nu_dot = np.concatenate([w.motion.nu_dot[w.motion.usable] for w in self.runs])
         return np.maximum(np.std(nu, axis=0), SMALLEST), np.maximum(
             np.nanstd(nu_dot, axis=0), SMALLEST
         )
 
-    def innovations(self, models: Sequence[Model]) -> list[Array]:
+    def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Scaled errors (m, 6, n) of each run; NaN where a model cannot move at all."""
         return [
             of_possible(models, len(_window(w)) + np.sum(_follows(w)), partial(self._of_run, w))
-            for w in self.watches
+            for w in self.runs
         ]
 
-    def _of_run(self, watch: Watch, models: Sequence[Model]) -> Array:
+    def _of_run(self, run: ObservedRun, models: Sequence[Model]) -> Array:
         velocity, acceleration = self.spread
-        nu = differences(models, watch, self.between, seconds=SECONDS)
-        step = np.diff(nu, axis=1) / np.diff(watch.motion.time[_reading(watch)])[:, None]
-        both = [nu / velocity, step[:, _follows(watch)] / acceleration]
+        nu = differences(models, run, self.between, seconds=SECONDS)
+        step = np.diff(nu, axis=1) / np.diff(run.motion.time[_reading(run)])[:, None]
+        both = [nu / velocity, step[:, _follows(run)] / acceleration]
         return soft(np.concatenate(both, axis=1)).swapaxes(1, 2)
 
-    def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
+    def linearise(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
         """Errors (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
-        return linearised(at, self.innovations)
+        return linearise(at, self.evaluate)
 
-    def white(self, e: Sequence[Array], noise: Noise) -> Array:
+    def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Errors (..., 6, n) of all runs."""
         return np.concatenate(e, axis=-1)
 
     def window(self) -> Array:
         """Number (n,) of the window that each error lies in, over all runs."""
         parts, count = [], 0
-        for watch in self.watches:
-            own = _window(watch) + count
-            parts += [own, own[1:][_follows(watch)]]
+        for run in self.runs:
+            own = _window(run) + count
+            parts += [own, own[1:][_follows(run)]]
             count = int(own.max(initial=count - 1)) + 1
         return np.concatenate(parts)
 
 
-def _window(watch: Watch) -> Array:
+def _window(run: ObservedRun) -> Array:
     """Number (n,) of the window of each velocity."""
-    lengths = [b - a for a, b in windows(watch.motion, SECONDS)]
+    lengths = [b - a for a, b in windows(run.motion, SECONDS)]
     return np.repeat(np.arange(len(lengths)), lengths)
 
 
-def _reading(watch: Watch) -> Array:
+def _reading(run: ObservedRun) -> Array:
     """Sample or bin (n,) of each velocity."""
-    every, spans = np.arange(len(watch.motion.time)), windows(watch.motion, SECONDS)
-    return np.concatenate([np.empty(0, int), *(every[readings(watch, span)] for span in spans)])
+    every, spans = np.arange(len(run.motion.time)), windows(run.motion, SECONDS)
+    return np.concatenate([np.empty(0, int), *(every[readings(run, span)] for span in spans)])
 
 
-def _follows(watch: Watch) -> Array:
+def _follows(run: ObservedRun) -> Array:
     """Whether each velocity but the first (n-1,) lies in the same window as the one before."""
-    return np.diff(_window(watch)) == 0
+    return np.diff(_window(run)) == 0
 
 
 def soft(x: Array) -> Array:
@@ -99,15 +99,15 @@ def soft(x: Array) -> Array:
     return np.sign(x) * np.sqrt(2.0 * (np.sqrt(1.0 + x**2) - 1.0))
 
 
-def replayed(found: Fit, observatory: Observatory) -> Fit:
+def fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
-    evidence = Replays(observatory.watches, observatory.between)
+    evidence = Replays(bank.runs, bank.between)
     here, e, J = descend(found.hypothesis, evidence, found.noise, REACH)
     covariance = _sandwich(
-        evidence.white(e, found.noise), evidence.white(J, found.noise), evidence.window()
+        evidence.whiten(e, found.noise), evidence.whiten(J, found.noise), evidence.window()
     )
-    fresh = observatory.suiting(here.model, found.noise)
-    again = judged(here, *fresh.linearised(here), fresh, found.noise)
+    fresh = bank.redesign(here.model, found.noise)
+    again = judge(here, *fresh.linearise(here), fresh, found.noise)
     return replace(again, covariance=covariance)
 
 
@@ -117,7 +117,7 @@ def _sandwich(e: Array, J: Array, window: Array) -> Array:
     There may be fewer windows than parameters, which then would all seem to go together; and never
     surer than if every error were one for itself.
     """
-    bread = solved(inner_products(J.reshape(len(J), -1)), np.eye(len(J)))
+    bread = solve(inner_products(J.reshape(len(J), -1)), np.eye(len(J)))
     scores = np.einsum("kin,in->kn", J, e)
     each = bread @ np.array([np.bincount(window, row) for row in scores])
     alone = np.diag(bread) * np.sum(e**2) / max(e.size - len(J), 1)

@@ -10,7 +10,7 @@ from typing import Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import inner_products
 from rovsim.diagnosis.observer.noise import Noise
@@ -23,14 +23,14 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Library:
-    """`base` innovations (6, n) of each run, and `columns` (c, 6, n), as that observatory saw them.
+class Sensitivities:
+    """`base` innovations (6, n) of each run, and `columns` (c, 6, n), as that bank saw them.
 
     Candidate i has the columns `secant[i]` (None where it starts from its absence), the change from
     absence to its start, and `derivatives[i]`, one for each of its free parameters.
     """
 
-    observatory: Observatory
+    bank: FilterBank
     candidates: tuple[Candidate, ...]
     base: list[Array]
     columns: list[Array]
@@ -43,21 +43,21 @@ class Library:
         return len(self.columns[0])
 
 
-def library(
-    observatory: Observatory,
+def linearise_candidates(
+    bank: FilterBank,
     base: Hypothesis,
     candidates: Sequence[Candidate],
     progress: Progress = lambda done, total: None,
-) -> Library:
+) -> Sensitivities:
     """Columns of all candidates around a hypothesis."""
-    e0 = [e[0] for e in observatory.innovations([base.model])]
+    e0 = [e[0] for e in bank.evaluate([base.model])]
     parts: list[list[Array]] = [[] for _ in e0]
     kept: list[Candidate] = []
     secant: list[int | None] = []
     derivatives: list[tuple[int, ...]] = []
     count = 0
     for done, candidate in enumerate(candidates):
-        columns = _columns(observatory, base, candidate, e0)
+        columns = _columns(bank, base, candidate, e0)
         progress(done + 1, len(candidates))
         if not all(np.isfinite(one).all() for one in columns):
             continue  # the observer cannot hold the model there
@@ -69,14 +69,14 @@ def library(
         for part, own in zip(parts, columns, strict=True):
             part.append(own)
     stacked = [np.concatenate(part) for part in parts]
-    return Library(observatory, tuple(kept), e0, stacked, tuple(secant), tuple(derivatives))
+    return Sensitivities(bank, tuple(kept), e0, stacked, tuple(secant), tuple(derivatives))
 
 
 def _columns(
-    observatory: Observatory, base: Hypothesis, candidate: Candidate, e0: Sequence[Array]
+    bank: FilterBank, base: Hypothesis, candidate: Candidate, e0: Sequence[Array]
 ) -> list[Array]:
     """The secant, if the start is not the effect's absence, and the derivatives (c, 6, n)."""
-    e, J = observatory.linearised(Hypothesis(base.model, (candidate.term(),)))
+    e, J = bank.linearise(Hypothesis(base.model, (candidate.term(),)))
     if not candidate.absent:
         J = [
             np.concatenate([(there - without)[None], own])
@@ -85,16 +85,16 @@ def _columns(
     return [own.astype(np.float32) for own in J]  # six digits are enough for columns
 
 
-def remaining_noise(found: Library, at: Hypothesis, noise: Noise) -> Noise:
+def fit_remaining_noise(found: Sensitivities, at: Hypothesis, noise: Noise) -> Noise:
     """The noise of what a hypothesis leaves and no candidate explains, all acting together.
 
     It is close to the true one whatever is still missing: candidates are compared under it.
     """
-    close = found.observatory
-    e, J = close.linearised(at) if at.terms else (found.base, None)
+    close = found.bank
+    e, J = close.linearise(at) if at.terms else (found.base, None)
     columns = found.columns if J is None else _both(J, found.columns)
     for _ in range(ROUNDS):
-        noise, _ = close.noise(_remainder(close, e, columns, noise), noise)
+        noise, _ = close.fit_noise(_remainder(close, e, columns, noise), noise)
     return noise
 
 
@@ -103,10 +103,10 @@ def _both(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
     return [np.concatenate([own.astype(more.dtype), more]) for own, more in pairs]
 
 
-def _remainder(close: Observatory, e, columns, noise: Noise) -> list[Array]:
+def _remainder(close: FilterBank, e, columns, noise: Noise) -> list[Array]:
     """Innovations (6, n) of each run less the best combination of all columns (c, 6, n)."""
-    target = close.coarse([one[None] for one in e], noise)[0]
-    white = close.coarse(columns, noise)
+    target = close.coarsen([one[None] for one in e], noise)[0]
+    white = close.coarsen(columns, noise)
     H = inner_products(white).astype(float)
     x = -np.linalg.solve(H + np.diag(SHRINK * np.diag(H) + 1e-9), white @ target)
     return [one + np.tensordot(x, c, axes=1) for one, c in zip(e, columns, strict=True)]

@@ -7,9 +7,14 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.windows import window_errors
-from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.workspace import Desk, Proposal, chance, proposals
+from rovsim.diagnosis.observer.windows import score_windows
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.workspace import (
+    Proposal,
+    SearchWorkspace,
+    draw_chance_gains,
+    propose,
+)
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
@@ -18,22 +23,22 @@ SWAP = 1.0  # in twice the log likelihood: less is not worth another name
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 
 
-def pruned(desk: Desk, current: Fit) -> Fit:
+def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
     """Without free parameters that are not worth their price, one at a time."""
     while len(current.hypothesis.x):
-        smaller = _weakest_dropped(desk, current)
+        smaller = _weakest_dropped(workspace, current)
         if smaller is None:
             return current
-        trial = desk.fit(smaller)
-        if desk.score(trial) < desk.score(current):
+        trial = workspace.fit(smaller)
+        if workspace.score(trial) < workspace.score(current):
             return current
         current = trial
     return current
 
 
-def _weakest_dropped(desk: Desk, current: Fit) -> Hypothesis | None:
+def _weakest_dropped(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     """The hypothesis without its least certain parameter that starts from absence."""
-    h, k, weakest, least = current.hypothesis, 0, None, 2.0 * desk.price
+    h, k, weakest, least = current.hypothesis, 0, None, 2.0 * workspace.price
     for i, term in enumerate(h.terms):
         for p in term.parameters:
             z = (h.x[k] - p.default / p.scale) / max(current.std[k], 1e-12)
@@ -64,9 +69,9 @@ def without_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
     return Hypothesis(h.base, tuple(terms))
 
 
-def promising(desk: Desk, current: Fit) -> list[Proposal]:
+def promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
     """The proposals that should gain something."""
-    return [p for p in proposals(desk, current) if p.gain > 0.0]
+    return [p for p in propose(workspace, current) if p.gain > 0.0]
 
 
 def close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
@@ -74,26 +79,26 @@ def close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
     return [p for p in ranked[:trials] if p.gain > CLOSE * ranked[0].gain]
 
 
-def forward(desk: Desk, current: Fit, threshold: float) -> Fit | None:
+def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
     """The best single addition, refitted and pruned; None when none beats chance and matters."""
-    left = promising(desk, current)
+    left = promising(workspace, current)
     for _ in range(ROUNDS):
-        trying = close(left, desk.settings.trials)
+        trying = close(left, workspace.settings.trials)
         left = [p for p in left if p not in trying]
-        tried = [desk.fit(current.hypothesis.with_term(p.term)) for p in trying]
-        for best in sorted(tried, key=desk.score, reverse=True):
-            if desk.score(best) - desk.score(current) < threshold:
+        tried = [workspace.fit(current.hypothesis.with_term(p.term)) for p in trying]
+        for best in sorted(tried, key=workspace.score, reverse=True):
+            if workspace.score(best) - workspace.score(current) < threshold:
                 break
-            if matters(desk, best, [current.hypothesis.model])[0]:
-                return pruned(desk, best)
+            if find_relevant(workspace, best, [current.hypothesis.model])[0]:
+                return prune(workspace, best)
     return None
 
 
-def matters(desk: Desk, found: Fit, without: Sequence[Model]) -> Array:
+def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Model]) -> Array:
     """Whether some axis' error in 2 s windows is noticeably larger with each other model (m,)."""
-    between, watches = desk.observatory.between, desk.observatory.watches
-    rmse, _ = window_errors([found.hypothesis.model, *without], watches, between)
-    return np.max(rmse[1:] / rmse[0], axis=1) - 1.0 > desk.settings.relevant
+    between, runs = workspace.bank.between, workspace.bank.runs
+    rmse, _ = score_windows([found.hypothesis.model, *without], runs, between)
+    return np.max(rmse[1:] / rmse[0], axis=1) - 1.0 > workspace.settings.relevant
 
 
 @dataclass(frozen=True)
@@ -108,43 +113,46 @@ class Rival:
     deficit: float
 
 
-def contested(desk: Desk, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
+def contest(workspace: SearchWorkspace, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close."""
     rivals = []
     for i, term in enumerate(current.hypothesis.terms):
-        rest = desk.fit(current.hypothesis.without(i))
-        for p in _others(desk, rest, term.id, trials):
-            trial = desk.fit(rest.hypothesis.with_term(p.term))
-            deficit = desk.score(current) - desk.score(trial)
+        rest = workspace.fit(current.hypothesis.without(i))
+        for p in _others(workspace, rest, term.id, trials):
+            trial = workspace.fit(rest.hypothesis.with_term(p.term))
+            deficit = workspace.score(current) - workspace.score(trial)
             if deficit < -SWAP:
-                return contested(desk, pruned(desk, trial), trials)
+                return contest(workspace, prune(workspace, trial), trials)
             rivals.append(Rival(p.term.id, term.id, deficit))
     return current, rivals
 
 
-def _others(desk: Desk, rest: Fit, name: str, trials: int) -> list[Proposal]:
+def _others(workspace: SearchWorkspace, rest: Fit, name: str, trials: int) -> list[Proposal]:
     """Other names for what a term took: one where it could win, or several to report."""
-    ranked = promising(desk, rest)
+    ranked = promising(workspace, rest)
     if trials == 1:
         return [p for p in close(ranked, 2) if p.term.id != name][:1]
     return close([p for p in ranked if p.term.id != name], trials)
 
 
-def search(desk: Desk, base: Fit, seed: int) -> tuple[Desk, Fit, list[Rival]]:
+def search(
+    workspace: SearchWorkspace, base: Fit, seed: int
+) -> tuple[SearchWorkspace, Fit, list[Rival]]:
     """From the base to the model to which nothing can be added, swapped or taken away.
 
-    Also the desk as it is then: its noise and filters follow what is found. Rivals only where it
-    came to an end before there were `most_effects`.
+    Also the workspace as it is then: its noise and filters follow what is found. Rivals only where
+    it came to an end before there were `most_effects`.
     """
-    current, settings = base, desk.settings
+    current, settings = base, workspace.settings
     while len(current.hypothesis.terms) < settings.most_effects:
-        by_chance = chance(desk, current, settings.draws, seed)
+        by_chance = draw_chance_gains(workspace, current, settings.draws, seed)
         threshold = max(0.0, float(np.quantile(by_chance, 1.0 - settings.false_alarm)))
-        found = forward(desk, current, threshold)
+        found = add_best(workspace, current, threshold)
         if found is None:
             break
-        desk = desk.renewed(found)
-        current, _ = contested(desk, desk.fit(found.hypothesis), 1)  # the likeliest other name
+        workspace = workspace.renew(found)
+        again = workspace.fit(found.hypothesis)
+        current, _ = contest(workspace, again, 1)  # the likeliest other name
     else:
-        return desk, current, []  # no end: these names are not what is missing
-    return desk, *contested(desk, current, settings.trials)
+        return workspace, current, []  # no end: these names are not what is missing
+    return workspace, *contest(workspace, current, settings.trials)

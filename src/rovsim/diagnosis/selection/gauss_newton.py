@@ -6,9 +6,9 @@ from typing import Protocol, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import inner_products, solved
+from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.model import Model
 
@@ -24,13 +24,13 @@ FIRST_TRUST, LARGEST_TRUST = 1e-4, 1e4  # damping of the steps (Levenberg-Marqua
 class Evidence(Protocol):
     """Errors of models, how they change with parameters, and what makes them comparable."""
 
-    def innovations(self, models: Sequence[Model]) -> list[Array]:
+    def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Errors (m, 6, n) of each run."""
 
-    def linearised(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
+    def linearise(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
         """Errors (6, n) of each run and their derivatives (k, 6, n)."""
 
-    def white(self, e: Sequence[Array], noise: Noise) -> Array:
+    def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Errors (..., 6, n) of all runs, each worth the same."""
 
 
@@ -55,26 +55,24 @@ class Fit:
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def fit(start: Hypothesis, observatory: Observatory, noise: Noise, reach: float = np.inf) -> Fit:
+def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf) -> Fit:
     """Fit the free parameters under a given noise, then the noise to what is left.
 
     `reach`: see `descend`.
 
     A model that diverges in spite of the observer's corrections is infinitely unlikely.
     """
-    return judged(*descend(start, observatory, noise, reach), observatory, noise)
+    return judge(*descend(start, bank, noise, reach), bank, noise)
 
 
-def judged(
-    here: Hypothesis, e: list[Array], J: list[Array], observatory: Observatory, noise: Noise
-) -> Fit:
+def judge(here: Hypothesis, e: list[Array], J: list[Array], bank: FilterBank, noise: Noise) -> Fit:
     """A hypothesis as it stands, the noise fitted to what it leaves."""
     if not _finite(e, J):
         unsure = np.full((len(here.x), len(here.x)), np.inf)
         return Fit(here, e, J, noise, -np.inf, unsure)
-    own, likelihood = observatory.noise(e, noise)
-    rows = _rows(observatory.white(J, own))
-    return Fit(here, e, J, own, likelihood, solved(inner_products(rows), np.eye(len(rows))))
+    own, likelihood = bank.fit_noise(e, noise)
+    rows = _rows(bank.whiten(J, own))
+    return Fit(here, e, J, own, likelihood, solve(inner_products(rows), np.eye(len(rows))))
 
 
 def _finite(e: list[Array], J: list[Array]) -> bool:
@@ -86,13 +84,13 @@ def _rows(white: Array) -> Array:
     return white.reshape(len(white), int(np.prod(white.shape[1:])))
 
 
-def _cost(observatory: Evidence, e: list[Array], noise: Noise) -> float:
-    white = observatory.white(e, noise)
+def _cost(bank: Evidence, e: list[Array], noise: Noise) -> float:
+    white = bank.whiten(e, noise)
     return float(np.sum(white**2))
 
 
 def descend(
-    here: Hypothesis, observatory: Evidence, noise: Noise, reach: float = np.inf
+    here: Hypothesis, bank: Evidence, noise: Noise, reach: float = np.inf
 ) -> tuple[Hypothesis, list[Array], list[Array]]:
     """Least squares from a hypothesis: where it leads, its errors and their derivatives.
 
@@ -105,18 +103,18 @@ def descend(
         return float(np.sum(((x - start) / reach) ** 2))
 
     for _ in range(MOST_ITERATIONS):
-        e, J = observatory.linearised(here)
+        e, J = bank.linearise(here)
         if not len(here.x) or not _finite(e, J):
             return here, e, J
-        rows = _rows(observatory.white(J, noise))
-        target = observatory.white(e, noise).ravel()
+        rows = _rows(bank.whiten(J, noise))
+        target = bank.whiten(e, noise).ravel()
         H, g, cost = inner_products(rows), rows @ target, float(target @ target)
         H, g = H + np.eye(len(H)) / reach**2, g + (here.x - start) / reach**2
         cost += prior(here.x)
 
         def left(wanted: Hypothesis) -> float:
-            e = [one[0] for one in observatory.innovations([wanted.model])]
-            return _cost(observatory, e, noise) + prior(wanted.x) if _finite(e, []) else np.inf
+            e = [one[0] for one in bank.evaluate([wanted.model])]
+            return _cost(bank, e, noise) + prior(wanted.x) if _finite(e, []) else np.inf
 
         step, better, cost, trust = _step(here, left, H, g, cost, trust)
         if better is None:
@@ -125,7 +123,7 @@ def descend(
         excess = max(0.0, cost - len(target))
         if float(step @ H @ step) < max(CONVERGED**2 * len(step), ROUGH * excess):
             break
-    e, J = observatory.linearised(here)
+    e, J = bank.linearise(here)
     return here, e, J
 
 
@@ -133,7 +131,7 @@ def _step(here, cost_of, H, g, cost, trust):
     """A step that lowers the cost, where it leads and what is left; None when none does."""
     x = here.x
     while trust < LARGEST_TRUST:
-        goal = x - solved(H + trust * np.diag(np.diag(H)), g)
+        goal = x - solve(H + trust * np.diag(np.diag(H)), g)
         if not np.isfinite(goal).all():
             break
         wanted = here.at(goal)

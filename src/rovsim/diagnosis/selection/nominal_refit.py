@@ -9,12 +9,12 @@ from dataclasses import replace
 from typing import Sequence
 
 from rovsim import AXES
-from rovsim.diagnosis.diagnose import FIRST_NOISE, enough, usable
-from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.observed_run import Watch
-from rovsim.diagnosis.selection.fit import fit
-from rovsim.diagnosis.selection.nominal import DRAG, ONE_GAIN, kept_between, uncertain
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.procedure import FIRST_NOISE, enough, usable
+from rovsim.diagnosis.selection.gauss_newton import fit
+from rovsim.diagnosis.selection.nominal_terms import DRAG, ONE_GAIN, free_terms, kept_between
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.effects import effect
 from rovsim.dynamics.model import Model
@@ -24,24 +24,24 @@ GAINS = 0.5, 2.0  # a curve measured on the bench; gain, masses and drag are kno
 ROUNDS = 3  # the filters suit the noise of the round before
 
 
-def refitted(base: Model, train: Sequence[Watch], between: Between) -> Model:
+def refit_nominal(base: Model, train: Sequence[ObservedRun], between: Between) -> Model:
     """The base with its own parameters at their most likely values on the train runs.
 
     An axis that no run moved keeps its coefficients; with too little to judge all of them stay.
     """
-    watches, still, seconds = usable(train)
+    runs, still, seconds = usable(train)
     if not enough(still, seconds):
         return base.called("refitted")
     here, noise = _start(base, still), FIRST_NOISE
     for _ in range(ROUNDS):
-        found = fit(here, Observatory.built(watches, base, noise, between), noise)
+        found = fit(here, FilterBank.design(runs, base, noise, between), noise)
         here, noise = _held(found.hypothesis), found.noise
     return here.model.called("refitted")
 
 
 def _start(base: Model, still: Sequence[str]) -> Hypothesis:
     """All parameters free and unchanged."""
-    terms = uncertain(base, [axis for axis in AXES if axis not in still], STATED)
+    terms = free_terms(base, [axis for axis in AXES if axis not in still], STATED)
     gain = Term(kept_between(effect("thruster_gain"), *GAINS), ONE_GAIN)
     return Hypothesis(base, (*terms, gain))
 

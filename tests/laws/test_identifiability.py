@@ -4,12 +4,12 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.diagnosis.advice import next_experiment
-from rovsim.diagnosis.checks.identifiability import known_together
-from rovsim.diagnosis.diagnose import Diagnosis
+from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal import uncertain
+from rovsim.diagnosis.procedure import Diagnosis
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.dynamics.effects import effect
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
@@ -20,7 +20,7 @@ NOISE = Noise(np.ones(6), np.ones(6), np.ones(6))
 
 def fit(covariance, x=None):
     base = nominal(load_vehicle("bluerov2_heavy"))
-    h = Hypothesis(base, uncertain(base, AXES, TERMS))
+    h = Hypothesis(base, free_terms(base, AXES, TERMS))
     return Fit(h.at(np.zeros(7) if x is None else x), [], [], NOISE, 0.0, covariance)
 
 
@@ -33,12 +33,12 @@ def alike(*pairs):
 
 
 def test_what_is_sure_by_itself_is_in_no_group():
-    assert known_together(fit(alike())) == []
-    assert known_together(fit(alike((0, 6, 0.9)))) == []
+    assert group_joint_parameters(fit(alike())) == []
+    assert group_joint_parameters(fit(alike((0, 6, 0.9)))) == []
 
 
 def test_groups_are_chains_of_values_that_go_together_whatever_their_sign():
-    found = known_together(fit(alike((0, 6, -0.99), (6, 2, 0.98), (3, 4, 0.97))))
+    found = group_joint_parameters(fit(alike((0, 6, -0.99), (6, 2, 0.98), (3, 4, 0.97))))
     assert found == [
         ["linear_damping.surge", "linear_damping.heave", "net_buoyancy.force"],
         ["linear_damping.roll", "linear_damping.pitch"],
@@ -47,7 +47,7 @@ def test_groups_are_chains_of_values_that_go_together_whatever_their_sign():
 
 def test_a_value_that_is_surely_there_is_known_by_itself():
     covariance = alike((0, 6, 0.99), (3, 4, 0.97))
-    assert known_together(fit(covariance, np.array([5.0, 0, 0, 0, 0, 0, 0]))) == [
+    assert group_joint_parameters(fit(covariance, np.array([5.0, 0, 0, 0, 0, 0, 0]))) == [
         ["linear_damping.roll", "linear_damping.pitch"]
     ]
 

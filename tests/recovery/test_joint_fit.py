@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from flown import watched
+from flown import observed
 from rovsim import AXES
-from rovsim.diagnosis.checks.identifiability import known_together
-from rovsim.diagnosis.diagnose import FIRST_NOISE
-from rovsim.diagnosis.observer.filter_bank import Observatory
+from rovsim.diagnosis.checks.identifiability import group_joint_parameters
+from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.candidates import candidates
-from rovsim.diagnosis.selection.joint_fit import at_once
-from rovsim.diagnosis.selection.replay_fit import Replays, replayed
-from rovsim.diagnosis.selection.sensitivities import library
-from rovsim.diagnosis.selection.workspace import Desk
+from rovsim.diagnosis.procedure import FIRST_NOISE
+from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.joint_fit import fit_jointly
+from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
+from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.model import EffectEntry
 from rovsim.simulation.synthetic_tank.settings import Log
@@ -31,12 +31,12 @@ HIDDEN = (
 
 
 def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
-    base, watches = watched(tmp_path, duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
-    observatory = Observatory.built(watches, base, FIRST_NOISE, "held")
-    some = [c for c in candidates(watches) if c.effect.id in ("added_mass", "linear_damping")]
-    known = library(observatory, Hypothesis(base), some)
-    desk = Desk(observatory, known, FIRST_NOISE, SearchSettings())
-    desk, found, rivals = at_once(desk, base, [])
+    base, runs = observed(tmp_path, duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
+    bank = FilterBank.design(runs, base, FIRST_NOISE, "held")
+    some = [c for c in list_candidates(runs) if c.effect.id in ("added_mass", "linear_damping")]
+    known = linearise_candidates(bank, Hypothesis(base), some)
+    workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
+    workspace, found, rivals = fit_jointly(workspace, base, [])
     terms = {t.id: t.effect for t in found.hypothesis.terms}
     assert "thruster_gain" not in terms
     assert all(r.deficit > 0.0 for r in rivals)
@@ -49,14 +49,14 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
         decay = loops[f"bandwidth_{axis}"] + body.linear[i] / body.M[i, i]
         true = WIDTH[axis] + base.body.linear[i] / base.body.M[i, i]
         assert decay == pytest.approx(true, rel=0.35), axis
-    again = replayed(found, desk.observatory)
+    again = fit_to_replays(found, workspace.bank)
     assert [t.id for t in again.hypothesis.terms] == [t.id for t in found.hypothesis.terms]
     assert np.isfinite(again.std).all()
-    joint = [set(group) for group in known_together(again)]
+    joint = [set(group) for group in group_joint_parameters(again)]
     loop = "linear_damping.surge", "onboard_control.gain_surge", "onboard_control.bandwidth_surge"
     assert set(loop) in joint  # as said above
     assert any({"quadratic_damping.surge", "added_mass.surge"} <= g for g in joint)  # one scale
-    before, after = Replays(tuple(watches), "held").innovations(
+    before, after = Replays(tuple(runs), "held").evaluate(
         [found.hypothesis.model, again.hypothesis.model]
     )[0]
     assert np.sum(after**2) <= np.sum(before**2)

@@ -16,7 +16,7 @@ PER_AXIS = (*DRAG, "added_mass", "constant_wrench")
 ONE_GAIN = ("all",)  # of all thrusters
 
 
-def uncertain(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple[Term, ...]:
+def free_terms(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple[Term, ...]:
     """Effects, still absent, whose parameters are free; water neither drives nor lightens a body.
 
     Args:

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from flown import watched
-from rovsim.diagnosis.selection.refit_nominal import refitted
+from flown import observed
+from rovsim.diagnosis.selection.nominal_refit import refit_nominal
 from rovsim.dynamics.model import EffectEntry
 
 
 def train(folder, effects, control="6dof", duration=25.0):
     """The nominal model, and one train run as the observer sees it."""
-    return watched(folder, control, duration=duration, effects=effects, seed=5)
+    return observed(folder, control, duration=duration, effects=effects, seed=5)
 
 
 def test_wrong_nominal_parameters_come_back(tmp_path):
@@ -18,8 +18,8 @@ def test_wrong_nominal_parameters_come_back(tmp_path):
         EffectEntry(effect="quadratic_damping", parameters={"surge": 80.0, "sway": 90.0}),
         EffectEntry(effect="net_buoyancy", parameters={"force": 3.0}),
     )
-    base, watches = train(tmp_path, hidden)
-    found = refitted(base, watches, "held")
+    base, runs = train(tmp_path, hidden)
+    found = refit_nominal(base, runs, "held")
     changes = {e.id: e for e in found.effects[len(base.effects) :]}
     gain = changes["thruster_gain"]["all"]  # masses, drag and forces are known in units of it
     assert changes["net_buoyancy"]["force"] / gain == pytest.approx(3.0, abs=0.3)
@@ -29,15 +29,15 @@ def test_wrong_nominal_parameters_come_back(tmp_path):
 
 def test_what_is_not_theirs_leaves_them_physical(tmp_path):
     lag = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.3})
-    base, watches = train(tmp_path, (lag,), control="3dof")
-    body = refitted(base, watches, "held").body
+    base, runs = train(tmp_path, (lag,), control="3dof")
+    body = refit_nominal(base, runs, "held").body
     assert np.all(body.linear >= -1e-9)
     assert np.all(body.quadratic >= -1e-9)
     assert np.all(np.linalg.eigvalsh(body.M) > 0.0)
 
 
 def test_too_little_changes_nothing(tmp_path):
-    base, watches = train(tmp_path, (), duration=4.0)
-    found = refitted(base, watches, "held")
+    base, runs = train(tmp_path, (), duration=4.0)
+    found = refit_nominal(base, runs, "held")
     assert found.name == "refitted"
     assert found.entries == ()

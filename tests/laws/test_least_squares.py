@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from rovsim.diagnosis.observer.least_squares import (
-    coarse,
+    coarsen,
     greedy,
     inner_products,
     joint,
-    solved,
+    solve,
     without,
 )
 
@@ -51,10 +51,10 @@ def test_projected_columns_are_gone(columns):
 
 def test_parallel_columns_share():
     H = np.array([[1.0, 1.0], [1.0, 1.0]])
-    np.testing.assert_allclose(solved(H, np.array([2.0, 2.0])), [1.0, 1.0], atol=1e-6)
+    np.testing.assert_allclose(solve(H, np.array([2.0, 2.0])), [1.0, 1.0], atol=1e-6)
 
 
 def test_coarse_rows_keep_their_variance():
     rows = np.random.default_rng(0).normal(size=(2, 6, 4001))
-    assert coarse(rows).shape == (2, 6, 1000)
-    assert np.var(coarse(rows)) == pytest.approx(1.0, abs=0.05)
+    assert coarsen(rows).shape == (2, 6, 1000)
+    assert np.var(coarsen(rows)) == pytest.approx(1.0, abs=0.05)
