@@ -10,7 +10,10 @@ from urllib.error import URLError
 from urllib.request import urlopen
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-FLAGS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking")
+FLAGS = (
+    "--no-sandbox", "--disable-background-networking",
+    "--use-angle=swiftshader", "--enable-unsafe-swiftshader",  # three dimensions without a GPU
+)  # fmt: skip
 DESK, PHONE = (1280, 720), (390, 844)
 PICTURES = os.environ.get("ROVSIM_SCREENSHOTS")  # a folder: `make screenshots`
 

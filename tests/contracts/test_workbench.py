@@ -5,8 +5,6 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from chores import counting, dying, failing
 from rovsim.application.pipeline import compare
@@ -174,16 +172,24 @@ def test_work_that_is_cancelled_ends_at_once():
     assert work.look() == "cancelled"
 
 
-@given(turn=st.floats(-180, 180), tilt=st.floats(0, 90))
-def test_a_projection_is_a_view_of_a_rigid_body(turn, tilt):
-    axes = path.projected(np.eye(3), turn, tilt)
-    np.testing.assert_allclose(axes.T @ axes, np.eye(2), atol=1e-12)
+def test_a_path_is_drawn_through_its_points_and_keeps_its_gaps():
+    time = np.linspace(0.0, 10.0, 1001)
+    points = np.stack([np.cos(time), np.sin(time), 0.1 * time], axis=1)
+    curves = np.array(path.bends(np.where(time[:, None] > 5.0, np.nan, points)))
+    assert 0.4 * path.PIECES < len(curves) <= 0.5 * path.PIECES
+    middle = 0.25 * curves[:, 0] + 0.5 * curves[:, 1] + 0.25 * curves[:, 2]
+    for drawn in (curves[:, 0], middle, curves[:, 2]):
+        away = np.linalg.norm(drawn[:, None] - points, axis=2).min(axis=1)
+        np.testing.assert_allclose(away, 0.0, atol=1e-12)
+    np.testing.assert_array_equal(curves[1:, 0], curves[:-1, 2])
 
 
-def test_seen_from_above_north_is_right_and_west_is_up():
-    np.testing.assert_allclose(
-        path.projected(np.eye(3), 0, 90), [[1, 0], [0, 1], [0, 0]], atol=1e-9
-    )
+def test_the_room_is_the_tank_and_where_that_is_unknown_what_was_seen():
+    seen = np.array([[0.5, 1.0, -1.0], [np.nan] * 3, [1.5, 2.0, -2.0]])
+    tank = np.array([[0.0, 3.0], [np.nan, np.nan], [0.0, 4.0]])  # NED
+    low, high = path.room(seen, tank)
+    np.testing.assert_array_equal(low, [0.0, 1.0, -4.0])
+    np.testing.assert_array_equal(high, [3.0, 2.0, 0.0])
 
 
 def test_curves_are_thinned_and_keep_their_gaps():

@@ -2,30 +2,23 @@
 
 from typing import Any
 
-import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
-from rovsim.apps.workbench import path
-from rovsim.apps.workbench.charts import styles
 from rovsim.apps.workbench.parts import (
     Slider,
     cell,
-    chart,
     computed,
     heading,
     onward,
-    section,
     table,
-    text,
 )
+from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.traces import HORIZONS, QUANTITIES, Traces, excited, horizon_text, panels
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.rotations import HALF_TURN_X
 from rovsim.reporting.figures.marks import VELOCITY_UNITS
 
 TITLE, QUESTION = "Compare", "How far is the model from the measurement?"
-TICK = 0.1  # s between two pictures of a playback
 
 
 class Compare:
@@ -38,9 +31,8 @@ class Compare:
         self.chosen: dict[str, Any] = bench.choices.setdefault(
             "compare",
             {"run": run, "axes": excited(bench, run), "models": [bench.base.name],
-             "quantity": "nu", "horizon": 2.0, "turn": 30.0, "tilt": 25.0, "speed": 2},
+             "quantity": "nu", "horizon": 2.0},
         )  # fmt: skip
-        self.moment = 0.0
         self.traces: Traces | None = None
 
     @property
@@ -120,7 +112,7 @@ class Compare:
             )
             self.numbers = ui.column().classes("area")
             self._numbers(predicted)
-            await self._path()
+            await self._path(self.traces)
             onward("Where does it fail?", "/where")
 
     def _numbers(self, predicted: dict) -> None:
@@ -142,81 +134,18 @@ class Compare:
                 rows,
             )
 
-    async def _path(self) -> None:
-        section("Path in the tank")
-        text("Measured and open loop, from the same start. Play, or drag the time.")
-        models = [n for n in self.chosen["models"] if n in self.bench.models]
-        found = {"measured": np.where(self.motion.usable[:, None], self.motion.eta[:, :3], np.nan)}
-        for name in models:
-            replayed = await computed(
-                self.bench.prediction, self.bench.models[name], self.chosen["run"], None
-            )
-            found[name] = replayed.eta[:, :3]
-        self.paths = {name: x * HALF_TURN_X for name, x in found.items()}
-        self.look = styles(list(self.paths))
-        self.corners = path.box(self.paths, self.motion.site.tank)
-        with ui.row().classes("controls"):
-            self.play = ui.button("Play", icon="play_arrow", on_click=self._toggle).props(
-                "unelevated no-caps"
-            )
-            first, last = float(self.motion.time[0]), float(self.motion.time[-1])
-            with ui.column().classes("control wide"):
-                ui.label("Time (s)")
-                self.clock = Slider(min=first, max=last, step=TICK, value=first).props(
-                    'label aria-label="Time in the run, seconds"'
+    async def _path(self, traces: Traces) -> None:
+        """Open loop in the tank, its moment marked in the curves."""
+        predicted = {
+            name: (
+                await computed(
+                    self.bench.prediction, self.bench.models[name], self.chosen["run"], None
                 )
-                self.clock.on("update:model-value", lambda e: self._at(e.args), throttle=0.05)
-            for name, label, low, high in (
-                ("turn", "Turn (°)", -180, 180),
-                ("tilt", "Tilt (°)", 0, 90),
-            ):
-                with ui.column().classes("control"):
-                    ui.label(label)
-                    slider = Slider(min=low, max=high, step=5, value=self.chosen[name])
-                    slider.props(f'label aria-label="{label}"')
-                    slider.on(
-                        "update:model-value", lambda e, n=name: self._turn(n, e.args), throttle=0.05
-                    )
-        self.room = chart(self._view(), "Path in the tank").classes("path")
-        self.timer = ui.timer(TICK, self._tick, active=False)
-
-    def _view(self) -> dict[str, Any]:
-        return path.view(
-            self.paths, self.corners, self.look, self.chosen["turn"], self.chosen["tilt"]
-        )
-
-    def _turn(self, name: str, value: float) -> None:
-        self.chosen[name] = value
-        self.room.run_chart_method("setOption", self._view())
-        self._at(self.moment)
-
-    def _toggle(self) -> None:
-        self.timer.active = not self.timer.active
-        self.play.set_text("Pause" if self.timer.active else "Play")
-        self.play.set_icon("pause" if self.timer.active else "play_arrow")
-
-    def _tick(self) -> None:
-        """One picture on; from the end it starts anew."""
-        on = self.moment + TICK * self.chosen["speed"]
-        on = on if on <= self.motion.time[-1] else float(self.motion.time[0])
-        self.clock.value = round(on, 2)
-        self._at(on)
-
-    def _at(self, moment: float) -> None:
-        """Show one instant, in the curves and in the tank."""
-        self.moment = moment
-        k = int(np.clip(np.searchsorted(self.motion.time, moment), 0, len(self.motion.time) - 1))
-        spots = [
-            path.here(
-                name,
-                path.projected(x[k : k + 1], self.chosen["turn"], self.chosen["tilt"])[0],
-                self.look[name],
-            )
-            for name, x in self.paths.items()
-        ]
-        self.room.run_chart_method("setOption", {"series": spots})
-        if self.traces:
-            self.traces.mark(moment)
+            ).eta
+            for name in self.chosen["models"]
+            if name in self.bench.models
+        }
+        self.path = Path(self.motion, predicted, traces.mark)
 
 
 async def show(bench: Workbench) -> None:

@@ -1,95 +1,135 @@
-"""The path in the tank, turned by hand: a parallel projection, so no WebGL is needed."""
+"""The path in the tank, in three dimensions: turned with the mouse, played in time."""
 
-from typing import Any, Mapping
+from typing import Callable, Mapping
 
 import numpy as np
+from nicegui import ui
 from numpy import ndarray as Array
 
-from rovsim.apps.workbench.charts import LINE, POINTS, SOFT, line_style
+from rovsim.apps.workbench.charts import SOFT, styles
+from rovsim.apps.workbench.parts import Slider, section, text
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.reporting.figures.palette import Look
+from rovsim.measurement.signals.motion import Motion
 
-WIDE = 1.6  # width over height of the picture (.path in style.css)
-ROOM = 0.56  # half the picture, over what is in it
-CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-EDGES = [(a, b) for a in range(8) for b in range(a, 8) if abs(CORNERS[a] - CORNERS[b]).sum() == 1]
-
-
-def projected(points: Array, turn: float, tilt: float) -> Array:
-    """Points (n, 3) north, west, up as seen (n, 2), turned about up and tilted, in degrees."""
-    a, e = np.radians([turn, tilt])
-    right = np.array([np.cos(a), np.sin(a), 0.0])
-    up = np.array([-np.sin(e) * np.sin(a), np.sin(e) * np.cos(a), np.cos(e)])
-    return points @ np.stack([right, up], axis=1)
+TICK = 0.1  # s between two pictures of a playback
+SPEED = 2  # times as fast as it was
+PIECES = 200  # bent tubes that a path is drawn with at most
+THIN = 0.0012  # radius of a tube of width 1, over the size of the room
+SPOT = 0.01  # radius of a vehicle, likewise
+EYE = np.array([-0.25, -0.9, 0.5])  # from the middle to the eye, over the size of the room
 
 
-def box(paths: Mapping[str, Array], tank: Array) -> Array:
-    """Corners (8, 3) of the tank, or of the measured path where the tank is unknown; m."""
+class Path:
+    """Measured and simulated paths on the page, and the moment that is shown of them.
+
+    Args:
+        motion: the run.
+        predicted: eta (n, 6) of each model, open loop: NED, m.
+        changed: called with the moment shown, s.
+    """
+
+    def __init__(
+        self, motion: Motion, predicted: Mapping[str, Array], changed: Callable[[float], None]
+    ) -> None:
+        measured = np.where(motion.usable[:, None], motion.eta[:, :3], np.nan)
+        paths = {"measured": measured, **{name: eta[:, :3] for name, eta in predicted.items()}}
+        self.paths = {name: x * HALF_TURN_X for name, x in paths.items()}  # north, west, up
+        self.time, self.changed = motion.time, changed
+        section("Path in the tank")
+        text(
+            "Measured and open loop, from the same start. Play, or drag the time; the mouse turns "
+            "the tank, its wheel comes closer."
+        )
+        self._controls()
+        self._draw(*room(measured * HALF_TURN_X, motion.site.tank))
+        self.timer = ui.timer(TICK, self._tick, active=False)
+
+    def _controls(self) -> None:
+        first, last = float(self.time[0]), float(self.time[-1])
+        with ui.row().classes("controls"):
+            self.play = ui.button("Play", icon="play_arrow", on_click=self._toggle)
+            self.play.props("unelevated no-caps")
+            with ui.column().classes("control wide"):
+                ui.label("Time (s)")
+                self.clock = Slider(min=first, max=last, step=TICK, value=first)
+                self.clock.props('label aria-label="Time in the run, seconds"')
+                self.clock.on("update:model-value", lambda e: self._show(e.args), throttle=0.05)
+
+    def _draw(self, low: Array, high: Array) -> None:
+        middle, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+        look = styles(list(self.paths))
+        camera = ui.scene.perspective_camera(fov=40, near=0.01 * size, far=10 * size)
+        scene = ui.scene(grid=False, background_color="#ffffff", camera=camera, click_events=[])
+        scene.classes("path").props('role="img" aria-label="Path in the tank"')
+        with scene:
+            wide, long, tall = (high - low).tolist()
+            walls = scene.box(wide, long, tall, wireframe=True)
+            walls.move(*middle.tolist()).material(SOFT)
+            for name, spot in _names(low, high).items():
+                scene.text(name, f"color: {SOFT}; font-size: 13px").move(*spot)
+            for name, path in self.paths.items():
+                radius = THIN * size * look[name].width
+                for start, bend, end in bends(path):
+                    tube = scene.quadratic_bezier_tube(start, bend, end, 4, radius, 5)
+                    tube.material(look[name].color)
+            self.spots = {
+                name: scene.sphere(SPOT * size).material(look[name].color).visible(False)
+                for name in self.paths
+            }
+        eye = dict(zip("xyz", (middle + size * EYE).tolist(), strict=True))
+        at = {f"look_at_{k}": x for k, x in zip("xyz", middle.tolist(), strict=True)}
+        scene.move_camera(**eye, **at, duration=0)
+
+    def _toggle(self) -> None:
+        self.timer.active = not self.timer.active
+        self.play.set_text("Pause" if self.timer.active else "Play")
+        self.play.set_icon("pause" if self.timer.active else "play_arrow")
+
+    def _tick(self) -> None:
+        """One picture on; from the end it starts anew."""
+        on = self.clock.value + TICK * SPEED
+        self.clock.value = round(on if on <= self.time[-1] else float(self.time[0]), 2)
+        self._show(self.clock.value)
+
+    def _show(self, moment: float) -> None:
+        """Put the vehicles where they are at one moment."""
+        k = int(np.clip(np.searchsorted(self.time, moment), 0, len(self.time) - 1))
+        for name, path in self.paths.items():
+            known = bool(np.isfinite(path[k]).all())
+            self.spots[name].visible(known)
+            if known:
+                self.spots[name].move(*path[k].tolist())
+        self.changed(moment)
+
+
+def bends(path: Array) -> list[tuple[list[float], list[float], list[float]]]:
+    """Start, control point and end of quadratic Bezier curves along a path (n, 3), without gaps.
+
+    Each passes three points of the path, thinned to `PIECES` curves.
+    """
+    at = np.unique(np.linspace(0, len(path) - 1, 2 * PIECES + 1).astype(int))
+    at = at[: len(at) - (len(at) + 1) % 2]  # pieces share their ends: an odd number of points
+    start, middle, end = path[at[:-2:2]], path[at[1:-1:2]], path[at[2::2]]
+    curves = np.stack([start, 2.0 * middle - 0.5 * (start + end), end], axis=1)
+    return [tuple(one) for one in curves[np.isfinite(curves).all(axis=(1, 2))].tolist()]
+
+
+def room(measured: Array, tank: Array) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,) of the tank, or of the path where its walls are unknown.
+
+    Args:
+        measured: path (n, 3) north, west, up; m.
+        tank: limits (3, 2) in NED, NaN where unknown; m.
+    """
     known = np.sort(tank * HALF_TURN_X[:, None], axis=1)
-    seen = next(iter(paths.values()))
-    seen = seen[np.isfinite(seen).all(axis=1)]
+    seen = measured[np.isfinite(measured).all(axis=1)]
     seen = seen if len(seen) else np.zeros((1, 3))
     low = np.where(np.isfinite(known[:, 0]), known[:, 0], seen.min(axis=0))
     high = np.where(np.isfinite(known[:, 1]), known[:, 1], seen.max(axis=0))
-    return low + CORNERS * (high - low)
+    return low, np.maximum(high, low + 0.1)  # a box has a size, whatever moved
 
 
-def view(
-    paths: Mapping[str, Array], corners: Array, look: Mapping[str, Look], turn: float, tilt: float
-) -> dict[str, Any]:
-    """ECharts options of paths {name: (n, 3)} north, west, up in m, in a box; to scale."""
-    flat = projected(corners, turn, tilt)
-    middle, size = 0.5 * (flat.max(axis=0) + flat.min(axis=0)), np.ptp(flat, axis=0)
-    tall = ROOM * max(size[1], size[0] / WIDE)  # half of what is seen, m
-    half = np.array([WIDE * tall, tall])
-    axis = {"type": "value", "show": False}
-    return {
-        "grid": {"left": 4, "right": 4, "top": 4, "bottom": 4},
-        "xAxis": {**axis, "min": float(middle[0] - half[0]), "max": float(middle[0] + half[0])},
-        "yAxis": {**axis, "min": float(middle[1] - half[1]), "max": float(middle[1] + half[1])},
-        "series": [
-            *(_line(f"edge{k}", flat[list(edge)]) for k, edge in enumerate(EDGES)),
-            *(
-                _line(name, projected(path[:: max(1, len(path) // POINTS)], turn, tilt))
-                | {"lineStyle": line_style(look[name])}
-                for name, path in paths.items()
-            ),
-            *(here(name, None, look[name]) for name in paths),
-            _names(corners, turn, tilt),
-        ],
-    }  # fmt: skip
-
-
-def _line(name: str, points: Array) -> dict[str, Any]:
-    data = [[None, None] if p[0] != p[0] else np.round(p, 4).tolist() for p in points]
-    return {
-        "id": name, "type": "line", "showSymbol": False, "silent": True, "data": data,
-        "lineStyle": {"color": LINE, "width": 1}, "clip": True,
-    }  # fmt: skip
-
-
-def here(name: str, point: Array | None, look: Look) -> dict[str, Any]:
-    """Where a vehicle is at the moment shown; `point` (2,) as projected."""
-    data = [] if point is None or point[0] != point[0] else [np.round(point, 4).tolist()]
-    return {
-        "id": f"here/{name}", "type": "scatter", "symbolSize": 13, "silent": True, "data": data,
-        "z": 5, "itemStyle": {"color": look.color, "borderColor": "#ffffff", "borderWidth": 2},
-    }  # fmt: skip
-
-
-def _names(corners: Array, turn: float, tilt: float) -> dict[str, Any]:
-    """North, west and up beside the edges that point there."""
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    middle = 0.5 * (low + high)
-    spots = {
-        "north →": [middle[0], low[1], low[2]], "west ↗": [high[0], middle[1], low[2]],
-        "up ↑": [low[0], low[1], middle[2]],
-    }  # fmt: skip
-    data = [
-        {"value": projected(np.array([spot]), turn, tilt)[0].tolist(), "name": name}
-        for name, spot in spots.items()
-    ]
-    return {
-        "id": "names", "type": "scatter", "symbolSize": 1, "silent": True, "data": data,
-        "label": {"show": True, "formatter": "{b}", "color": SOFT, "position": "bottom"},
-    }  # fmt: skip
+def _names(low: Array, high: Array) -> dict[str, list[float]]:
+    """Where the names of the directions stand: at the ends of the edges that point there."""
+    ends = {"north": [0], "west": [1], "up": [2]}
+    return {name: np.where(np.isin(range(3), k), high, low).tolist() for name, k in ends.items()}
