@@ -5,11 +5,12 @@ import yaml
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_yaml
+from rovsim.core.shipped import shipped
 from rovsim.dynamics.model import read_model
-from rovsim.dynamics.vehicle import VEHICLES, load_vehicle
+from rovsim.dynamics.vehicle import load_vehicle
 from worlds import SHARED, needed
 
-NOMINAL = VEHICLES / "bluerov2_heavy.yaml"
+NOMINAL = shipped("conf/vehicle") / "bluerov2_heavy.yaml"
 
 
 def test_the_nominal_vehicle_is_the_published_one():

@@ -1,7 +1,6 @@
 """What every option of the signal chain keeps to; options are found, not listed."""
 
 from itertools import pairwise
-from pathlib import Path
 from typing import get_args
 
 import numpy as np
@@ -14,6 +13,7 @@ from rovsim.core import rotations
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.core.schema import checked
+from rovsim.core.shipped import shipped
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.chain import (
     SignalSettings,
@@ -30,7 +30,7 @@ from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.measurement.signals.outliers import KeepAll, Outliers, find_outliers
 from rovsim.measurement.signals.resample import Resampling, resample
 
-CONF = Path(__file__).parents[2] / "conf"
+CONF = shipped("conf")
 
 
 def options(group):

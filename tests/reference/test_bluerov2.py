@@ -15,13 +15,13 @@ from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
 from rovsim.core.rotations import from_euler, matrix
+from rovsim.core.shipped import shipped
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
-from rovsim.dynamics.vehicle import VEHICLES
 from rovsim.simulation.replay import ReplaySettings, trajectories
 from worlds import at_rest, model, motion
 
-FILE = yaml.safe_load((VEHICLES / "bluerov2_heavy.yaml").read_text(encoding="utf-8"))
+FILE = yaml.safe_load((shipped("conf/vehicle") / "bluerov2_heavy.yaml").read_text(encoding="utf-8"))
 DRY, WATER, SET = FILE["rigid_body"], FILE["hydrodynamics"], FILE["thrusters"]
 G, MASS = FILE["fluid"]["gravity"], DRY["mass"]
 W = MASS * G

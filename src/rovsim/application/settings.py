@@ -7,14 +7,13 @@ from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import Section, checked
+from rovsim.core.shipped import conf_folders, conf_names
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.learned.residual import Control
 from rovsim.learning.learner import LearnerSettings, learner_settings
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.replay import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import TankSettings
-
-CONF = Path(__file__).parents[3] / "conf"
 
 
 class StudySettings(Section):
@@ -140,8 +139,10 @@ def compose(overrides: Sequence[str]) -> Settings:
     from hydra.errors import HydraException
     from omegaconf.errors import OmegaConfBaseException
 
+    from rovsim.application.conf_search import first_folder
+
     try:
-        with initialize_config_dir(str(CONF), version_base="1.3"):
+        with initialize_config_dir(first_folder(), version_base="1.3"):
             return settings_of(hydra_compose("config", overrides=list(overrides)))
     except (HydraException, OmegaConfBaseException) as error:
         raise BadInput(
@@ -156,7 +157,7 @@ def _nearest_override(overrides: Sequence[str]) -> str:
     """What an override that Hydra refused was probably meant to be."""
     for word in overrides:
         key, _, value = word.lstrip("+~").partition("=")
-        options = sorted(path.stem for path in (CONF / key).glob("*.yaml")) if key else []
+        options = conf_names(key) if key else []
         if options and value not in options:
             return nearest(value, options)
         if not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
@@ -170,7 +171,7 @@ def _keys() -> list[str]:
     """Every key of the default configuration, dotted, and every group."""
     from rovsim.core.mappings import flattened
 
-    groups = [path.name for path in CONF.iterdir() if path.is_dir()]
+    groups = [path.name for folder in conf_folders() for path in folder.iterdir() if path.is_dir()]
     return [*groups, *flattened(compose([]).model_dump(mode="json"))]
 
 

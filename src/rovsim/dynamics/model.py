@@ -22,7 +22,7 @@ from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual, StoredResidual, read_residual
 from rovsim.dynamics.mocap_view import MocapView
-from rovsim.dynamics.vehicle import VEHICLES, Thrusters, Vehicle, check_layout, load_vehicle
+from rovsim.dynamics.vehicle import Thrusters, Vehicle, check_layout, known_vehicle, load_vehicle
 
 SCHEMA = "rovsim.model/1"
 
@@ -177,11 +177,10 @@ class Model:
 
     def content(self) -> dict[str, Any]:
         """A model file's content, without a residual."""
-        known = (VEHICLES / f"{self.vehicle.name}.yaml").is_file() and (
-            load_vehicle(self.vehicle.name) == self.vehicle
-        )
+        name = self.vehicle.name
+        known = known_vehicle(name) is not None and load_vehicle(name) == self.vehicle
         content: dict[str, Any] = {"schema": SCHEMA}
-        content["vehicle"] = self.vehicle.name if known else self.vehicle.model_dump(mode="json")
+        content["vehicle"] = name if known else self.vehicle.model_dump(mode="json")
         content["effects"] = [entry.plain() for entry in self.entries]
         return content
 

@@ -11,14 +11,13 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_yaml
 from rovsim.core.schema import Section, checked
+from rovsim.core.shipped import conf_file, conf_names
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.base import Coefficients, Effect
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.rigid_body import RigidBody
-
-VEHICLES = Path(__file__).parents[3] / "conf" / "vehicle"
 
 Triple = tuple[float, float, float]
 Six = tuple[float, float, float, float, float, float]
@@ -160,22 +159,24 @@ class Thrusters(Coefficients):
         return force
 
 
+def known_vehicle(name: str) -> Path | None:
+    """The file of a vehicle that has a name, None if there is none."""
+    return conf_file(f"vehicle/{name}.yaml")
+
+
 def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
     """Load a vehicle by its name in conf/vehicle/, or by a path (relative to `beside`).
 
     Raises:
         BadInput: no such vehicle, or its file does not describe one.
     """
-    path = VEHICLES / f"{name}.yaml"
+    path = known_vehicle(name) or (beside or Path()) / name
     if not path.is_file():
-        path = (beside or Path()) / name
-    if not path.is_file():
-        known = sorted(p.stem for p in VEHICLES.glob("*.yaml"))
         raise BadInput(
             f"unknown vehicle '{name}'",
             where=beside or "vehicle",
             expected="a name in conf/vehicle/ or the path of a vehicle file",
-            remedy=nearest(name, known),
+            remedy=nearest(name, conf_names("vehicle")),
         )
     vehicle = checked(Vehicle, read_yaml(path), path)
     check_layout(vehicle, path)

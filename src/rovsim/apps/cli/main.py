@@ -127,8 +127,8 @@ def _sweep(overrides: list[str]) -> None:
     """Let Hydra run a command once for every combination of the given values."""
     import hydra
 
-    from rovsim.application.settings import CONF
+    from rovsim.application.conf_search import first_folder
     from rovsim.apps.cli.sweep import job
 
     sys.argv = ["rovsim", "--multirun", *overrides]
-    hydra.main(version_base="1.3", config_path=str(CONF), config_name="config")(job)()
+    hydra.main(version_base="1.3", config_path=first_folder(), config_name="config")(job)()

@@ -8,13 +8,14 @@ from nicegui import ui
 
 from rovsim.apps.workbench.parts import computed, formula, heading, section, table, text, words
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.shipped import shipped
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.reporting.catalogue.page import PICTURES, chaptered, unit
 
 TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look like?"
-DRAWN = Path(__file__).parents[4] / "docs" / PICTURES  # by `make catalogue`
+DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`
 
 
 async def show(bench: Workbench) -> None:
