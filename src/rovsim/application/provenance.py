@@ -3,7 +3,7 @@
 import hashlib
 import platform
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Sequence
 
@@ -62,9 +62,17 @@ def _file(module: str) -> Path:
     return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
 
 
+def _version(package: str) -> str | None:
+    """None where it is not installed: a learner's library is an extra."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
 def provenance(settings: Section) -> dict[str, Any]:
     """Settings, code and versions behind a result; settings without influence are left out."""
-    packages = {name: version(name) for name in PACKAGES}
+    packages = {name: installed for name in PACKAGES if (installed := _version(name))}
     versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
     chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
     code = digest("rovsim", effects=getattr(settings, "effect_files", ()))

@@ -11,6 +11,7 @@ from numpy import ndarray as Array
 
 import rovsim.learning
 from rovsim.core.errors import BadInput, nearest
+from rovsim.core.extras import require
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.learned.checks import OUTPUT_AXES, checked_rows, posterior
 from rovsim.dynamics.learned.features import FeatureSettings
@@ -136,8 +137,9 @@ def library_of(residual: Residual) -> Predict:
     """The library's own prediction, rebuilt from the stored arrays.
 
     Raises:
-        BadInput: no learner here has these settings.
+        BadInput: no learner here has these settings, or its library is not installed.
     """
+    require("learn", by=f"residual={residual.kind}")
     return learner(residual.kind).library_from(residual.arrays, settings_of(residual))
 
 
@@ -158,8 +160,10 @@ def train(
         progress: called with rounds done and rounds in all.
 
     Raises:
-        BadInput: rows that are not finite, do not fit together or are too few.
+        BadInput: rows that are not finite, do not fit together or are too few; or the learner's
+            library is not installed.
     """
+    require("learn", by=f"residual={settings.kind}")
     X, Y = checked_rows(X, settings.features, finite=True), np.asarray(Y, dtype=np.float64)
     if Y.shape != (len(X), OUTPUT_AXES) or not np.isfinite(Y).all():
         raise BadInput(

@@ -8,6 +8,7 @@ import numpy as np
 from filelock import FileLock
 
 from rovsim.application.settings import TrackingSettings
+from rovsim.core.extras import require
 
 HORIZONS = ("open_loop", "0.5", "2", "5")
 
@@ -83,6 +84,7 @@ def _log(client, run_id: str, params: Mapping, metrics: Mapping, files: Iterable
 
 
 def _client(settings: TrackingSettings):
+    require("tracking", by="tracking.uri")
     os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")
     import logging
 

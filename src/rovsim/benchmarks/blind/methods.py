@@ -1,11 +1,10 @@
 """Who is asked: a method reads a campaign folder and answers in the form of diagnosis.json."""
 
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Callable, Sequence
 
-from rovsim.core.errors import BadInput
+from rovsim.core.extras import require
 
 Answer = Callable[[Path, Path], dict[str, Any]]
 
@@ -39,26 +38,18 @@ def _diagnosis() -> Method:
 
 
 def _stlsq() -> Method:
-    from rovsim.benchmarks.blind.sparse import stlsq
-
-    return _regression("stlsq", stlsq)
+    return _regression("stlsq")
 
 
 def _frols() -> Method:
-    from rovsim.benchmarks.blind.sparse import frols
-
-    return _regression("frols", frols)
+    return _regression("frols")
 
 
-def _regression(name: str, answer: Answer) -> Method:
-    if find_spec("pysindy") is None:
-        raise BadInput(
-            "PySINDy is not installed",
-            where=f"blind.methods, {name}",
-            expected="the packages of environment.lock",
-            remedy="Run `make setup`, or ask for blind.methods=[diagnosis] alone.",
-        )
-    return Method(name, answer, ("rovsim.benchmarks.blind.sparse",))
+def _regression(name: str) -> Method:
+    require("benchmark", by=f"blind.methods, {name}")
+    from rovsim.benchmarks.blind import sparse
+
+    return Method(name, getattr(sparse, name), ("rovsim.benchmarks.blind.sparse",))
 
 
 _METHODS = {"diagnosis": _diagnosis, "stlsq": _stlsq, "frols": _frols}

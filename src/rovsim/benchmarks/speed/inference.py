@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy import ndarray as Array
-from threadpoolctl import threadpool_limits
 
 from rovsim.benchmarks.speed import libraries
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
@@ -41,6 +40,8 @@ class Clock:
 
     def time(self, name: str, call: Callable, points: int, seconds: float) -> dict[str, Any]:
         """Time one way under the name@points."""
+        from threadpoolctl import threadpool_limits
+
         effort = self.effort
         # one query has no work for two threads, and waiting for a second costs milliseconds
         with threadpool_limits(1), as_a_control_loop() as self.scheduling:

@@ -3,7 +3,8 @@
 rovsim bench [out=results] [bench.calls=100000] [bench.seconds=60] [bench.sweep_seconds=2]
 
 Writes results/bench.json, and its table and plots into the page bench.page. The data are residual
-features of the default campaign, flown for bench.duration s a run.
+features of the default campaign, flown for bench.duration s a run. Needs the extra
+rovsim[benchmark].
 """
 
 from pathlib import Path
@@ -21,6 +22,7 @@ from rovsim.benchmarks.speed.inference import GP, Effort, inference
 from rovsim.benchmarks.speed.machine import machine
 from rovsim.benchmarks.speed.page import write_page
 from rovsim.benchmarks.speed.replay import replay_speeds
+from rovsim.core.extras import require
 from rovsim.core.files import write_json
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
@@ -32,6 +34,7 @@ LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 fea
 
 def run(settings: Settings) -> None:
     """Record the campaign, train on its train runs, time on its test runs."""
+    require("benchmark", "learn", by="rovsim bench")
     model, found = _samples(settings)
     how = settings.bench
     pairs = _pairs(found, FeatureSettings()).drawn()

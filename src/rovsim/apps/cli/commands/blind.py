@@ -4,7 +4,8 @@ rovsim blind [blind.suite=quick|standard|full] [blind.seeds=reporting|developmen
              [blind.methods=[diagnosis,stlsq,frols]] [blind.cores=2] [out=results/blind]
 
 One JSON per case and method in OUT/SEEDS/METHOD/; what is there and still true is not asked again.
-Writes OUT/summary.json, and of reporting seeds the tables of docs/benchmark_blind.md.
+Writes OUT/summary.json, and of reporting seeds the tables of docs/benchmark_blind.md. The methods
+beside this project's own need the extra rovsim[benchmark].
 """
 
 from pathlib import Path

@@ -11,12 +11,14 @@ from pathlib import Path
 from rovsim.application.settings import Settings
 from rovsim.apps.fmi.unit import write_unit
 from rovsim.core.errors import BadInput
+from rovsim.core.extras import require
 from rovsim.dynamics.model import BUILT_IN, load_model
 from rovsim.dynamics.vehicle import load_vehicle
 
 
 def run(settings: Settings) -> None:
     """Write the unit."""
+    require("fmi", by="rovsim fmu")
     spec = settings.model
     if not isinstance(spec, str) or spec == "zero_acceleration" or settings.effect_files:
         raise BadInput(

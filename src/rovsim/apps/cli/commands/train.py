@@ -3,7 +3,8 @@
 rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6dof|all out=OUT
 
 Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, and
-an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof.
+an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof. Needs
+the extras rovsim[learn,tracking].
 """
 
 from rovsim.application.loading import measured, models, results_folder
@@ -12,12 +13,14 @@ from rovsim.application.settings import Settings
 from rovsim.application.tracking import track
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
+from rovsim.core.extras import require
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 
 
 def run(settings: Settings) -> None:
     """Train, write, score, and log."""
+    require("learn", "tracking", by="rovsim train")
     data = measured(settings)
     chosen = models(settings, data.vehicle)
     if len(chosen) != 1:

@@ -4,7 +4,8 @@ rovsim ui [campaign=DIR] [model=[nominal,FILE,…]] [diagnosis=OUT/diagnosis.jso
           [open=true]
 
 Served on this machine only, without the internet, until Ctrl+C. Without a campaign it offers those
-near here, and one to practise on. What it computes lies in `out` (results/CAMPAIGN/ui).
+near here, and one to practise on. What it computes lies in `out` (results/CAMPAIGN/ui). Needs the
+extra rovsim[workbench].
 """
 
 import socket
@@ -13,10 +14,12 @@ from rovsim.application.settings import Settings
 from rovsim.apps.cli.output import say
 from rovsim.apps.workbench import HOST
 from rovsim.core.errors import BadInput
+from rovsim.core.extras import require
 
 
 def run(settings: Settings) -> None:
     """Serve until interrupted."""
+    require("workbench", by="rovsim ui")
     _free(settings.port)
     from rovsim.apps.workbench.app import serve
 
