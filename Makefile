@@ -5,7 +5,11 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
+<<<<<<< HEAD
 .PHONY: help setup study thesis test test-ui ui screenshots check bench bench-ui benchmark-blind catalogue clean lock
+=======
+.PHONY: help setup study thesis test test-ui wheel-test ui screenshots check bench bench-ui benchmark-hidden catalogue clean lock
+>>>>>>> b1bad7c (Test the wheel in an empty environment, without extras)
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -14,6 +18,7 @@ help:
 	@echo "make test    every test"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
 	@echo "make check   formatting, lint, types, layers"
+	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
 	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full"
 	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
@@ -38,6 +43,9 @@ thesis: setup
 
 test: setup
 	$(BIN)/python -m pytest -n $(CORES) --dist worksteal
+
+wheel-test: setup
+	.ci/wheel-test $(PYTHON)
 
 ui: setup
 	$(BIN)/rovsim ui $(if $(CAMPAIGN),campaign=$(CAMPAIGN))
