@@ -5,11 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-<<<<<<< HEAD
-.PHONY: help setup study thesis test test-ui ui screenshots check bench bench-ui benchmark-blind catalogue clean lock
-=======
-.PHONY: help setup study thesis test test-ui wheel-test ui screenshots check bench bench-ui benchmark-hidden catalogue clean lock
->>>>>>> b1bad7c (Test the wheel in an empty environment, without extras)
+.PHONY: help setup study thesis test test-ui wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
