@@ -14,21 +14,22 @@ PACKAGES = {
 }
 
 
+def installed(extra: str) -> bool:
+    """Whether all packages of an extra are here."""
+    return all(find_spec(name) is not None for name in PACKAGES[extra])
+
+
 def require(*extras: str, by: str) -> None:
-    """Make sure that the packages of these extras are installed; `by` says what needs them.
+    """Make sure that these extras are installed; `by` says what needs them.
 
     Raises:
         BadInput: one is missing; the message says what to install.
     """
-    missing = {
-        extra: packages
-        for extra in extras
-        if (packages := [name for name in PACKAGES[extra] if find_spec(name) is None])
-    }
+    missing = ",".join(extra for extra in extras if not installed(extra))
     if missing:
         raise BadInput(
-            f"{', '.join(name for names in missing.values() for name in names)} not installed",
+            f"the packages of the extra {missing} are not installed",
             where=by,
-            expected=f"the extra packages of rovsim[{','.join(missing)}]",
-            remedy=f"Install them: pip install 'rovsim[{','.join(missing)}]'.",
+            expected=f"rovsim[{missing}]",
+            remedy=f"Install it: pip install 'rovsim[{missing}]'.",
         )

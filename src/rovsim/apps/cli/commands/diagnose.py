@@ -2,9 +2,10 @@
 
 rovsim diagnose campaign=DIR out=OUT [model=nominal|FILE] [search.false_alarm=0.01]
 
-Writes OUT/diagnosis.json, figures, OUT/report.html and an MLflow run. Only train runs are used to
-decide; the test runs are opened once, for the errors that are reported. The model with the effects
-is then written by `rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`.
+Writes OUT/diagnosis.json, figures, OUT/report.html, and an MLflow run where rovsim[tracking] is
+installed. Only train runs are used to decide; the test runs are opened once, for the errors that
+are reported. The model with the effects is then written by `rovsim add
+diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 """
 
 from pathlib import Path
@@ -15,6 +16,7 @@ from rovsim.application.provenance import provenance
 from rovsim.application.settings import Settings
 from rovsim.application.tracking import track_diagnosis
 from rovsim.apps.cli.output import say
+from rovsim.core.extras import installed
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.of_campaign import Diagnosed
@@ -34,11 +36,12 @@ def run(settings: Settings) -> None:
     write_json(out / "diagnosis.json", found.content)
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
     say(settings, f"{terminal.diagnosed(found.content)}\n\n{files}", found.content)
-    with reported("logging to MLflow"):
-        track_diagnosis(
-            settings.tracking, data.campaign.name, chosen[0].name, found.content,
-            settings.diagnosing.model_dump(mode="json"), [out / "diagnosis.json", *shown],
-        )  # fmt: skip
+    if installed("tracking"):
+        with reported("logging to MLflow"):
+            track_diagnosis(
+                settings.tracking, data.campaign.name, chosen[0].name, found.content,
+                settings.diagnosing.model_dump(mode="json"), [out / "diagnosis.json", *shown],
+            )  # fmt: skip
 
 
 def _present(out: Path, data: Measured, found: Diagnosed, settings: Settings) -> list[Path]:

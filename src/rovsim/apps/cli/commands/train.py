@@ -3,8 +3,8 @@
 rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6dof|all out=OUT
 
 Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, and
-an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof. Needs
-the extras rovsim[learn,tracking].
+an MLflow run where rovsim[tracking] is installed. With -m, comma-separated values are swept:
+residual.k=1,3,5 control=3dof,6dof. Needs the extra rovsim[learn].
 """
 
 from rovsim.application.loading import measured, models, results_folder
@@ -13,14 +13,14 @@ from rovsim.application.settings import Settings
 from rovsim.application.tracking import track
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
-from rovsim.core.extras import require
+from rovsim.core.extras import installed, require
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 
 
 def run(settings: Settings) -> None:
     """Train, write, score, and log."""
-    require("learn", "tracking", by="rovsim train")
+    require("learn", by="rovsim train")
     data = measured(settings)
     chosen = models(settings, data.vehicle)
     if len(chosen) != 1:
@@ -37,18 +37,19 @@ def run(settings: Settings) -> None:
     replays = replayed(data, [base, corrected], settings)
     found = scored(list(data.motions.values()), replays)
     write_json(out / "comparison.json", found)
-    with reported("logging to MLflow"):
-        track(
-            settings.tracking,
-            experiment=data.campaign.name,
-            name=name,
-            tags={
-                "model": base.name,
-                "residual": settings.learner.kind,
-                "control": settings.control,
-            },
-            params=settings.residual | {"seed": settings.seed},
-            scores=found["models"]["model"]["runs"],
-            files=sorted(p for p in out.iterdir() if p.is_file()),
-        )
+    if installed("tracking"):
+        with reported("logging to MLflow"):
+            track(
+                settings.tracking,
+                experiment=data.campaign.name,
+                name=name,
+                tags={
+                    "model": base.name,
+                    "residual": settings.learner.kind,
+                    "control": settings.control,
+                },
+                params=settings.residual | {"seed": settings.seed},
+                scores=found["models"]["model"]["runs"],
+                files=sorted(p for p in out.iterdir() if p.is_file()),
+            )
     say(settings, str(out / "model.yaml"), {"model": str(out / "model.yaml")})
