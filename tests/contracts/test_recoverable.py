@@ -9,7 +9,7 @@ from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import hiding
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.procedure import FIRST_NOISE
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.dynamics.effects import built_in

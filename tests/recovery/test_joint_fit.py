@@ -8,7 +8,7 @@ from rovsim import AXES
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.procedure import FIRST_NOISE
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
@@ -36,10 +36,11 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     some = [c for c in list_candidates(runs) if c.effect.id in ("added_mass", "linear_damping")]
     known = linearise_candidates(bank, Hypothesis(base), some)
     workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
-    workspace, found, rivals = fit_jointly(workspace, base, [])
+    selection = fit_jointly(workspace, base, AXES)
+    found, bank = selection.found, selection.workspace.bank
     terms = {t.id: t.effect for t in found.hypothesis.terms}
     assert "thruster_gain" not in terms
-    assert all(r.deficit > 0.0 for r in rivals)
+    assert all(r.deficit > 0.0 for r in selection.rivals)
     loops, body = terms["onboard_control"], found.hypothesis.model.body
     for axis in AXES:
         pushed = loops[f"gain_{axis}"] * loops[f"bandwidth_{axis}"]
@@ -49,7 +50,7 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
         decay = loops[f"bandwidth_{axis}"] + body.linear[i] / body.M[i, i]
         true = WIDTH[axis] + base.body.linear[i] / base.body.M[i, i]
         assert decay == pytest.approx(true, rel=0.35), axis
-    again = fit_to_replays(found, workspace.bank)
+    again = fit_to_replays(found, bank)
     assert [t.id for t in again.hypothesis.terms] == [t.id for t in found.hypothesis.terms]
     assert np.isfinite(again.std).all()
     joint = [set(group) for group in group_joint_parameters(again)]

@@ -15,39 +15,30 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from rovsim import AXES
 from rovsim.diagnosis.checks.imitation import drop_imitations
 from rovsim.diagnosis.checks.residual_structure import Structure, find_structure
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.forward_selection import Rival, find_relevant, search
+from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit
-from rovsim.diagnosis.selection.held_out import cross_validate
+from rovsim.diagnosis.selection.held_out import drop_idle
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import Ranked, Selected, rank_alone, rank_selected
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
-from rovsim.diagnosis.selection.sensitivities import (
-    Sensitivities,
-    fit_remaining_noise,
-    linearise_candidates,
-)
+from rovsim.diagnosis.selection.rivals import Rival, Selection
+from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linearise_candidates
 from rovsim.diagnosis.selection.workspace import SearchWorkspace, propose
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
-from rovsim.measurement.recording.quality import EXCITED
 
 Stages = Callable[[str], None]
 
-# Turbulence that moves this vehicle by some mm/s2, and a usual motion capture: only a first guess.
-FIRST_NOISE = Noise(
-    np.array([0.02] * 3 + [0.05] * 3), np.ones(6), np.array([1e-3] * 3 + [3e-3] * 3)
-)
 POLISHED = 2  # times: the noise of the first is already the right one
-SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,11 +51,11 @@ class Diagnosis:
 
     base: Model
     fit: Fit | None
-    selected: list[Selected]
-    ranking: list[Ranked]
-    rivals: list[Rival]
-    structures: list[Structure]
-    still: list[str]
+    selected: Sequence[Selected]
+    ranking: Sequence[Ranked]
+    rivals: Sequence[Rival]
+    structures: Sequence[Structure]
+    still: Sequence[str]
     seconds: float
 
     @property
@@ -100,98 +91,67 @@ def diagnose(
     stage: Stages = lambda name: None,
 ) -> Diagnosis:
     """Find what a model lacks on the train runs of a campaign."""
-    runs, still, seconds = usable(train)
-    if not enough(still, seconds):
-        return Diagnosis(base, None, [], [], [], [], still, seconds)
+    usable = select_usable(train)
+    if not usable.enough:
+        return Diagnosis(base, None, [], [], [], [], usable.still, usable.seconds)
     stage("observing")
-    bank, sensitivities, noise = _observe(base, runs, between)
-    workspace = SearchWorkspace(bank, sensitivities, noise, settings)
+    workspace = _observe(base, usable, between, settings)
     nothing = workspace.fit(Hypothesis(base))
     alone = propose(workspace, nothing)
     stage("searching")
-    last, found, rivals = search(workspace, nothing, seed)
+    selection = search(workspace, nothing, seed)
     stage("checking")
-    strange: list[Structure] = []
-    reach = np.inf
-    if len(found.hypothesis.terms) < settings.most_effects:
-        found, strange = drop_imitations(last, _check(last, found))
-    else:
-        last, found, rivals = fit_jointly(last, base, still)
-        reach = REACH
-    rivals = [r for r in rivals if r.instead_of in {t.id for t in found.hypothesis.terms}]
-    found, bank = _polish(found, last.bank, reach)
-    structures = [*strange, *_check_structure(found, bank)]
+    selection, structures = _check(selection, base, usable)
+    found, bank = _polish(selection)
+    structures = [*structures, *_find_structure(found, bank)]
     if structures and found.hypothesis.terms:
         found = fit_to_replays(found, bank)
+    rivals = selection.named_rivals
     return Diagnosis(
-        base, found, rank_selected(found, rivals, runs, between),
-        rank_alone(workspace, nothing, alone, found), rivals, structures, still, seconds,
+        base, found, rank_selected(found, rivals, usable.runs, between),
+        rank_alone(workspace, nothing, alone, found), rivals, structures,
+        usable.still, usable.seconds,
     )  # fmt: skip
 
 
-def usable(train: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[str], float]:
-    """Runs with something to observe, axes that none of them moved, and how many seconds count."""
-    runs = [w for w in train if len(w.spans)]
-    seconds = float(sum(w.settled.sum() * w.period for w in runs))
-    return runs, find_unmoved(runs), seconds
-
-
-def enough(still: Sequence[str], seconds: float) -> bool:
-    """Whether anything can be judged."""
-    return seconds >= SHORTEST and len(still) < len(AXES)
-
-
-def find_unmoved(runs: Sequence[ObservedRun]) -> list[str]:
-    """Axes that no train run moved: nothing can be said about them."""
-    moved = np.zeros(len(AXES), bool)
-    for one in runs:
-        moved |= np.std(one.motion.nu[one.motion.usable], axis=0) > EXCITED
-    return [axis for axis, yes in zip(AXES, moved, strict=True) if not yes]
-
-
-def _observe(base: Model, runs, between) -> tuple[FilterBank, Sensitivities, Noise]:
+def _observe(
+    base: Model, usable: UsableRuns, between: Between, settings: SearchSettings
+) -> SearchWorkspace:
     """Columns of the candidates, and the noise that is left when all of them may act at once.
 
     The columns are made with filters that take all the base misses for noise: these hold it close
     to the measurement. The filters of the search then suit the noise that was found.
     """
-    first = FilterBank.design(runs, base, FIRST_NOISE, between)
+    first = FilterBank.design(usable.runs, base, FIRST_NOISE, between)
     noise, _ = first.fit_noise([e[0] for e in first.evaluate([base])], FIRST_NOISE)
     close = first.redesign(base, noise)
-    known = linearise_candidates(close, Hypothesis(base), list_candidates(runs))
-    noise = fit_remaining_noise(known, Hypothesis(base), noise)
-    return close.redesign(base, noise), known, noise
+    sensitivities = linearise_candidates(close, Hypothesis(base), list_candidates(usable.runs))
+    noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
+    return SearchWorkspace(close.redesign(base, noise), sensitivities, noise, settings)
 
 
-def _check(workspace: SearchWorkspace, found: Fit) -> Fit:
-    """Without effects that do not help on held-out blocks, or that no user would see."""
-    while found.hypothesis.terms:
-        h = found.hypothesis
-        smaller = [workspace.fit(h.without(i)) for i in range(len(h.terms))]
-        noticed = find_relevant(workspace, found, [h.without(i).model for i in range(len(h.terms))])
-        idle = [
-            i
-            for i, one in enumerate(smaller)
-            if not noticed[i] or cross_validate(found, one, workspace.bank) <= 0.0
-        ]
-        if not idle:
-            break
-        found = workspace.fit(h.without(idle[-1]))  # the one that came last
-    return found
+def _check(
+    selection: Selection, base: Model, usable: UsableRuns
+) -> tuple[Selection, list[Structure]]:
+    """What of a selection stands, and the laws without a name that it only imitated."""
+    if selection.complete:
+        return drop_imitations(drop_idle(selection))
+    return fit_jointly(selection.workspace, base, usable.moved), []
 
 
-def _polish(found: Fit, bank: FilterBank, reach: float) -> tuple[Fit, FilterBank]:
+def _polish(selection: Selection) -> tuple[Fit, FilterBank]:
     """Fitted once more under its own noise, with filters that suit it and the model's damping."""
-    fresh = bank
+    found, bank = selection.found, selection.workspace.bank
+    reach = np.inf if selection.complete else REACH
     for _ in range(POLISHED):
-        fresh = bank.redesign(found.hypothesis.model, found.noise)
-        found = fit(found.hypothesis, fresh, found.noise, reach)
-    return found, fresh
+        bank = selection.workspace.bank.redesign(found.hypothesis.model, found.noise)
+        found = fit(found.hypothesis, bank, found.noise, reach)
+    return found, bank
 
 
-def _check_structure(found: Fit, bank: FilterBank) -> list[Structure]:
+def _find_structure(found: Fit, bank: FilterBank) -> list[Structure]:
     """Structure in the innovations of the final model."""
-    counts = np.cumsum([int(w.settled.sum()) for w in bank.runs])[:-1]
+    counts = np.cumsum([int(run.settled.sum()) for run in bank.runs])[:-1]
     white = bank.whiten(found.e, found.noise)
     J = bank.whiten(found.J, found.noise)
     return find_structure(

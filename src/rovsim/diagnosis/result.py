@@ -6,7 +6,7 @@ from rovsim.diagnosis.advice import next_experiment
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.procedure import Diagnosis, Ranked, Selected
-from rovsim.diagnosis.selection.forward_selection import SURE, Rival
+from rovsim.diagnosis.selection.rivals import SURE, Rival
 
 SCHEMA = "rovsim.diagnosis/1"
 LISTED = 10  # effects of the ranking
@@ -39,7 +39,7 @@ def content(
         "unexplained": unexplained(found),
         "next_experiment": next_experiment(found, alike, joint),
         "error": {name: _rounded(value) for name, value in error.items()},
-        "not_excited": found.still,
+        "not_excited": list(found.still),
         "rivals": [
             {"effect": r.effect, "instead_of": r.instead_of, "deficit": _rounded(r.deficit)}
             for r in found.rivals

@@ -1,7 +1,8 @@
 """A hypothesis: a base model and further effects, some of whose parameters are to be fitted."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Mapping, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,12 +11,24 @@ from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.model import Model
 
 
+class Bounds(NamedTuple):
+    """Least and greatest value that a fit may give a parameter, in its unit."""
+
+    low: float
+    high: float
+
+
 @dataclass(frozen=True, eq=False)
 class Term:
-    """An effect with its values, of which the parameters in `free` may change."""
+    """An effect with its values, of which the parameters in `free` may change.
+
+    Each within the range that its effect declares, or within `bounds`, by name, where this vehicle
+    allows less.
+    """
 
     effect: Effect
     free: tuple[str, ...]
+    bounds: Mapping[str, Bounds] = field(default_factory=dict)
 
     @property
     def id(self) -> str:
@@ -24,9 +37,13 @@ class Term:
 
     @property
     def parameters(self) -> list[Parameter]:
-        """The free parameters."""
+        """The free parameters, with the range that the fit keeps to."""
         by_name = {p.name: p for p in self.effect.parameters}
-        return [by_name[name] for name in self.free]
+        return [self._bounded(by_name[name]) for name in self.free]
+
+    def _bounded(self, parameter: Parameter) -> Parameter:
+        low, high = self.bounds.get(parameter.name, (parameter.low, parameter.high))
+        return replace(parameter, low=low, high=high)
 
     @property
     def x(self) -> Array:
@@ -46,7 +63,7 @@ class Term:
         defaults = {p.name: p.default for p in self.effect.parameters}
         values = {k: given.get(k, defaults[k]) + v - defaults[k] for k, v in added.items()}
         free = (*self.free, *(name for name in more.free if name not in self.free))
-        return Term(self.effect.with_values(values), free)
+        return replace(self, effect=self.effect.with_values(values), free=free)
 
     def at(self, x: Array) -> "Term":
         """The same term at other scaled values, kept inside their range."""

@@ -36,6 +36,12 @@ class Noise:
     reading: Array
 
 
+# Turbulence that moves this vehicle by some mm/s2, and a usual motion capture: only a first guess.
+FIRST_NOISE = Noise(
+    np.array([0.02] * 3 + [0.05] * 3), np.ones(6), np.array([1e-3] * 3 + [3e-3] * 3)
+)
+
+
 @dataclass(frozen=True, eq=False)
 class Tuning:
     """One filter an axis, for one noise and one damping."""

@@ -1,14 +1,15 @@
 """Which effects are missing: add the most likely one, refit all, try to swap, drop what is idle."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.workspace import (
     Proposal,
     SearchWorkspace,
@@ -18,7 +19,6 @@ from rovsim.diagnosis.selection.workspace import (
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
-SURE = 6.0  # twice a log likelihood: odds of 20 to 1
 SWAP = 1.0  # in twice the log likelihood: less is not worth another name
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 
@@ -65,7 +65,7 @@ def without_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
         defaults = {p.name: p.default for p in term.parameters if p.name in idle}
         left = tuple(name for name in term.free if name not in idle)
         if left and (not idle or {} in term.effect.starts):
-            terms.append(Term(term.effect.with_values(defaults), left))
+            terms.append(replace(term, effect=term.effect.with_values(defaults), free=left))
     return Hypothesis(h.base, tuple(terms))
 
 
@@ -101,18 +101,6 @@ def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Mode
     return np.max(rmse[1:] / rmse[0], axis=1) - 1.0 > workspace.settings.relevant
 
 
-@dataclass(frozen=True)
-class Rival:
-    """An effect that could stand in for a selected one, and by how much it is less likely.
-
-    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1.
-    """
-
-    effect: str
-    instead_of: str
-    deficit: float
-
-
 def contest(workspace: SearchWorkspace, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close."""
     rivals = []
@@ -135,13 +123,11 @@ def _others(workspace: SearchWorkspace, rest: Fit, name: str, trials: int) -> li
     return close([p for p in ranked if p.term.id != name], trials)
 
 
-def search(
-    workspace: SearchWorkspace, base: Fit, seed: int
-) -> tuple[SearchWorkspace, Fit, list[Rival]]:
+def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
     """From the base to the model to which nothing can be added, swapped or taken away.
 
-    Also the workspace as it is then: its noise and filters follow what is found. Rivals only where
-    it came to an end before there were `most_effects`.
+    The workspace's noise and filters follow what is found. Incomplete, and without rivals, where
+    there were `most_effects` before it came to an end: these names are not what is missing.
     """
     current, settings = base, workspace.settings
     while len(current.hypothesis.terms) < settings.most_effects:
@@ -149,10 +135,9 @@ def search(
         threshold = max(0.0, float(np.quantile(by_chance, 1.0 - settings.false_alarm)))
         found = add_best(workspace, current, threshold)
         if found is None:
-            break
+            current, rivals = contest(workspace, current, settings.trials)
+            return Selection(workspace, current, tuple(rivals), complete=True)
         workspace = workspace.renew(found)
         again = workspace.fit(found.hypothesis)
         current, _ = contest(workspace, again, 1)  # the likeliest other name
-    else:
-        return workspace, current, []  # no end: these names are not what is missing
-    return workspace, *contest(workspace, current, settings.trials)
+    return Selection(workspace, current, (), complete=False)

@@ -1,5 +1,7 @@
 """Does an effect also help where it was not fitted? Blocks of the train runs take turns."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy import ndarray as Array
 
@@ -7,9 +9,29 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import blocks
+from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.rivals import Selection
 
 FOLDS = 6
+
+
+def drop_idle(selection: Selection) -> Selection:
+    """Without effects that do not help on held-out blocks, or that no user would see."""
+    workspace, found = selection.workspace, selection.found
+    while found.hypothesis.terms:
+        fewer = [found.hypothesis.without(i) for i in range(len(found.hypothesis.terms))]
+        smaller = [workspace.fit(one) for one in fewer]
+        noticed = find_relevant(workspace, found, [one.model for one in fewer])
+        idle = [
+            one
+            for one, seen, rest in zip(fewer, noticed, smaller, strict=True)
+            if not seen or cross_validate(found, rest, workspace.bank) <= 0.0
+        ]
+        if not idle:
+            break
+        found = workspace.fit(idle[-1])  # without the one that came last
+    return replace(selection, found=found)
 
 
 def cross_validate(found: Fit, smaller: Fit, bank: FilterBank) -> float:

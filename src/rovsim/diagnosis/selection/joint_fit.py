@@ -11,11 +11,11 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.forward_selection import Rival, without_parameters
+from rovsim.diagnosis.selection.forward_selection import without_parameters
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, free_terms
+from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
 from rovsim.dynamics.model import Model
@@ -27,34 +27,31 @@ ALWAYS = (
 )  # fmt: skip
 
 
-def fit_jointly(
-    workspace: SearchWorkspace, base: Model, still: Sequence[str]
-) -> tuple[SearchWorkspace, Fit, list[Rival]]:
+def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> Selection:
     """The likeliest of all joint fits, pruned; the other ways to act are its rivals.
 
     Args:
         workspace: where the search one by one ended.
         base: the model that is diagnosed.
-        still: axes that nobody moved; nothing can be said about them.
+        moved: axes about which something can be said.
     """
     kind = workspace.bank.runs[0].motion.commands.kind
-    tried = [_joint(workspace, start) for start in _starts(base, still, kind)]
+    tried = [_joint(workspace, start) for start in _starts(base, moved, kind)]
     tried.sort(key=lambda one: one[0].score(one[1]), reverse=True)
     best, found = tried[0]
     found = _prune(best, found)
     named = {term.id for term in found.hypothesis.terms}
-    rivals = [
+    rivals = tuple(
         Rival(term.id, own.id, best.score(found) - other.score(fit))
         for other, fit in tried[1:]
         for own in found.hypothesis.terms
         for term in fit.hypothesis.terms
         if own.id in ACTUATION and term.id in ACTUATION and term.id not in named
-    ]
-    return best, found, rivals
+    )
+    return Selection(best, found, rivals, complete=False)
 
 
-def _starts(base: Model, still: Sequence[str], kind: str) -> list[Hypothesis]:
-    moved = [axis for axis in AXES if axis not in still]
+def _starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
     common = free_terms(base, moved, ALWAYS)
     found = [(*common, *free_terms(base, moved, ACTUATION[:1]))]
     if kind == "demand":

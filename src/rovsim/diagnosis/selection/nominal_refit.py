@@ -8,19 +8,21 @@ compare with and not a diagnosis.
 from dataclasses import replace
 from typing import Sequence
 
-from rovsim import AXES
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.procedure import FIRST_NOISE, enough, usable
+from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.gauss_newton import fit
-from rovsim.diagnosis.selection.nominal_terms import DRAG, ONE_GAIN, free_terms, kept_between
+from rovsim.diagnosis.selection.nominal_terms import DRAG, ONE_GAIN, free_terms
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.effects import effect
 from rovsim.dynamics.model import Model
 
 STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center")
-GAINS = 0.5, 2.0  # a curve measured on the bench; gain, masses and drag are known to one scale only
+GAINS = Bounds(
+    0.5, 2.0
+)  # a curve measured on the bench; gain, masses and drag are known to one scale only
 ROUNDS = 3  # the filters suit the noise of the round before
 
 
@@ -29,28 +31,28 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun], between: Between) -
 
     An axis that no run moved keeps its coefficients; with too little to judge all of them stay.
     """
-    runs, still, seconds = usable(train)
-    if not enough(still, seconds):
+    usable = select_usable(train)
+    if not usable.enough:
         return base.called("refitted")
-    here, noise = _start(base, still), FIRST_NOISE
+    here, noise = _start(base, usable.moved), FIRST_NOISE
     for _ in range(ROUNDS):
-        found = fit(here, FilterBank.design(runs, base, noise, between), noise)
-        here, noise = _held(found.hypothesis), found.noise
+        found = fit(here, FilterBank.design(usable.runs, base, noise, between), noise)
+        here, noise = _hold(found.hypothesis), found.noise
     return here.model.called("refitted")
 
 
-def _start(base: Model, still: Sequence[str]) -> Hypothesis:
+def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     """All parameters free and unchanged."""
-    terms = free_terms(base, [axis for axis in AXES if axis not in still], STATED)
-    gain = Term(kept_between(effect("thruster_gain"), *GAINS), ONE_GAIN)
+    terms = free_terms(base, moved, STATED)
+    gain = Term(effect("thruster_gain")(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAINS))
     return Hypothesis(base, (*terms, gain))
 
 
-def _held(found: Hypothesis) -> Hypothesis:
+def _hold(found: Hypothesis) -> Hypothesis:
     """With what came to rest at a bound held there."""
 
     def inside(term: Term) -> tuple[str, ...]:
         known = zip(term.parameters, (term.effect[name] for name in term.free), strict=True)
         return tuple(p.name for p, value in known if p.low < value < p.high)
 
-    return replace(found, terms=tuple(Term(t.effect, inside(t)) for t in found.terms))
+    return replace(found, terms=tuple(replace(t, free=inside(t)) for t in found.terms))

@@ -1,0 +1,40 @@
+"""Where a search ended, and what else the effects it found could be."""
+
+from dataclasses import dataclass
+
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+
+SURE = 6.0  # twice a log likelihood: odds of 20 to 1
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An effect that could stand in for a selected one, and by how much it is less likely.
+
+    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1.
+    """
+
+    effect: str
+    instead_of: str
+    deficit: float
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """What a search found, its rivals, and the workspace as it was then.
+
+    `complete`: nothing could be added, swapped or taken away. If not, more is missing than effects
+    found one by one can name, and what was found is not to be named.
+    """
+
+    workspace: SearchWorkspace
+    found: Fit
+    rivals: tuple[Rival, ...]
+    complete: bool
+
+    @property
+    def named_rivals(self) -> list[Rival]:
+        """The rivals of what is still in the model."""
+        named = {term.id for term in self.found.hypothesis.terms}
+        return [rival for rival in self.rivals if rival.instead_of in named]
