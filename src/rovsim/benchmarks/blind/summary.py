@@ -4,9 +4,12 @@ from dataclasses import dataclass
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import numpy as np
+from scipy.optimize import isotonic_regression
 
 from rovsim.benchmarks.blind.case import Case
 from rovsim.benchmarks.blind.score import ParameterScore, Score, score
+
+HALF = 0.5 - 1e-12  # a share of one half is one, however a mean of shares is rounded
 
 
 @dataclass(frozen=True)
@@ -135,24 +138,12 @@ def detection_limit(found: Sequence[tuple[float, bool]]) -> float | None:
         return None
     counts = np.array([[sum(s == x for s, _ in found)] for x in strengths], dtype=float).ravel()
     shares = np.array([np.mean([ok for s, ok in found if s == x]) for x in strengths])
-    rising = _rising(shares, counts)
-    if rising[-1] < 0.5:
+    rising = isotonic_regression(shares, weights=counts).x  # the nearest shares that never fall
+    if rising[-1] < HALF:
         return None
-    k = int(np.argmax(rising >= 0.5))
+    k = int(np.argmax(rising >= HALF))
     if k == 0:
         return float(strengths[0])
     part = (0.5 - rising[k - 1]) / (rising[k] - rising[k - 1])
     a, b = np.log(strengths[k - 1]), np.log(strengths[k])
     return float(np.exp(a + part * (b - a)))
-
-
-def _rising(shares: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """Nearest shares that never fall (pool adjacent violators)."""
-    blocks: list[list[float]] = []  # mean, weight, length
-    for mean, weight in zip(shares, counts, strict=True):
-        blocks.append([float(mean), float(weight), 1])
-        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
-            b, a = blocks.pop(), blocks.pop()
-            w = a[1] + b[1]
-            blocks.append([(a[0] * a[1] + b[0] * b[1]) / w, w, a[2] + b[2]])
-    return np.concatenate([np.full(int(n), m) for m, _, n in blocks])
