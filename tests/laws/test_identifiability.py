@@ -7,7 +7,7 @@ from rovsim.diagnosis.advice import next_experiment
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.procedure import Diagnosis
+from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.dynamics.effects import effect
@@ -53,7 +53,7 @@ def test_a_value_that_is_surely_there_is_known_by_itself():
 
 
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
-    found = Diagnosis(fit(alike()).hypothesis.base, fit(alike()), [], [], [], [], [], 60.0)
+    found = TrainDiagnosis(fit(alike()).hypothesis.base, fit(alike()), [], [], [], [], [], 60.0)
     loops = [f"onboard_control.gain_{axis}" for axis in AXES[:2]]
     advice = next_experiment(found, [], [["added_mass.surge", "net_buoyancy.force"], loops])
     reveals = effect("onboard_control").revealed_by

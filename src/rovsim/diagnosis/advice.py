@@ -2,12 +2,12 @@
 
 from typing import Sequence
 
-from rovsim.diagnosis.procedure import Diagnosis
+from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.dynamics.effects import effect
 
 
 def next_experiment(
-    found: Diagnosis, groups: Sequence[Sequence[str]], joint: Sequence[Sequence[str]]
+    found: TrainDiagnosis, groups: Sequence[Sequence[str]], joint: Sequence[Sequence[str]]
 ) -> str:
     """A few sentences.
 
@@ -51,7 +51,7 @@ def _apart(joint: Sequence[Sequence[str]]) -> str:
     return f"To know {', '.join(group)} one by one: {effect(most).revealed_by}"
 
 
-def _confirm(found: Diagnosis) -> str:
+def _confirm(found: TrainDiagnosis) -> str:
     if not found.selected:
         return "Nothing is needed: drive faster or in other places to look for rarer effects."
     weakest = min(found.selected, key=lambda one: one.error_reduction)

@@ -6,7 +6,7 @@ from typing import Any, Callable, Mapping, Sequence
 
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
-from rovsim.diagnosis.procedure import Diagnosis, diagnose
+from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
 from rovsim.diagnosis.result import content
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.model import Model
@@ -70,7 +70,7 @@ def diagnosed(
 
 
 def _steps(
-    found: Diagnosis, test: list[ObservedRun], settings: DiagnosisSettings
+    found: TrainDiagnosis, test: list[ObservedRun], settings: DiagnosisSettings
 ) -> list[dict[str, Any]]:
     """The base, the effects one after the other, and the noise floor, on the test runs."""
     motions = [w.motion for w in test]
@@ -84,7 +84,10 @@ def _steps(
 
 
 def _floor(
-    found: Diagnosis, test: list[ObservedRun], settings: DiagnosisSettings, reached: list[float]
+    found: TrainDiagnosis,
+    test: list[ObservedRun],
+    settings: DiagnosisSettings,
+    reached: list[float],
 ) -> float | None:
     """At most what was reached: where a model came below, part of the noise is structure."""
     if found.fit is None or not test:

@@ -42,7 +42,7 @@ POLISHED = 2  # times: the noise of the first is already the right one
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class TrainDiagnosis:
     """What was found on the train runs.
 
     `fit` of the base and all selected effects, None where there was too little to judge; `still`
@@ -89,11 +89,11 @@ def diagnose(
     between: Between,
     seed: int = 0,
     stage: Stages = lambda name: None,
-) -> Diagnosis:
+) -> TrainDiagnosis:
     """Find what a model lacks on the train runs of a campaign."""
     usable = select_usable(train)
     if not usable.enough:
-        return Diagnosis(base, None, [], [], [], [], usable.still, usable.seconds)
+        return TrainDiagnosis(base, None, [], [], [], [], usable.still, usable.seconds)
     stage("observing")
     workspace = _observe(base, usable, between, settings)
     nothing = workspace.fit(Hypothesis(base))
@@ -107,7 +107,7 @@ def diagnose(
     if structures and found.hypothesis.terms:
         found = fit_to_replays(found, bank)
     rivals = selection.named_rivals
-    return Diagnosis(
+    return TrainDiagnosis(
         base, found, rank_selected(found, rivals, usable.runs, between),
         rank_alone(workspace, nothing, alone, found), rivals, structures,
         usable.still, usable.seconds,

@@ -5,7 +5,7 @@ from typing import Any, Mapping, Sequence
 from rovsim.diagnosis.advice import next_experiment
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.procedure import Diagnosis, Ranked, Selected
+from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
 from rovsim.diagnosis.selection.rivals import SURE, Rival
 
 SCHEMA = "rovsim.diagnosis/1"
@@ -13,7 +13,7 @@ LISTED = 10  # effects of the ranking
 
 
 def content(
-    found: Diagnosis,
+    found: TrainDiagnosis,
     where: Sequence[Mapping[str, Any]],
     error: Mapping[str, float | None],
     base: Mapping[str, Any],
@@ -58,7 +58,7 @@ def _entry(one: Selected | Ranked, std: Mapping[str, float]) -> dict[str, Any]:
     }
 
 
-def _listed(found: Diagnosis) -> list[Ranked]:
+def _listed(found: TrainDiagnosis) -> list[Ranked]:
     """The first effects of the ranking, and those selected."""
     named = {one.term.id for one in found.selected}
     return [r for k, r in enumerate(found.ranking) if k < LISTED or r.term.id in named]
@@ -94,7 +94,7 @@ def indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
     return sorted(sorted(g) for g in groups)
 
 
-def unexplained(found: Diagnosis) -> dict[str, Any]:
+def unexplained(found: TrainDiagnosis) -> dict[str, Any]:
     """What no effect of the catalogue explains."""
     if not found.structures:
         return {"fraction": 0.0, "significant": False, "hint": "Nothing is left but noise."}
@@ -107,7 +107,7 @@ def unexplained(found: Diagnosis) -> dict[str, Any]:
     return {"fraction": _rounded(first.share), "significant": True, "hint": hint}
 
 
-def _noise(found: Diagnosis) -> dict[str, Any]:
+def _noise(found: TrainDiagnosis) -> dict[str, Any]:
     if found.fit is None:
         return {}
     noise = found.fit.noise
