@@ -16,7 +16,8 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim.diagnosis.checks.imitation import drop_imitations
-from rovsim.diagnosis.checks.residual_structure import Structure, find_structure
+from rovsim.diagnosis.checks.residual import Structure
+from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -103,7 +104,7 @@ def diagnose(
     stage("checking")
     selection, structures = _check(selection, base, usable)
     found, bank = _polish(selection)
-    structures = [*structures, *_find_structure(found, bank)]
+    structures = [*structures, *find_structure(found, bank)]
     if structures and found.hypothesis.terms:
         found = fit_to_replays(found, bank)
     rivals = selection.named_rivals
@@ -147,14 +148,3 @@ def _polish(selection: Selection) -> tuple[Fit, FilterBank]:
         bank = selection.workspace.bank.redesign(found.hypothesis.model, found.noise)
         found = fit(found.hypothesis, bank, found.noise, reach)
     return found, bank
-
-
-def _find_structure(found: Fit, bank: FilterBank) -> list[Structure]:
-    """Structure in the innovations of the final model."""
-    counts = np.cumsum([int(run.settled.sum()) for run in bank.runs])[:-1]
-    white = bank.whiten(found.e, found.noise)
-    J = bank.whiten(found.J, found.noise)
-    return find_structure(
-        np.split(white, counts, axis=-1), np.split(J, counts, axis=-1), bank.runs,
-        bank.tune(found.noise), found.noise, found.hypothesis.model.thrust_path,
-    )  # fmt: skip

@@ -7,7 +7,7 @@ those go, and the verdict says that something is unexplained.
 from dataclasses import replace
 
 from rovsim import AXES
-from rovsim.diagnosis.checks.residual_structure import Structure
+from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.unlisted_drag import UNLISTED_DRAG
 from rovsim.diagnosis.selection.rivals import SURE, Selection

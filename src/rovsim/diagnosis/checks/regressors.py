@@ -1,13 +1,16 @@
-"""What a force nobody named might vary with."""
+"""What a force nobody named might vary with, and whether the remainder does."""
 
 from itertools import combinations
+from typing import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 from scipy.signal import lfilter
+from scipy.stats import chi2
 
 from rovsim import AXES
 from rovsim.core.rotations import matrix
+from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
 SMOOTH = 0.02  # m/s or rad/s: a sign that turns over within the noise of the velocity
@@ -15,9 +18,10 @@ SMOOTH = 0.02  # m/s or rad/s: a sign that turns over within the noise of the ve
 # with the innovation there; a little earlier it does not, and a vehicle changes little meanwhile.
 EARLIER = 0.2  # s
 MEMORIES = (0.5, 2.0)  # s
+INDEPENDENT = 1e-6  # of a column's power: less is what was fitted already
 
 
-def evaluate_regressors(run: ObservedRun) -> dict[str, Array]:
+def tabulate(run: ObservedRun) -> dict[str, Array]:
     """Functions (n,) of state, place and time at the readings of one run, by their names."""
     past = max(1, round(EARLIER / run.period))
     at = np.clip(run.index - past, 0, len(run.motion.time) - 1)
@@ -33,7 +37,7 @@ def evaluate_regressors(run: ObservedRun) -> dict[str, Array]:
         found[f"{axis} velocity, cubed"] = v**3
         found[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
         for memory in MEMORIES:
-            found[f"{axis} velocity some {memory:g} s ago"] = _remembered(v, run, memory)
+            found[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
     for i, j in combinations(range(6), 2):
         found[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
     for name, x in zip(("north", "east", "down"), place.T, strict=True):
@@ -46,7 +50,28 @@ def evaluate_regressors(run: ObservedRun) -> dict[str, Array]:
     return found
 
 
-def _remembered(v: Array, run: ObservedRun, memory: float) -> Array:
+def find_dependence(
+    residual: AxisResidual, tables: Sequence[Mapping[str, Array]]
+) -> Iterator[Structure]:
+    """Functions of state, place and time, each with one factor for all runs."""
+    target, fitted = np.concatenate(residual.white), residual.fitted
+    basis = np.linalg.qr(fitted.T)[0] if len(fitted) else np.empty((len(target), 0))
+    limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
+    for name in tables[0]:
+        pushes = [table[name] for table in tables]
+        size = np.sqrt(np.mean(np.concatenate(pushes) ** 2))
+        column = residual.respond(pushes)
+        own = column - basis @ (basis.T @ column)
+        power, whole = float(own @ own), float(column @ column)
+        if power < INDEPENDENT * whole or size == 0.0:
+            continue
+        factor = float(own @ target) / power
+        # only the part counts that no fitted parameter could have taken
+        part = abs(factor) * size * np.sqrt(power / whole)
+        yield from residual.weigh(name, size=part, statistic=factor**2 * power, limit=limit)
+
+
+def _lag(v: Array, run: ObservedRun, memory: float) -> Array:
     """v through a first-order lag, stretch by stretch."""
     keep, out = np.exp(-run.period / memory), np.empty_like(v)
     for first, last in run.rows:

@@ -1,0 +1,108 @@
+"""What is left on one axis after the best model, and how a push there would show in it."""
+
+from dataclasses import dataclass
+from typing import Iterator, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.signal import lfilter
+
+from rovsim import AXES
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.kalman import AxisFilter
+from rovsim.diagnosis.observer.least_squares import solve
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.selection.gauss_newton import Fit
+
+FALSE_ALARM = 0.002  # of all looks together, for each kind of structure
+MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score
+SPIN = 0.3  # s within which propellers and motors follow a command
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Something the remainder varies with.
+
+    `share` of the remaining disturbance's power, `surprise` = its chi-square above the limit.
+    """
+
+    axis: str
+    what: str
+    share: float
+    surprise: float
+
+
+@dataclass(frozen=True, eq=False)
+class AxisResidual:
+    """Whitened settled innovations (n_run,) of one axis, and the filter that made each run white.
+
+    `fitted` (k, n), over all runs, are their derivatives to what was fitted, whose directions are
+    not judged again; `level` that of the disturbance, m/s2 or rad/s2.
+    """
+
+    axis: str
+    white: tuple[Array, ...]
+    fitted: Array
+    runs: tuple[ObservedRun, ...]
+    filters: tuple[AxisFilter, ...]
+    level: float
+
+    def respond(self, pushes: Sequence[Array]) -> Array:
+        """How pushes (n_run,) on the runs would show (n,) over all of them."""
+        each = zip(pushes, self.filters, self.runs, strict=True)
+        return np.concatenate([respond(push, f, run) for push, f, run in each])
+
+    def weigh(
+        self, what: str, *, size: float, statistic: float, limit: float
+    ) -> Iterator[Structure]:
+        """A structure where it is beyond chance, and large enough beside the disturbance.
+
+        Args:
+            what: it varies with.
+            size: RMS of the push, m/s2 or rad/s2.
+            statistic: chi-square of what it explains.
+            limit: what chance allows this to be.
+        """
+        if statistic > limit and size > MATTERS * self.level:
+            share = min(1.0, (size / self.level) ** 2)
+            yield Structure(self.axis, what, float(share), float(statistic / limit))
+
+
+def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
+    """How a push (n,) on one axis shows in the settled innovations of one run."""
+    b, a = f.response
+    out = np.empty(len(run.time))
+    for first, last in run.rows:
+        out[first:last] = lfilter(b, a, push[first:last])
+    return out[run.settled]
+
+
+def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
+    """What a fit leaves, axis by axis, without what a gap in the command log may have done."""
+    J = bank.whiten(found.J, found.noise)
+    white = _split_by_run(bank.whiten(found.e, found.noise), bank.runs)
+    path, tunings = found.hypothesis.model.thrust_path, bank.tune(found.noise)
+    unknown = [run.vague(path) for run in bank.runs]
+    residuals = []
+    for i, axis in enumerate(AXES):
+        filters = tuple(tuning.filters[i] for tuning in tunings)
+        each = zip(white, filters, bank.runs, unknown, strict=True)
+        cleared = tuple(_clear(own[i], f, run, spans) for own, f, run, spans in each)
+        level = float(found.noise.level[i])
+        residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, level))
+    return residuals
+
+
+def _split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
+    counts = np.cumsum([int(run.settled.sum()) for run in runs])[:-1]
+    return np.split(white, counts, axis=-1)
+
+
+def _clear(w: Array, f: AxisFilter, run: ObservedRun, unknown: Array) -> Array:
+    """Without what the vehicle did while the log does not say what it was told."""
+    if not len(unknown):
+        return w
+    later = np.column_stack([unknown[:, 1], unknown[:, 1] + SPIN])
+    spans = [(run.time > begin) & (run.time <= end) for begin, end in (*unknown, *later)]
+    columns = np.stack([respond(span.astype(float), f, run) for span in spans])
+    return w - solve(columns @ columns.T, columns @ w) @ columns

@@ -1,0 +1,69 @@
+"""Pushes that come at once: too many for any Gaussian disturbance, or a single one."""
+
+from typing import Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.signal import lfilter
+from scipy.stats import binom, chi2, norm
+
+from rovsim import AXES
+from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
+from rovsim.diagnosis.observer.kalman import AxisFilter
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+
+SUDDEN = 0.2  # s, about what the readings resolve
+RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
+UNEVEN = 1.15  # turbulence is not equally strong all the time, nor in all runs
+GAUSSIAN_MEDIAN = 0.6745  # of the magnitude, in standard deviations
+KICKS = (0.2, 1.0)  # s, from a knock to a snag
+ECHO = 2.0  # s within which the filter forgets a kick
+# One moment counts by its own size, not by its mean over the run, but must stand out that far.
+MOMENT = 4.0  # standard deviations of the disturbance
+
+
+def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
+    """Innovations with a heavier tail than any Gaussian disturbance."""
+    few = max(1, round(SUDDEN / residual.runs[0].period))
+    sums = np.concatenate([_add_neighbours(w, few) for w in residual.white])
+    # the median is not moved by what is looked for
+    usual = float(np.median(np.abs(sums))) / GAUSSIAN_MEDIAN
+    count = int(np.sum(np.abs(sums) > RARE * usual))
+    limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE / UNEVEN))
+    if count > limit:
+        what = f"sudden pushes, one in about {len(sums) * SUDDEN / count:.2g} s"
+        yield Structure(residual.axis, what, 1.0, count / limit)
+
+
+def _add_neighbours(w: Array, few: int) -> Array:
+    return w[: len(w) // few * few].reshape(-1, few).sum(axis=1)
+
+
+def find_kicks(residual: AxisResidual) -> Iterator[Structure]:
+    """A single push that lasts a moment, at any time of any run."""
+    for w, f, run in zip(residual.white, residual.filters, residual.runs, strict=True):
+        for duration in KICKS:
+            template = _kick(duration, f, run)
+            if len(template) < len(w):
+                yield from _judge_kick(residual, w, template, duration, run)
+
+
+def _kick(duration: float, f: AxisFilter, run: ObservedRun) -> Array:
+    """How a kick of unit size shows in the innovations, until it is forgotten."""
+    push = np.ones(max(1, round(duration / run.period)))
+    return lfilter(*f.response, np.concatenate([push, np.zeros(round(ECHO / run.period))]))
+
+
+def _judge_kick(
+    residual: AxisResidual, w: Array, template: Array, duration: float, run: ObservedRun
+) -> Iterator[Structure]:
+    """The largest kick of that duration in one run."""
+    power = float(template @ template)
+    factor = np.correlate(w, template, "valid") / power
+    k = int(np.argmax(np.abs(factor)))
+    limit = chi2.isf(FALSE_ALARM / (2 * len(KICKS) * len(AXES) * len(factor)), 1)
+    at = run.time[run.settled][k]
+    yield from residual.weigh(
+        f"a push of {duration:g} s at {at:.1f} s in run {run.motion.run.id}",
+        size=abs(factor[k]) / MOMENT, statistic=factor[k] ** 2 * power, limit=limit,
+    )  # fmt: skip
