@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -81,15 +82,15 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     assert to_run(study) == set()
 
     reading = {"tank", "read", "resample", "filter", "differentiate"}
-    touched = _edited(study, "src/rovsim/effects/damping.py")
+    touched = _edited(study, "src/rovsim/dynamics/effects/damping.py")
     assert "replay" in touched
     assert not reading & touched
-    assert _edited(study, "src/rovsim/figures/ladder.py") <= {
+    assert _edited(study, "src/rovsim/reporting/figures/ladder.py") <= {
         "figure_ladder", "report", "track", "all"
     }  # fmt: skip
-    assert {"filter", "replay"} <= _edited(study, "src/rovsim/signals/filter.py")
-    assert "read" not in _edited(study, "src/rovsim/signals/filter.py")
-    touched = _edited(study, "src/rovsim/diagnosis/search.py")
+    assert {"filter", "replay"} <= _edited(study, "src/rovsim/measurement/signals/filter.py")
+    assert "read" not in _edited(study, "src/rovsim/measurement/signals/filter.py")
+    touched = _edited(study, "src/rovsim/diagnosis/selection/forward_selection.py")
     assert {"diagnose", "add", "compare"} <= touched
     assert not reading & touched
 
@@ -113,6 +114,18 @@ def _edited(folder: Path, name: str) -> set[str]:
         return to_run(folder)
     finally:
         path.write_text(before)
+
+
+def test_what_rules_depend_on_is_there():
+    rules = "".join(path.read_text() for path in (ROOT / "workflow" / "rules").glob("*.smk"))
+    named = [
+        name
+        for names in re.findall(r"study\.(?:own_)?code\(([^)]*)\)", rules)
+        for name in re.findall(r'"([a-z_.]+)"', names)
+    ]
+    assert len(named) > 20
+    for name in named:
+        assert find_spec(f"rovsim.{name}"), name
 
 
 @pytest.mark.slow

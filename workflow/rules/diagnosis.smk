@@ -54,6 +54,6 @@ rule refit:
         f"{R}/benchmarks/refit.tsv"
     params:
         settings=study.section("replay"),
-        code=study.code("diagnosis.selection.refit_nominal", "diagnosis.of_campaign", "dynamics.effects"),
+        code=study.code("diagnosis.selection.nominal_refit", "diagnosis.of_campaign", "dynamics.effects"),
     script:
         "../scripts/refit.py"
