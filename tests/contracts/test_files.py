@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+import yaml
 
 from rovsim.application.loading import results_folder
 from rovsim.core.errors import BadInput
@@ -14,6 +15,7 @@ from rovsim.core.files import (
     read_yaml,
     write_arrays,
     write_json,
+    write_yaml,
 )
 from rovsim.core.schema import checked
 from rovsim.measurement.signals.chain import SignalSettings
@@ -31,6 +33,22 @@ def test_arrays_survive_and_their_bytes_depend_on_them_alone(tmp_path):
     assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
     again = read_arrays(tmp_path / "one.npz")
     assert all(np.array_equal(again[key], value) for key, value in arrays.items())
+
+
+def test_yaml_of_both_versions_reads_what_was_written(tmp_path):
+    words = ["no", "y", "1e5", "010", "1:30", "2025-05-27", "null", "", "a: b", "µ" * 120, "a\nb"]
+    content = {"words": words, "numbers": [1e-5, 1e22, 0.1, -3, 1.0], "y": None, "none": {}}
+    write_yaml(tmp_path / "x.yaml", content)
+    assert read_yaml(tmp_path / "x.yaml") == content
+    assert yaml.safe_load((tmp_path / "x.yaml").read_text(encoding="utf-8")) == content
+
+
+def test_a_number_needs_no_point_and_a_key_comes_once(tmp_path):
+    (tmp_path / "x.yaml").write_text("gain: 1e-3\non: y\n")
+    assert read_yaml(tmp_path / "x.yaml") == {"gain": 1e-3, "on": "y"}
+    (tmp_path / "x.yaml").write_text("a: 1\nb: {c: 1, c: 2}\n")
+    with pytest.raises(BadInput, match=r'x\.yaml, line 2: .*duplicate key "c"'):
+        read_yaml(tmp_path / "x.yaml")
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04", pickle.dumps(Evil()), b"text"])

@@ -94,7 +94,7 @@ def test_a_bad_vehicle_inside_a_model_is_explained_too(change, message, tmp_path
 def test_a_key_given_twice_and_a_wrong_unit_are_refused(tmp_path):
     path = tmp_path / "m.yaml"
     path.write_text("vehicle: bluerov2_heavy\neffects: []\neffects: []")
-    with pytest.raises(BadInput, match="'effects' twice"):
+    with pytest.raises(BadInput, match=r'line 3.*duplicate key "effects"'):
         read_model(path)
     lag = "{effect: thruster_lag, parameters: {time_constant: {value: 150, unit: ms}}}"
     path.write_text(f"{HEAVY}effects: [{lag}]")

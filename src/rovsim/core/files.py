@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, Iterator, Mapping
 
 import numpy as np
-import yaml
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 
 from rovsim.core.errors import BadInput
 
@@ -78,40 +79,40 @@ def read_json(path: Path) -> Any:
         ) from None
 
 
-class _UniqueKeys(yaml.SafeLoader):
-    """Safe YAML in which a key given twice is an error: the first would be lost silently."""
-
-    def construct_mapping(self, node, deep=False):
-        names = [self.construct_object(key, deep=True) for key, _ in node.value]
-        for k, name in enumerate(names):
-            if isinstance(name, str) and name in names[:k]:
-                mark = node.value[k][0].start_mark
-                raise yaml.constructor.ConstructorError(None, None, f"'{name}' twice", mark)
-        return super().construct_mapping(node, deep)
-
-
 def write_yaml(path: Path, content: Any) -> None:
     """Write plain YAML atomically, keys in the order given."""
-    write_text(path, yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=100))
+    yaml, text = YAML(typ="safe", pure=True), io.StringIO()
+    # with the quotes and numbers of YAML 1.1, readers of 1.1 and 1.2 agree on every value
+    yaml.version, yaml.width, yaml.default_flow_style = (1, 1), 100, False
+    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
+    yaml.dump(content, text)
+    write_text(path, text.getvalue().removeprefix("%YAML 1.1\n---\n"))
 
 
 def read_yaml(path: Path) -> Any:
-    """Read safe YAML (no tags that build objects).
+    """Read safe YAML 1.2 (no tags that build objects).
 
     Raises:
-        BadInput: the file is missing or is not YAML.
+        BadInput: the file is missing or is not YAML, or gives a key twice.
     """
     try:
-        return yaml.load(read_text(path), Loader=_UniqueKeys)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f", line {mark.line + 1}" if mark else ""
+        return YAML(typ="safe", pure=True).load(read_text(path))
+    except YAMLError as error:
         raise BadInput(
-            f"not YAML ({getattr(error, 'problem', None) or error})",
-            where=f"{path}{line}",
+            f"not YAML ({_problem(error)})",
+            where=f"{path}{_line(error)}",
             expected="a plain YAML file",
             remedy="Check the indentation and the quotes there.",
         ) from None
+
+
+def _problem(error: YAMLError) -> str:
+    return getattr(error, "problem", None) or str(error)
+
+
+def _line(error: YAMLError) -> str:
+    mark = getattr(error, "problem_mark", None)
+    return f", line {mark.line + 1}" if mark else ""
 
 
 def read_text(path: Path) -> str:
