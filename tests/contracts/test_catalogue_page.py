@@ -14,7 +14,7 @@ from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.reporting.catalogue.flight import blocks, fly, found, seen, settings
 from rovsim.reporting.catalogue.page import PAGE, PICTURES, entry, page
 from rovsim.reporting.figures.signature import signature, write
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 
 DOCS = Path(__file__).parents[2] / "docs"
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))

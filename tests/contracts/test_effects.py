@@ -8,7 +8,8 @@ from rovsim.core.run import Site
 from rovsim.dynamics.effects import built_in, effect
 from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wrench
 from rovsim.dynamics.model import read_model
-from rovsim.simulation.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import simulate
+from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, some, sticks, tank
 
 # contract, section 2
@@ -29,7 +30,7 @@ def driven(world):
     demands = any(isinstance(effect, Autopilot) for effect in world.effects)
     value, kind = (sticks(1)[:, :6], "demand") if demands else (sticks(1), "thruster")
     run = motion(value, kind, seconds=1.0, start=start, site=tank())
-    path = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
+    path = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     return world.mocap_view.states(path)
 
 
@@ -112,7 +113,7 @@ def test_it_pushes_the_right_way(name, parameter):
     run = motion(np.zeros((1, 8)), seconds=0.1)
     start = [(0, 10, at_rest())]
     with_it, without = (
-        trajectories(world, run, start, ReplaySettings())[0][-1, 7 + axis]
+        simulate(world, run, start, ReplaySettings())[0][-1, 7 + axis]
         for world in (model(effect(name)(**{parameter: 0.5})), model())
     )
     assert sign * (with_it - without) > 0

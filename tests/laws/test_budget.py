@@ -7,9 +7,10 @@ from rovsim.core.rotations import exp
 from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Autopilot
 from rovsim.evaluation.budget import RESTORING, Budget, budget
-from rovsim.learning.pairs import accelerations, at_samples, samples
+from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
+from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, some, sticks, tank
 
 
@@ -31,8 +32,8 @@ def made(world, found=None):
 @pytest.mark.parametrize("cls", catalogue().values(), ids=lambda cls: cls.id)
 def test_the_parts_add_up_to_the_models_inertia_force(cls):
     world, measured = model(some(cls)), run("demand" if issubclass(cls, Autopilot) else "thruster")
-    at = at_samples(world, measured, ReplaySettings())
-    expected = accelerations(world, measured, at) @ world.body.M.T
+    at = drive_as_measured(world, measured, ReplaySettings())
+    expected = accelerate_as_measured(world, measured, at) @ world.body.M.T
     parts = made(world, measured).parts
     np.testing.assert_allclose(sum(parts.values()), expected, atol=1e-9)
     assert f"+{cls.id}" in parts
@@ -64,8 +65,8 @@ def test_the_missing_force_is_the_one_that_was_left_out():
 
     measured, world = run(), model()
     pushed = model(ConstantWrench(surge=3.0, yaw=-1.0))
-    at = at_samples(pushed, measured, ReplaySettings())
-    moved = replace(measured, nu_dot=accelerations(pushed, measured, at))
+    at = drive_as_measured(pushed, measured, ReplaySettings())
+    moved = replace(measured, nu_dot=accelerate_as_measured(pushed, measured, at))
     settings = SignalSettings()
     found = samples(world, moved, settings, ReplaySettings())
     plain = samples(world, measured, settings, ReplaySettings())

@@ -13,7 +13,8 @@ from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.initial_memory import lag_of_lines, measured_memory
-from rovsim.simulation.replay import ReplaySettings, replay, trajectories
+from rovsim.simulation.replay import replay, simulate
+from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, sticks
 
 OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
@@ -33,7 +34,7 @@ def moved(world, step=0.01, seconds=6.0, commands=None):
     start[7:] = [0.3, 0.1, -0.1, 0.1, 0.2, -0.2]
     run = motion(sticks(7, 30) if commands is None else commands, seconds=seconds, start=start)
     count = len(run.time) - 1
-    path = trajectories(world, run, [(0, count, start)], ReplaySettings(step=step))[0]
+    path = simulate(world, run, [(0, count, start)], ReplaySettings(step=step))[0]
     return replace(run, eta=path[:, :7], nu=path[:, 7:], state_nu=path[:, 7:])
 
 

@@ -16,7 +16,8 @@ from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.effects.proximity import SurfaceProximity, WallProximity
 from rovsim.dynamics.engine.equation import coriolis
 from rovsim.dynamics.engine.vectors import matrix6
-from rovsim.simulation.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import simulate
+from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, sticks, tank
 
 speeds = arrays(float, 6, elements=st.floats(-2, 2))
@@ -61,7 +62,7 @@ def test_boundaries_only_take_energy(nu, place):
     run = replace(run, time=run.time * 0.01)  # one step of 0.1 ms
     near = model(WallProximity(gain=1.0), SurfaceProximity(gain=2.0))
     rates = [
-        (trajectories(world, run, [(0, 1, start)], still)[0][1, 7:] - start[7:]) / 1e-4
+        (simulate(world, run, [(0, 1, start)], still)[0][1, 7:] - start[7:]) / 1e-4
         for world in (near, model())
     ]
     extra = (rates[0] - rates[1]) @ model().body.M @ start[7:]
@@ -92,7 +93,7 @@ def test_a_body_that_cannot_exist_is_refused():
 def path(world, start, seconds=2.0, step=0.01, commands=None):
     value = np.zeros((1, 8)) if commands is None else commands
     run = motion(value, seconds=seconds, start=start)
-    found = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings(step=step))
+    found = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings(step=step))
     return found[0]
 
 

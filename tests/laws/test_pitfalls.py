@@ -10,7 +10,7 @@ from rovsim.dynamics.model import EffectEntry
 from rovsim.evaluation.held_out.pitfalls import PITFALLS, SAID, measure_pitfalls, on_wrong_clock
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 
 QUICK = {"max_points": 300, "tuning_points": 100, "iterations": 15}
 LEARNERS = {kind: learner_settings({"kind": kind} | more)

@@ -24,7 +24,10 @@ from rovsim.dynamics.model import zero_acceleration
 from rovsim.evaluation.scores import score
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.simulation.replay import Replay, ReplaySettings, replay, trajectories, windows
+from rovsim.simulation.prediction import Replay
+from rovsim.simulation.replay import replay, simulate
+from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.windows import find_windows
 from worlds import at_rest, model, motion, sticks
 
 DOWN = np.array([0.0, 0.0, 1.0])
@@ -147,7 +150,7 @@ def test_static_equilibrium_stays():
     body = model().body
     world = model(NetBuoyancy(force=float(body.weight - body.buoyancy)))
     run = motion(np.zeros((1, 8)))
-    path = trajectories(world, run, [(0, 200, at_rest())], ReplaySettings())[0]
+    path = simulate(world, run, [(0, 200, at_rest())], ReplaySettings())[0]
     np.testing.assert_allclose(path, np.tile(at_rest(), (201, 1)), atol=1e-12)
 
 
@@ -164,9 +167,10 @@ def test_batches_do_not_change_the_numbers(monkeypatch):
 
 CHILD = """
 from worlds import model, motion, at_rest, sticks
-from rovsim.simulation.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import simulate
+from rovsim.simulation.settings import ReplaySettings
 world = model()
-trajectories(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
+simulate(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
 stats = world.engine.integrate.stats
 print(world.engine.__name__, sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
 """
@@ -174,7 +178,7 @@ print(world.engine.__name__, sum(stats.cache_hits.values()), sum(stats.cache_mis
 
 def test_another_process_uses_the_compiled_engine():
     world = model()
-    trajectories(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())  # fill the cache
+    simulate(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())  # fill the cache
     env = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     done = subprocess.run([sys.executable, "-c", CHILD], env=env, capture_output=True, text=True)
     assert done.stdout.split() == [world.engine.__name__, "1", "0"], done.stderr
@@ -211,7 +215,7 @@ def simulated(seconds=6.0, gap=None):
     start = state(np.array([0.2, 0.1, -0.1, 0.1, 0.2, -0.2]), 0.1, -0.1)
     run = motion(sticks(7, 30), seconds=seconds, start=start)
     count = len(run.time)
-    path = trajectories(model(), run, [(0, count - 1, start)], ReplaySettings())[0]
+    path = simulate(model(), run, [(0, count - 1, start)], ReplaySettings())[0]
     usable = np.ones(count, bool)
     if gap:
         usable[slice(*gap)] = False
@@ -236,10 +240,10 @@ def test_the_model_that_moved_the_vehicle_predicts_it():
 
 def test_windows_stay_inside_usable_stretches():
     run = simulated(gap=(250, 300))
-    for a, b in windows(run, 0.5):
+    for a, b in find_windows(run, 0.5):
         assert b - a == 50
         assert run.usable[a : b + 1].all()
-    assert [a for a, _ in windows(run, 2.0)] == [0, 300]
+    assert [a for a, _ in find_windows(run, 2.0)] == [0, 300]
     found = replay(model(), run, OPEN, ReplaySettings()).horizons["2"]
     known = np.flatnonzero(np.isfinite(found.eta[:, 0]))
     assert known.tolist() == [*range(1, 201), *range(301, 501)]
@@ -268,7 +272,7 @@ def test_zero_acceleration_keeps_the_body_velocity():
     start = state(np.array([0.3, 0.2, -0.1, 0.0, 0.0, 0.4]), 0.0, 0.0)
     run = motion(sticks(), start=start)
     world = zero_acceleration(model().vehicle)
-    path = trajectories(world, run, [(0, 200, start)], ReplaySettings())[0]
+    path = simulate(world, run, [(0, 200, start)], ReplaySettings())[0]
     np.testing.assert_array_equal(path[:, 7:], np.tile(start[7:], (201, 1)))
     turned = matrix(path[-1, 3:7]) @ matrix(start[3:7]).T
     assert np.arctan2(turned[1, 0], turned[0, 0]) == pytest.approx(0.8)  # 0.4 rad/s for 2 s

@@ -13,7 +13,8 @@ from rovsim.dynamics.effects.sensing import MarkerMisalignment, MarkerOffset, Wo
 from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.simulation.replay import ReplaySettings, replay, trajectories
+from rovsim.simulation.replay import replay, simulate
+from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, sticks
 
 places = arrays(float, 3, elements=st.floats(-1, 1))
@@ -65,7 +66,7 @@ def driven(world, seconds=4.0):
     start[3:7] = multiply(exp(np.array([0.0, 0.0, 0.6])), start[3:7])
     start[7:] = [0.2, 0.1, -0.1, 0.1, 0.2, -0.2]
     run = motion(0.6 * sticks(7, 1), seconds=seconds, start=start)
-    true = trajectories(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
+    true = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     shown = world.mocap_view.states(true)
     nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN)
     usable = (run.time > 0.2) & (run.time < seconds - 0.2)

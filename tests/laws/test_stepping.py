@@ -8,7 +8,8 @@ from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
 from rovsim.dynamics.effects.thrusters import ThrusterLag, VoltageSag
 from rovsim.learning.learner import learner_settings, train
-from rovsim.simulation.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import simulate
+from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.stepper import Stepper, rollouts
 from worlds import at_rest, model, motion, sticks
 
@@ -37,7 +38,7 @@ WORLDS = {
 @pytest.mark.parametrize("name", WORLDS)
 def test_stepping_is_replaying(name):
     world, run = WORLDS[name], motion(sticks(1, 40))
-    replayed = trajectories(world, run, [(0, 200, at_rest())], ReplaySettings())[0]
+    replayed = simulate(world, run, [(0, 200, at_rest())], ReplaySettings())[0]
     stepper, state = Stepper(world, duration=2.0), at_rest()
     for k in range(200):
         line = np.searchsorted(run.commands.time, k * 0.01 + 1e-9, "right") - 1

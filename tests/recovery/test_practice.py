@@ -10,7 +10,8 @@ from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.simulation.replay import ReplaySettings, replay
+from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import ReplaySettings
 from worlds import SHARED, needed
 
 

@@ -10,9 +10,9 @@ from rovsim.benchmarks.blind.library import problem, steps
 from rovsim.benchmarks.blind.sparse import answered, forward, thresholded
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects import catalogue, effect
-from rovsim.learning.pairs import accelerations, at_samples
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
+from rovsim.simulation.settings import ReplaySettings
 from worlds import model, motion, sticks, tank
 
 # enough to choose from, and nothing to compile
@@ -29,7 +29,7 @@ def exact(world):
     phase, k = np.random.default_rng(3).uniform(0, 6, (6, 4)), np.arange(1, 5)
     nu = 0.1 * np.sin(still.time[:, None, None] * k + phase).sum(axis=-1)
     moving = replace(still, nu=nu, state_nu=nu)
-    true = accelerations(world, moving, at_samples(world, moving, ReplaySettings()))
+    true = accelerate_as_measured(world, moving, drive_as_measured(world, moving, ReplaySettings()))
     return replace(moving, nu_dot=SignalSettings().filter.smoothed(true, 0.01))
 
 

@@ -10,7 +10,8 @@ from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality_report import quality_of
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.simulation.replay import ReplaySettings, replay
+from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.campaign import SEALED, describe, make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
 

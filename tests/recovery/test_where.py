@@ -13,7 +13,7 @@ from rovsim.evaluation.error_conditions.conditions import BLOCK
 from rovsim.evaluation.error_conditions.sentences import summary
 from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 from synthetic_study import driven
 from worlds import at_rest, model, motion, sticks
 

@@ -18,7 +18,8 @@ from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.shipped import shipped
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
-from rovsim.simulation.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import simulate
+from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion
 
 FILE = yaml.safe_load((shipped("conf/vehicle") / "bluerov2_heavy.yaml").read_text(encoding="utf-8"))
@@ -130,7 +131,7 @@ def test_held_random_commands_are_followed_within_a_micrometre(seed):
                         rtol=1e-10, atol=1e-12)  # fmt: skip
         x = arc.y[:, -1]
     for step, bound in ((0.01, 1e-6), (0.001, 1e-9)):
-        end = trajectories(model(), run, [(0, 200, start)], ReplaySettings(step=step))[0][-1]
+        end = simulate(model(), run, [(0, 200, start)], ReplaySettings(step=step))[0][-1]
         np.testing.assert_allclose(end[:3], x[:3], atol=bound)
         np.testing.assert_allclose(matrix(end[3:7]), x[3:12].reshape(3, 3), atol=10 * bound)
         np.testing.assert_allclose(end[7:], x[12:], atol=20 * bound)

@@ -18,7 +18,8 @@ from rovsim.dynamics.effects.rigid_body import Payload
 from rovsim.dynamics.effects.tether import TetherDrag, TetherTension
 from rovsim.dynamics.effects.thrusters import AdvanceLoss, PropellerTorque
 from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
-from rovsim.simulation.replay import ReplaySettings, trajectories
+from rovsim.simulation.replay import simulate
+from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion
 
 # parameters of contract, section 2, where they are not one per axis
@@ -260,4 +261,4 @@ def test_a_tether_without_anchor_in_an_unknown_tank_is_refused():
 
 
 def replay(world, run):
-    return trajectories(world, run, [(0, 10, at_rest())], ReplaySettings())
+    return simulate(world, run, [(0, 10, at_rest())], ReplaySettings())

@@ -9,7 +9,7 @@ from rovsim.evaluation.budget import budget
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import rule_settings
+from rovsim.simulation.settings import rule_settings
 
 
 def main(*, motion: Path, campaign: Path, out: Path, settings: dict) -> None:

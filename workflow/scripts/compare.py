@@ -8,7 +8,7 @@ from rovsim.evaluation.error_conditions import merged
 from rovsim.evaluation.ladder import step, with_diagnosis
 from rovsim.evaluation.scores import comparison, growth
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import Replay
+from rovsim.simulation.prediction import Replay
 
 
 def main(

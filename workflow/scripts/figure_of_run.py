@@ -8,7 +8,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.report_data import Evidence, arguments
-from rovsim.simulation.replay import Replay
+from rovsim.simulation.prediction import Replay
 
 
 def main(*, figure: str, motion: Path, replays: list[Path], budgets: list[Path], out: Path) -> None:

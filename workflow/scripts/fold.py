@@ -10,7 +10,8 @@ from rovsim.dynamics.model import load_model, read_model
 from rovsim.evaluation.scores import comparison, score
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import replay, rule_settings
+from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import rule_settings
 
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:

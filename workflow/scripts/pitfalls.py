@@ -8,7 +8,7 @@ from rovsim.dynamics.model import read_model
 from rovsim.evaluation.held_out.pitfalls import SCHEMA, measure_pitfalls
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import rule_settings
+from rovsim.simulation.settings import rule_settings
 
 
 def main(

@@ -9,7 +9,7 @@ from rovsim.diagnosis.of_campaign import Runs
 from rovsim.diagnosis.selection.nominal_refit import refit_nominal
 from rovsim.dynamics.model import nominal
 from rovsim.measurement.campaign import load_campaign
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 
 
 def main(

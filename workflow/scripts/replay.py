@@ -7,7 +7,8 @@ from rovsim.application.snakemake_job import job
 from rovsim.dynamics.model import load_model
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import replay, rule_settings
+from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import rule_settings
 
 
 def main(*, motion: Path, campaign: Path, file: str, name: str, out: Path, settings: dict) -> None:

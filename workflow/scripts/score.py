@@ -6,7 +6,7 @@ from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.evaluation.scores import score
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import Replay
+from rovsim.simulation.prediction import Replay
 
 
 def main(*, motions: list[Path], replays: list[Path], out: Path) -> None:

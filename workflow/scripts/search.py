@@ -9,7 +9,7 @@ from rovsim.dynamics.model import load_model
 from rovsim.evaluation.error_conditions import content, judged
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import rule_settings
+from rovsim.simulation.settings import rule_settings
 
 
 def main(

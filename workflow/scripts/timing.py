@@ -12,7 +12,7 @@ from rovsim.evaluation.latency import both_ways
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import rule_settings
+from rovsim.simulation.settings import rule_settings
 
 
 def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:

@@ -10,7 +10,7 @@ from rovsim.learning.learner import learner_settings
 from rovsim.learning.pairs import train_residual
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import rule_settings
+from rovsim.simulation.settings import rule_settings
 
 
 def main(

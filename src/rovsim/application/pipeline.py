@@ -17,7 +17,8 @@ from rovsim.evaluation.scores import comparison, growth, score
 from rovsim.learning.pairs import samples, train_residual, training_runs
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.report_data import Evidence
-from rovsim.simulation.replay import Replay, replay
+from rovsim.simulation.prediction import Replay
+from rovsim.simulation.replay import replay
 
 
 def compare(data: Measured, chosen: Sequence[Model], settings: Settings) -> Evidence:

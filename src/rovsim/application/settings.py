@@ -12,7 +12,7 @@ from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.learned.residual import Control
 from rovsim.learning.learner import LearnerSettings, learner_settings
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 

@@ -6,7 +6,7 @@ from pydantic import Field, PositiveInt
 
 from rovsim.core.schema import Section
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 
 
 class SearchSettings(Section):

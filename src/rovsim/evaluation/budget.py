@@ -19,11 +19,12 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.files import read_arrays, write_arrays
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.engine.types import Inputs
 from rovsim.dynamics.model import Model
-from rovsim.learning.pairs import Samples, accelerations, at_samples
+from rovsim.learning.pairs import Samples
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.drive import Drive
+from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
+from rovsim.simulation.settings import ReplaySettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
 RESIDUAL, MISSING = "learned residual", "missing"
@@ -99,8 +100,7 @@ def _cumulative(
     """Generalized force (n, 6) as parts are put in one by one, each under its part's name."""
     neutral = [_neutral(effect) for effect in model.effects]
     bare = _with(model, neutral)
-    none = at_samples(bare, motion, settings)
-    none = none._replace(wrench=0 * none.wrench, force=0 * none.force)
+    none = drive_as_measured(bare, motion, settings).idle()
     still = replace(motion, state_nu=0 * motion.state_nu)
     yield RESTORING, _force(bare, still, none)
     yield CORIOLIS, _force(bare, motion, none)
@@ -135,9 +135,9 @@ def _with(model: Model, effects: Sequence[Effect]) -> Model:
 
 
 def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
-    return _force(model, motion, at_samples(model, motion, settings))
+    return _force(model, motion, drive_as_measured(model, motion, settings))
 
 
-def _force(model: Model, motion: Motion, at: Inputs) -> Array:
+def _force(model: Model, motion: Motion, drive: Drive) -> Array:
     """M nu_dot (n, 6) of a model at the measured states."""
-    return accelerations(model, motion, at) @ model.body.M.T
+    return accelerate_as_measured(model, motion, drive) @ model.body.M.T

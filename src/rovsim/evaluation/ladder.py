@@ -6,7 +6,7 @@ import numpy as np
 
 from rovsim.evaluation.scores import by_axis, errors, metrics, normalised, pooled, rms
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import Replay
+from rovsim.simulation.prediction import Replay
 
 SCHEMA = "rovsim.ladder/1"
 EFFECTS, FLOOR = "effects", "noise_floor"

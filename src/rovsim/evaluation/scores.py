@@ -10,7 +10,8 @@ from rovsim import AXES
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.recording.quality import EXCITED
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import OPEN_LOOP, Prediction, Replay, windows
+from rovsim.simulation.prediction import OPEN_LOOP, Prediction, Replay
+from rovsim.simulation.windows import find_windows
 
 COMPARISON = "rovsim.comparison/1"
 
@@ -140,7 +141,7 @@ def growth(
 def _age(motion: Motion, prediction: Prediction, horizon: float) -> Array:
     """Time since the anchor of the window each sample belongs to, s."""
     age = np.full(len(motion.time), np.nan)
-    for a, b in windows(motion, horizon):
+    for a, b in find_windows(motion, horizon):
         at = slice(a, b) if motion.binned else slice(a + 1, b + 1)
         age[at] = motion.time[at] - motion.time[a]
     return age

@@ -10,24 +10,22 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.engine.types import Inputs
 from rovsim.dynamics.learned.features import FeatureSettings, assemble
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import LearnerSettings, Progress, Trained, train
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.initial_memory import measured_memory
-from rovsim.simulation.replay import (
-    ReplaySettings,
+from rovsim.simulation.measured_states import (
+    accelerate_as_measured,
     as_true,
-    clock,
-    inputs,
-    place,
-    residual_data,
-    state_at,
-    trajectories,
+    drive_as_measured,
+    interpolate_state,
+    nearest_steps,
 )
+from rovsim.simulation.replay import simulate
+from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.step_grid import StepGrid
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,22 +61,12 @@ def samples(
     return found(model, motion, signals, settings)
 
 
-def accelerations(model: Model, motion: Motion, at: Inputs) -> Array:
-    """Acceleration (n, 6) of the model at the motion's states, under the thrust of step n."""
-    out = np.empty((len(motion.time), 6))
-    model.engine.accelerations(
-        motion.time - motion.time[0], motion.state, measured_memory(model, motion, motion.time),
-        model.constants, at,
-        model.wrench_parameters()[None], residual_data(model), place(motion), out,
-    )  # fmt: skip
-    return out
-
-
-def _of_samples(model, motion, signals, settings) -> Samples:
+def _of_samples(
+    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
+) -> Samples:
     """At each sample, under the thrust around it; the model's acceleration is filtered too."""
-    steps = clock(motion, settings.step)
-    at = _around(inputs(model, motion, steps.edges, settings.commands), steps.stride)
-    a_sim = accelerations(model, motion, at)
+    drive = drive_as_measured(model, motion, settings)
+    a_sim = accelerate_as_measured(model, motion, drive)
     period = float(motion.time[1] - motion.time[0])
     kept = [np.arange(a, b) for a, b in motion.segments()]
     like = np.concatenate(
@@ -86,75 +74,46 @@ def _of_samples(model, motion, signals, settings) -> Samples:
     )
     index = np.concatenate([*kept, np.arange(0)])
     return Samples(
-        index, motion.nu[index], motion.eta[index, 3:], at.wrench[0, index], a_sim[index],
+        index, motion.nu[index], motion.eta[index, 3:], drive.wrench[index], a_sim[index],
         motion.nu_dot[index] - like,
     )  # fmt: skip
 
 
-def _around(steps: Inputs, stride: int) -> Inputs:
-    """Inputs at samples: the mean of the steps on either side."""
-
-    def mean(x: Array) -> Array:
-        x = x.reshape(-1, stride, x.shape[-1]).mean(axis=1)
-        return 0.5 * (np.vstack([x[:1], x]) + np.vstack([x, x[-1:]]))
-
-    demand = mean(steps.demand)
-    return Inputs(
-        mean(steps.wrench[0])[None], mean(steps.force[0])[None], demand, steps.row,
-        np.full(len(demand), steps.duration[0]),
-    )  # fmt: skip
-
-
-def _of_bins(model, motion, signals, settings) -> Samples:
+def _of_bins(
+    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
+) -> Samples:
     """At each bin's start; the model makes the same backward difference of means of two bins."""
-    steps = clock(motion, settings.step)
-    edges = np.append(motion.time, motion.end)
     fits = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
-    index = 1 + np.flatnonzero(fits)
-    nearest = np.clip(np.round((edges - edges[0]) / steps.h).astype(int), 0, len(steps.edges) - 1)
-    begins, ends = nearest[index - 1], np.maximum(nearest[index + 1], nearest[index - 1] + 1)
-    starts = [
-        (int(b), int(e - b), state_at(motion, steps.edges[b]))
-        for b, e in zip(begins, ends, strict=True)
-    ]
-    a_real_like = np.empty((len(index), 6))
-    for row, (k, path) in enumerate(
-        zip(index, trajectories(model, motion, starts, settings), strict=True)
-    ):
-        fine = steps.edges[starts[row][0] : starts[row][0] + len(path)]
-        two = bin_means(fine, path[:, 7:], np.clip(edges[k - 1 : k + 2], fine[0], fine[-1]))
-        a_real_like[row] = backward_difference(two, motion.time[k - 1 : k + 1])[1]
-    at = _over_bins(inputs(model, motion, steps.edges, settings.commands), nearest)
-    a_sim = accelerations(model, motion, at)[index]
+    index, drive = 1 + np.flatnonzero(fits), drive_as_measured(model, motion, settings)
+    a_sim = accelerate_as_measured(model, motion, drive)[index]
+    a_real_like = _differences_of_bins(model, motion, settings, index)
     return Samples(
-        index, motion.state_nu[index], motion.eta[index, 3:], at.wrench[0, index], a_sim,
+        index, motion.state_nu[index], motion.eta[index, 3:], drive.wrench[index], a_sim,
         motion.nu_dot[index] - a_real_like,
     )  # fmt: skip
 
 
-def _over_bins(steps: Inputs, nearest: Array) -> Inputs:
-    """Inputs at bin starts: the mean over the bins before and after."""
+def _differences_of_bins(
+    model: Model, motion: Motion, settings: ReplaySettings, index: Array
+) -> Array:
+    """Backward difference (n, 6) of the model's means over two bins, from the start of the first.
 
-    def mean(x: Array) -> Array:
-        total = np.vstack([np.zeros(x.shape[-1]), np.cumsum(x, axis=0)])
-        a, b = nearest[np.maximum(np.arange(len(nearest) - 1) - 1, 0)], nearest[1:]
-        return (total[b] - total[a]) / np.maximum(b - a, 1)[:, None]
-
-    demand = mean(steps.demand)
-    return Inputs(
-        mean(steps.wrench[0])[None], mean(steps.force[0])[None], demand, steps.row,
-        np.full(len(demand), steps.duration[0]),
-    )  # fmt: skip
-
-
-def at_samples(model: Model, motion: Motion, settings: ReplaySettings) -> Inputs:
-    """Inputs of one model at every measured instant: means over the steps or bins around it."""
-    steps = clock(motion, settings.step)
-    found = inputs(model, motion, steps.edges, settings.commands)
-    if not motion.binned:
-        return _around(found, steps.stride)
-    nearest = np.round((np.append(motion.time, motion.end) - motion.time[0]) / steps.h).astype(int)
-    return _over_bins(found, np.clip(nearest, 0, len(steps.edges) - 1))
+    `index` (n,) of the second bins.
+    """
+    grid, edges = StepGrid.over(motion, settings.step), np.append(motion.time, motion.end)
+    nearest = nearest_steps(motion, grid)
+    begins, ends = nearest[index - 1], np.maximum(nearest[index + 1], nearest[index - 1] + 1)
+    starts = [
+        (int(b), int(e - b), interpolate_state(motion, grid.edges[b]))
+        for b, e in zip(begins, ends, strict=True)
+    ]
+    found = np.empty((len(index), 6))
+    paths = simulate(model, motion, starts, settings)
+    for row, (k, b, path) in enumerate(zip(index, begins, paths, strict=True)):
+        fine = grid.edges[b : b + len(path)]
+        two = bin_means(fine, path[:, 7:], np.clip(edges[k - 1 : k + 2], fine[0], fine[-1]))
+        found[row] = backward_difference(two, motion.time[k - 1 : k + 1])[1]
+    return found
 
 
 def flown_with(control: str, run: Any) -> bool:

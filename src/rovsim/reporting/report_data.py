@@ -7,7 +7,7 @@ import numpy as np
 
 from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import OPEN_LOOP, Replay
+from rovsim.simulation.prediction import OPEN_LOOP, Replay
 
 SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
 

@@ -1,5 +1,7 @@
 """What the water remembers of a measured motion, where a model has a fluid memory."""
 
+from typing import Iterable, Sequence
+
 import numpy as np
 import scipy
 from numpy import ndarray as Array
@@ -30,6 +32,19 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
     columns = (np.interp(grid, motion.time[known], column) for column in nu_r.T)
     remembered = [lag_of_lines(column, h * body.forgets) for column in columns]
     return np.stack([np.interp(times, grid, column) for column in remembered], axis=1)
+
+
+def remembered_at(
+    models: Sequence[Model], motions: Iterable[Motion], edges: Array, steps: Array
+) -> Array:
+    """What the water remembers (m, w, 6) at some steps (w,) of a grid; empty if it never does.
+
+    `motions` are the same run, true as each model sees it; `edges` (k+1,) s those of the grid.
+    """
+    if not any(m.body.forgets for m in models):
+        return NO_MEMORY
+    rows = [measured_memory(m, run, edges) for m, run in zip(models, motions, strict=True)]
+    return np.stack([r[steps] if r.size else np.zeros((len(steps), 6)) for r in rows])
 
 
 def lag_of_lines(values: Array, step: float) -> Array:

@@ -16,13 +16,11 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Commands, Site
-from rovsim.dynamics.body import packed
-from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import Jobs, Place
 from rovsim.dynamics.model import Model
-from rovsim.simulation.replay import packed_inputs, residual_data, stacked
+from rovsim.simulation.batch import Batch, Starts
+from rovsim.simulation.drive import Drive, drive_models
 
-LONGEST = 0.01  # s, an integration step; see `rovsim.simulation.replay.ReplaySettings`
+LONGEST = 0.01  # s, an integration step; see `rovsim.simulation.settings.ReplaySettings`
 
 
 class Stepper:
@@ -54,8 +52,7 @@ class Stepper:
         _refuse_foresight(model)
         self.model, self.kind, self.duration = model, kind, duration
         self.columns = len(model.body.directions) if kind == "thruster" else 6
-        self._place = Place(np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes))
-        self._fixed = model.constants, model.wrench_parameters()[None], residual_data(model)
+        self._batch = Batch([model], site)
         self.reset()
 
     def reset(self) -> None:
@@ -85,11 +82,8 @@ class Stepper:
         thrust.force[:], self._response = self.model.thrust_path.respond(
             thrust.force, h, self._response
         )
-        constants, p, data = self._fixed
-        inputs = packed_inputs(self.model, thrust, self.duration)
-        self.model.engine.advance(
-            state, self._memory, self.time, h, constants, inputs, p, data, self._place
-        )
+        drive = Drive.by(self.model, thrust, self.duration)
+        self._batch.advance(drive, state, self._memory, self.time, h)
         self.time += dt
         return state
 
@@ -142,32 +136,18 @@ def rollouts(
     Raises:
         BadInput: models that do not go together, or a dt that does not fit.
     """
-    first = models[0]
-    same = all(m.engine is first.engine and m.residual is first.residual for m in models)
-    if not same or not 0.0 < dt <= LONGEST:
+    if not 0.0 < dt <= LONGEST:
         raise BadInput(
-            f"dt {dt}, models {', '.join(m.name for m in models)}",
+            f"dt {dt}",
             where="rollouts",
-            expected=f"dt of at most {LONGEST} s; models with the same wrench effects and residual",
-            remedy="Run different models one after the other.",
+            expected=f"dt of at most {LONGEST} s",
+            remedy="Give a command several times in a row.",
         )
-    k, edges = len(commands), dt * np.arange(len(commands) + 1)
-    lines, duration = Commands(edges[:-1], np.asarray(commands, np.float64), kind), k * dt
-    each = [packed_inputs(m, m.thrust_path.over_steps(lines, edges), duration) for m in models]
-    inputs = stacked(each, range(len(models)))
-    count = len(models) * len(states)
-    zero, member = np.zeros(count, np.int64), np.repeat(np.arange(len(models)), len(states))
-    jobs = Jobs(
-        np.tile(np.asarray(states, np.float64), (len(models), 1)), np.zeros(count), zero, zero + k,
-        member, k * np.arange(count),
+    count, edges = len(commands), dt * np.arange(len(commands) + 1)
+    lines = Commands(edges[:-1], np.asarray(commands, np.float64), kind)
+    starts = Starts(
+        np.tile(np.asarray(states, np.float64), (len(models), 1, 1)),
+        np.zeros(len(states), np.int64), np.full(len(states), count),
     )  # fmt: skip
-    constants = packed([m.body for m in models])
-    out = np.empty((count * k, 13))
-    site = Site.unknown()
-    run_jobs(
-        first.engine.integrate, jobs, dt, 1, constants, inputs,
-        np.stack([m.wrench_parameters() for m in models]),
-        residual_data(first), Place(site.tank, site.axes), out,
-    )  # fmt: skip
-    found = np.concatenate([jobs.state[:, None], out.reshape(count, k, 13)], axis=1)
-    return found.reshape(len(models), len(states), k + 1, 13)
+    batch = Batch(models, Site.unknown())
+    return np.array(batch.trajectories(drive_models(models, lines, edges, "held"), starts, dt))

@@ -12,7 +12,7 @@ from rovsim.apps.workbench.parts import chart
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.marks import ACCELERATION_UNITS, VELOCITY_UNITS
-from rovsim.simulation.replay import Prediction
+from rovsim.simulation.prediction import Prediction
 
 QUANTITIES = {"nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS)}
 HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop

@@ -20,7 +20,8 @@ from rovsim.dynamics.model import BUILT_IN, Model, read_model, zero_acceleration
 from rovsim.evaluation.error_conditions import Judged, judged
 from rovsim.evaluation.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.evaluation.scores import errors, metrics
-from rovsim.simulation.replay import OPEN_LOOP, Prediction, Replay, replay
+from rovsim.simulation.prediction import OPEN_LOOP, Prediction, Replay
+from rovsim.simulation.replay import replay
 
 KEPT = 200  # replays; one of a minute takes 2 MB
 

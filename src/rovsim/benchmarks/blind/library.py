@@ -20,7 +20,7 @@ from rovsim.dynamics.model import Model
 from rovsim.learning.pairs import samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 
 EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
 

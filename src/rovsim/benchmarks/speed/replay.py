@@ -1,42 +1,33 @@
 """Steps per second: one trajectory, many side by side, with a residual in the loop."""
 
 from dataclasses import replace
-from functools import partial
 from time import perf_counter
 from typing import Any, Callable, Mapping
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.run import Site
 from rovsim.dynamics import body as bodies
-from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import Inputs, Jobs, Place
+from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.dynamics.model import Model
+from rovsim.simulation.batch import Batch, Starts
+from rovsim.simulation.drive import Drive
 
 STEP = 0.01  # s
 REPEATS = 15  # the best of so many: what the machine can do when nothing else runs
 
 
-def steps_per_second(model: Model, jobs: int, steps: int, parallel: bool) -> float:
-    """RK4 steps per second of a model driven by random thrust."""
-    place = Place(np.full((3, 2), np.nan), np.ones(3))
-    random = np.random.default_rng(0)
-    force = random.uniform(-10, 10, (1, steps, len(model.body.directions)))
-    inputs = Inputs(
-        np.ascontiguousarray(force @ model.body.B.T), force, np.full((steps, 6), np.nan),
-        np.zeros(1, np.int64), np.full(steps, steps * STEP),
-    )  # fmt: skip
-    start = np.zeros((jobs, 13))
-    start[:, 3] = 1.0
-    count = np.arange(jobs)
-    batch = Jobs(start, np.zeros(jobs), 0 * count, np.full(jobs, steps), 0 * count, count * steps)
-    data = model.residual.data if model.residual else np.empty(0)
-    kernel = model.engine.integrate
-    integrate = partial(run_jobs, kernel) if parallel else kernel
-    out = np.empty((jobs * steps, 13))
-    arguments = (batch, STEP, 1, model.constants, inputs, model.wrench_parameters()[None])
-    return jobs * steps / best(lambda: integrate(*arguments, data, place, out))
+def steps_per_second(model: Model, count: int, steps: int) -> float:
+    """RK4 steps per second of `count` trajectories side by side, driven by random thrust."""
+    force = np.random.default_rng(0).uniform(-10, 10, (steps, len(model.body.directions)))
+    thrust = Thrust(force, np.zeros((steps, 6)), np.full((steps, 6), np.nan))
+    drive, batch = Drive.by(model, thrust, steps * STEP), Batch([model], Site.unknown())
+    state = np.zeros((1, count, 13))
+    state[..., 3] = 1.0
+    starts = Starts(state, np.zeros(count, np.int64), np.full(count, steps))
+    return count * steps / best(lambda: batch.trajectories([drive], starts, STEP))
 
 
 def best(call: Callable[[], Any]) -> float:
@@ -93,11 +84,11 @@ def numpy_steps_per_second(model: Model, steps: int = 300) -> float:
 def replay_speeds(model: Model, residuals: Mapping[str, Residual]) -> dict[str, float]:
     """Steps per second of the nominal model, and by name with a residual in the loop."""
     return {
-        "single_steps_per_s": steps_per_second(model, 1, 200_000, False),
-        "batch_steps_per_s": steps_per_second(model, 400, 2_000, True),
+        "single_steps_per_s": steps_per_second(model, 1, 200_000),
+        "batch_steps_per_s": steps_per_second(model, 400, 2_000),
         **{
             f"{name}_in_loop_steps_per_s": steps_per_second(
-                replace(model, residual=residual), 1, 5_000, False
+                replace(model, residual=residual), 1, 5_000
             )
             for name, residual in residuals.items()
         },

@@ -20,7 +20,7 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalised, rms
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import filter_eta
-from rovsim.simulation.replay import windows
+from rovsim.simulation.windows import find_windows
 
 DRAWS = 8
 PAD = 1.0  # s before and after, so that the filter has settled
@@ -43,7 +43,7 @@ def simulate_noise_floor(
 def _errors(model, run, noise, signals, between, random) -> Array:
     """Errors (n, 6) of a perfect model on one run, all draws."""
     pushes = _pushes(model, run, noise, random)
-    anchors = np.array([a for a, _ in windows(run.motion, SECONDS)], int)
+    anchors = np.array([a for a, _ in find_windows(run.motion, SECONDS)], int)
     reported = [_noisy(run, noise, signals, random) for _ in range(DRAWS)]
     truth = np.tile(run.motion.state[anchors], (DRAWS, 1, 1))
     starts = np.array([state[anchors] for state in reported])
@@ -57,7 +57,7 @@ def _errors(model, run, noise, signals, between, random) -> Array:
 def _rows(run: ObservedRun) -> Array:
     """Samples or bins of all windows, in the order of `differences`."""
     shift = 0 if run.motion.binned else 1
-    parts = [np.arange(a + shift, b + shift) for a, b in windows(run.motion, SECONDS)]
+    parts = [np.arange(a + shift, b + shift) for a, b in find_windows(run.motion, SECONDS)]
     return np.concatenate([np.arange(0), *parts])
 
 

@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.motion import Motion, Poses
-from rovsim.simulation.replay import clock
+from rovsim.simulation.step_grid import StepGrid
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
 SETTLING = 1.0  # s
@@ -97,7 +97,7 @@ def prepare_run(stage: Stage, motion: Motion, step: float) -> ObservedRun:
         motion: the same run, filtered and differentiated.
         step: longest integration step, s.
     """
-    steps = clock(motion, step)
+    steps = StepGrid.over(motion, step)
     if motion.binned:
         return _bins(motion, steps.edges)
     assert isinstance(stage, Poses)

@@ -9,16 +9,14 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.innovations import batch, remembered
+from rovsim.diagnosis.observer.innovations import drives, observing, remembered
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import Between
-from rovsim.dynamics.body import packed
-from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import Jobs
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalised, rms
 from rovsim.measurement.signals.binned import bin_means
-from rovsim.simulation.replay import place, windows
+from rovsim.simulation.batch import Starts
+from rovsim.simulation.windows import find_windows
 
 SECONDS = 2.0  # contract, section 3
 
@@ -57,11 +55,11 @@ def differences(
         pushes: further wrench (m, k, 6) over the integration steps, N and N m.
         seconds: length of the windows.
     """
-    spans = list(windows(run.motion, seconds))
+    spans = list(find_windows(run.motion, seconds))
     own = np.array([a for a, _ in spans], int)
     if starts is None:
         starts = np.tile(run.motion.state[own], (len(models), 1, 1))
-    paths = _paths(models, run, spans, starts, between, pushes)
+    paths = _simulate(models, run, spans, starts, between, pushes)
     nu = [
         [m.mocap_view.twists(p[:, 7:]) for p in of_model]
         for m, of_model in zip(models, paths, strict=True)
@@ -74,32 +72,24 @@ def _all_readings(run: ObservedRun, spans: Sequence[tuple[int, int]], nu: Sequen
     return np.concatenate([np.empty((0, 6)), *parts])
 
 
-def _paths(models, run, spans, starts, between, pushes) -> list[list[Array]]:
+def _simulate(
+    models: Sequence[Model],
+    run: ObservedRun,
+    spans: Sequence[tuple[int, int]],
+    starts: Array,
+    between: Between,
+    pushes: Array | None,
+) -> list[list[Array]]:
     """States (steps + 1, 13) of each model and window, every integration step."""
-    module, inputs, p = batch(models, run, between)
+    driven = drives(models, run, between)
     if pushes is not None:
-        wrench = inputs.wrench[inputs.row] + pushes
-        force = inputs.force[inputs.row]
-        inputs = inputs._replace(wrench=wrench, force=force, row=np.arange(len(models)))
+        driven = [drive.pushed(push) for drive, push in zip(driven, pushes, strict=True)]
     first = np.array([run.ends[a] for a, _ in spans], np.int64)
     steps = np.array([run.ends[b] - run.ends[a] for a, b in spans], np.int64)
     begin = np.array([m.mocap_view.inverse.states(s) for m, s in zip(models, starts, strict=True)])
-    count, total = len(models), int(steps.sum())
-    rows = np.concatenate([[0], np.cumsum(np.tile(steps, count))])
-    jobs = Jobs(
-        begin.reshape(-1, 13), np.tile(first * run.h, count), np.tile(first, count),
-        np.tile(steps, count), np.repeat(np.arange(count), len(spans)), rows[:-1],
-        remembered(models, run, first),
-    )  # fmt: skip
-    out = np.empty((count * total, 13))
-    run_jobs(
-        module.integrate, jobs, run.h, 1, packed([m.body for m in models]), inputs, p,
-        np.empty(0), place(run.motion), out,
-    )  # fmt: skip
-    found = [
-        np.vstack([s, out[a:b]]) for s, a, b in zip(jobs.state, rows[:-1], rows[1:], strict=True)
-    ]
-    return [found[i : i + len(spans)] for i in range(0, len(found), len(spans))]
+    memory = remembered(models, run, first)
+    batch = observing(models, run)
+    return batch.trajectories(driven, Starts(begin, first, steps, memory), run.h)
 
 
 def _at_readings(run: ObservedRun, span: tuple[int, int], nu: Array) -> Array:

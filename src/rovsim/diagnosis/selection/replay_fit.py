@@ -23,7 +23,7 @@ from rovsim.diagnosis.observer.windows import differences, readings
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, descend, judge
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
-from rovsim.simulation.replay import windows
+from rovsim.simulation.windows import find_windows
 
 SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
 SMALLEST = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count
@@ -79,13 +79,13 @@ class Replays:
 
 def _window(run: ObservedRun) -> Array:
     """Number (n,) of the window of each velocity."""
-    lengths = [b - a for a, b in windows(run.motion, SECONDS)]
+    lengths = [b - a for a, b in find_windows(run.motion, SECONDS)]
     return np.repeat(np.arange(len(lengths)), lengths)
 
 
 def _reading(run: ObservedRun) -> Array:
     """Sample or bin (n,) of each velocity."""
-    every, spans = np.arange(len(run.motion.time)), windows(run.motion, SECONDS)
+    every, spans = np.arange(len(run.motion.time)), find_windows(run.motion, SECONDS)
     return np.concatenate([np.empty(0, int), *(every[readings(run, span)] for span in spans)])
 
 

@@ -9,7 +9,7 @@ from rovsim.evaluation.error_conditions.findings import Where, explain
 from rovsim.learning.pairs import Samples, samples
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,9 @@ from rovsim.learning.pairs import Samples, samples
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.replay import OPEN_LOOP, ReplaySettings, replay
+from rovsim.simulation.prediction import OPEN_LOOP
+from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import ReplaySettings
 
 SCHEMA = "rovsim.pitfalls/1"
 ERROR, SHARE = "velocity RMSE of the open loop / spread", "share of residual acceleration foretold"

@@ -20,7 +20,7 @@ from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.marks import ACCELERATION_UNITS
 from rovsim.reporting.figures.signature import Seen
-from rovsim.simulation.replay import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import (
     Box,

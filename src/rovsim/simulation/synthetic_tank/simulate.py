@@ -12,8 +12,10 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import CommandKind, Commands, Site
-from rovsim.dynamics.engine.types import Inputs, Place
+from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.model import Model
+from rovsim.simulation.batch import Batch
+from rovsim.simulation.drive import Drive
 from rovsim.simulation.synthetic_tank.pilot import Pilot
 from rovsim.simulation.synthetic_tank.settings import TankSettings, Turbulence
 
@@ -54,7 +56,7 @@ def simulate(model: Model, settings: TankSettings, control: str, tank: Array, ra
         first = k * per_tick
         command = vehicle.as_logged(pilot.demand(k, states[first]))
         rows = slice(first, first + per_tick)
-        vehicle.advance(k, command, states[first], pushes[rows], states[first + 1 :][:per_tick])
+        states[first + 1 :][:per_tick] = vehicle.advance(k, command, states[first], pushes[rows])
         _stay_inside(states[first + per_tick], tank, (k + 1) * tick)
     time = np.arange(len(states)) * h
     return Truth(time, states, Commands(vehicle.times, vehicle.commands, vehicle.kind))
@@ -65,14 +67,14 @@ class _Vehicle:
 
     def __init__(self, model: Model, tank: Array, settings: TankSettings, tick: float) -> None:
         self.model, self.duration, self.tick, self.h = model, settings.duration, tick, settings.step
-        self.place = Place(np.ascontiguousarray(tank), HALF_TURN_X)
+        site = Site(tank, HALF_TURN_X)
         self.kind: CommandKind = "demand" if settings.log.kind == "demand" else "thruster"
-        model.check(Site(*self.place), self.kind)
+        model.check(site, self.kind)
         columns = 6 if self.kind == "demand" else len(model.body.directions)
         self.times, self.commands = np.empty(0), np.empty((0, columns))
         self.lag: list | None = None
         self.memory = np.zeros(6)
-        self.heun = model.engine.heun
+        self.batch = Batch([model], site)
 
     def as_logged(self, demand: Array) -> Array:
         """What a demand (6,) leaves in the log: itself, or thruster PWM in whole microseconds."""
@@ -92,26 +94,20 @@ class _Vehicle:
             stamp += max(0.0, t - float(arrival(np.array([stamp]))[0]))
         return stamp
 
-    def advance(self, k: int, command: Array, state: Array, pushes: Array, out: Array) -> None:
-        """Take the command of tick k and move on to the next tick."""
+    def advance(self, k: int, command: Array, state: Array, pushes: Array) -> Array:
+        """Take the command of tick k; the states (steps, 13) up to the next tick."""
         self.times = np.append(self.times, self._stamp(k * self.tick))
         self.commands = np.vstack([self.commands, command])
-        path, t = self.model.thrust_path, k * self.tick
-        middle = t + self.h * (0.5 + np.arange(len(out)))
+        path, t, steps = self.model.thrust_path, k * self.tick, len(pushes)
+        middle = t + self.h * (0.5 + np.arange(steps))
         arrival = path.arrival(self.times)
         held = self.commands[np.clip(np.searchsorted(arrival, middle, "right") - 1, 0, None)]
         command = path.thruster_commands(held, self.kind)
         static = path.static(command, middle, self.duration)
         force, self.lag = path.respond(static, self.h, self.lag)
-        demand = held if self.kind == "demand" else np.full((len(out), 6), np.nan)
-        inputs = Inputs(
-            self.model.actuated(force, demand)[None], force[None], demand, np.zeros(1, np.int64),
-            np.full(len(out), self.duration),
-        )  # fmt: skip
-        self.heun(
-            state, self.memory, t, self.h, pushes, self.model.constants, inputs,
-            self.model.wrench_parameters(), np.empty(0), self.place, out,
-        )  # fmt: skip
+        demand = held if self.kind == "demand" else np.full((steps, 6), np.nan)
+        drive = Drive.by(self.model, Thrust(force, np.zeros((steps, 6)), demand), self.duration)
+        return self.batch.advance_by_heun(drive, pushes, state, self.memory, t, self.h)
 
 
 def disturbance(settings: Turbulence, steps: int, h: float, random) -> Array:

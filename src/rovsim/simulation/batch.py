@@ -1,0 +1,222 @@
+"""The one way into the compiled engine: models, drives and starts to trajectories.
+
+Replay, stepping, training pairs, budget, observer, tank and benchmarks all come through here; what
+the kernels take, and in which order, is known to this module and the engine alone.
+"""
+
+from dataclasses import dataclass, field
+from typing import Sequence, TypeVar
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.run import Site
+from rovsim.dynamics.body import packed
+from rovsim.dynamics.effects.base import Wrench
+from rovsim.dynamics.engine.compiled import engine
+from rovsim.dynamics.engine.parallel import run_jobs
+from rovsim.dynamics.engine.types import NO_MEMORY, Constants, Inputs, Jobs, Place
+from rovsim.dynamics.model import Model
+from rovsim.simulation.drive import Drive
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class Starts:
+    """Where trajectories begin: w for each of m models, all over the same steps.
+
+    `state` (m, w, 13) true ones at CO; `first` (w,) steps, or readings, from which on; `steps` (w,)
+    how many; `memory` (m, w, 6) velocity that the water remembers, empty where it never does.
+    """
+
+    state: Array
+    first: Array
+    steps: Array
+    memory: Array = field(default_factory=lambda: NO_MEMORY)
+
+    def jobs(self, time: Array, out: Array) -> Jobs:
+        """What kernels work off: starts at `time` (w,) s, whose output begins at rows `out`."""
+        models, count = self.state.shape[:2]
+        return Jobs(
+            self.state.reshape(-1, 13), np.tile(time, models), np.tile(self.first, models),
+            np.tile(self.steps, models), np.repeat(np.arange(models), count), out,
+            self.memory.reshape(-1, 6),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """Readings that a filter corrects models by.
+
+    `readings` of each model (k, 13): pose, and mean velocity since the reading before; `ends` (k,)
+    steps at which they hold; `gains` (3, 6) of pose, velocity and disturbance per unit of
+    innovation; `decay` (6,) of the disturbance over one step; `by_velocity`: by the velocities,
+    and poses are taken as they are read.
+    """
+
+    readings: Sequence[Array]
+    ends: Array
+    gains: Array
+    decay: Array
+    by_velocity: bool
+
+
+class Batch:
+    """Models of one vehicle side by side at one site.
+
+    Args:
+        models: m of them.
+        site: walls, where an effect needs them.
+        slots: wrench effects of an engine that serves models with different ones; such models run
+            without their learned residual. None: the models' own, the same for all, as is the
+            residual.
+
+    Raises:
+        BadInput: models that do not go together.
+    """
+
+    def __init__(
+        self, models: Sequence[Model], site: Site, slots: Sequence[type[Wrench]] | None = None
+    ) -> None:
+        first = models[0]
+        self._residual = np.empty(0)
+        if slots is None:
+            _refuse_unlike(models)
+            self._engine = first.engine
+            self._parameters = np.stack([m.wrench_parameters() for m in models])
+            self._residual = first.residual.data if first.residual else self._residual
+        else:
+            self._engine = engine(slots)
+            self._parameters = np.stack([_slotted(m, slots) for m in models])
+        self._constants = _constants(models)
+        self._place = Place(np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes))
+
+    def trajectories(
+        self, drives: Sequence[Drive], starts: Starts, h: float, stride: int = 1
+    ) -> list[list[Array]]:
+        """States (steps / stride + 1, 13) of each model from each start, the given one first.
+
+        Args:
+            drives: one for each model.
+            starts: where to begin; `steps` are multiples of `stride`.
+            h: integration step, s.
+            stride: steps from one returned state to the next.
+        """
+        models, count = starts.state.shape[:2]
+        rows = np.tile(starts.steps // stride + 1, models)
+        stops = np.cumsum(rows)
+        out = np.empty((int(rows.sum()), 13))
+        out[stops - rows] = starts.state.reshape(-1, 13)
+        run_jobs(
+            self._engine.integrate, starts.jobs(starts.first * h, stops - rows + 1), h, stride,
+            self._constants, _inputs(drives), self._parameters, self._residual, self._place, out,
+        )  # fmt: skip
+        paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
+        return [paths[k * count : (k + 1) * count] for k in range(models)]
+
+    def innovations(
+        self, drives: Sequence[Drive], starts: Starts, h: float, correction: Correction
+    ) -> Array:
+        """What each model could not foresee (m, n, 6) of the readings, m or m/s, rad or rad/s.
+
+        Each start is at reading `first` and goes on over `steps` readings, n in all; a learned
+        residual is left out.
+        """
+        models, count = len(starts.state), int(starts.steps.sum())
+        stops = np.cumsum(np.tile(starts.steps, models))
+        out = np.empty((models * count, 6))
+        own, row = _distinct(correction.readings)
+        jobs = starts.jobs(correction.ends[starts.first] * h, stops - np.tile(starts.steps, models))
+        run_jobs(
+            self._engine.observe, jobs, h, correction.ends, self._constants, _inputs(drives),
+            self._parameters, self._place, np.stack(own), row, correction.gains, correction.decay,
+            correction.by_velocity, out,
+        )  # fmt: skip
+        return out.reshape(models, count, 6)
+
+    def accelerations(self, drive: Drive, times: Array, states: Array, memory: Array) -> Array:
+        """nu_dot (n, 6) of the first model at times (n,) s and states (n, 13).
+
+        `memory` (n, 6) is what the water remembers then; empty: nothing.
+        """
+        out = np.empty((len(times), 6))
+        self._engine.accelerations(
+            times, np.ascontiguousarray(states), memory, self._constants, _inputs([drive]),
+            self._parameters, self._residual, self._place, out,
+        )  # fmt: skip
+        return out
+
+    def advance(self, drive: Drive, state: Array, memory: Array, t: float, h: float) -> None:
+        """Move the first model's state (13,) and memory (6,) on over all steps, in place."""
+        self._engine.advance(
+            state, memory, t, h, self._constants, _inputs([drive]), self._parameters,
+            self._residual, self._place,
+        )  # fmt: skip
+
+    def advance_by_heun(
+        self, drive: Drive, pushes: Array, state: Array, memory: Array, t: float, h: float
+    ) -> Array:
+        """States (k, 13) of the first model after each step; `memory` (6,) moves on in place.
+
+        For the synthetic tank alone, whose truth must not share the replay's integrator; `pushes`
+        (k, 6) is an acceleration that nobody logged.
+        """
+        out = np.empty((len(pushes), 13))
+        self._engine.heun(
+            state, memory, t, h, pushes, self._constants, _inputs([drive]), self._parameters[0],
+            self._residual, self._place, out,
+        )  # fmt: skip
+        return out
+
+
+def _refuse_unlike(models: Sequence[Model]) -> None:
+    first = models[0]
+    if all(m.engine is first.engine and m.residual is first.residual for m in models):
+        return
+    raise BadInput(
+        f"models {', '.join(m.name for m in models)}",
+        where="one batch",
+        expected="models with the same wrench effects and residual",
+        remedy="Run different models one after the other.",
+    )
+
+
+def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
+    """Parameters of every slot; those the model does not use have their defaults."""
+    own = list(model.wrenches)
+    parts = [np.zeros(0)]
+    for cls in slots:
+        used = next((w for w in own if type(w) is cls), None)
+        if used is not None:
+            own.remove(used)
+        parts.append(np.array([p.default for p in cls.parameters]) if used is None else used.values)
+    return np.concatenate(parts)
+
+
+def _constants(models: Sequence[Model]) -> Constants:
+    """Constants of all models; those of one are kept with it."""
+    if len(models) == 1:
+        return models[0].constants
+    constants = packed([m.body for m in models])
+    constants.M_inv[[m.inert for m in models]] = 0.0
+    return constants
+
+
+def _inputs(drives: Sequence[Drive]) -> Inputs:
+    """The drives of models as kernels take them; one that serves several is there once."""
+    own, row = _distinct(drives)
+    first = own[0]
+    if len(own) == 1:
+        wrench, force = first.wrench[None], first.force[None]
+    else:
+        wrench, force = np.stack([d.wrench for d in own]), np.stack([d.force for d in own])
+    return Inputs(wrench, force, first.demand, row, np.full(len(first.wrench), first.duration))
+
+
+def _distinct(values: Sequence[T]) -> tuple[list[T], Array]:
+    """The distinct objects among values, and (m,) which of them each value is."""
+    own = {id(value): value for value in values}
+    place = {key: k for k, key in enumerate(own)}
+    return list(own.values()), np.array([place[id(value)] for value in values], np.int64)

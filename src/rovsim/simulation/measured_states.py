@@ -1,0 +1,81 @@
+"""A model at the measured states: teacher-forced, it is told where it is and only accelerates."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import normalized
+from rovsim.dynamics.model import Model
+from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.batch import Batch
+from rovsim.simulation.drive import Drive, drive_by_log
+from rovsim.simulation.initial_memory import measured_memory
+from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.step_grid import StepGrid
+
+
+def as_true(model: Model, motion: Motion) -> Motion:
+    """The motion behind the reported one, if the motion capture sees as the model says."""
+    back = model.mocap_view.inverse
+    return motion if back.identity else replace(
+        motion, eta=back.poses(motion.eta), nu=back.twists(motion.nu),
+        nu_dot=back.twists(motion.nu_dot), state_nu=back.twists(motion.state_nu),
+    )  # fmt: skip
+
+
+def interpolate_state(motion: Motion, time: float) -> Array:
+    """State (13,) between two samples or bin starts, linearly."""
+    k = int(np.clip(np.searchsorted(motion.time, time) - 1, 0, len(motion.time) - 2))
+    share = (time - motion.time[k]) / (motion.time[k + 1] - motion.time[k])
+    state = (1.0 - share) * motion.state[k] + share * motion.state[k + 1]
+    state[3:7] = normalized(state[3:7])
+    return state
+
+
+def accelerate_as_measured(model: Model, motion: Motion, drive: Drive) -> Array:
+    """Acceleration (n, 6) of a model at the states of a true motion, as it is driven there (n)."""
+    memory = measured_memory(model, motion, motion.time)
+    times = motion.time - motion.time[0]
+    return Batch([model], motion.site).accelerations(drive, times, motion.state, memory)
+
+
+def drive_as_measured(model: Model, motion: Motion, settings: ReplaySettings) -> Drive:
+    """What the log does to a model at every measured instant: means of the steps around it.
+
+    Raises:
+        BadInput: the run lacks what an effect of the model needs.
+    """
+    grid = StepGrid.over(motion, settings.step)
+    drive = drive_by_log(model, motion, grid, settings)
+    if motion.binned:
+        return _average_at_bins(drive, nearest_steps(motion, grid))
+    return _average_at_samples(drive, grid.stride)
+
+
+def _average_at_samples(drive: Drive, stride: int) -> Drive:
+    """At each sample of a uniform clock: the mean of the steps on either side."""
+
+    def mean(x: Array) -> Array:
+        x = x.reshape(-1, stride, x.shape[-1]).mean(axis=1)
+        return 0.5 * (np.vstack([x[:1], x]) + np.vstack([x, x[-1:]]))
+
+    return drive.each(mean)
+
+
+def _average_at_bins(drive: Drive, nearest: Array) -> Drive:
+    """At the start of each bin, step `nearest` (n+1,): the mean over the bins before and after."""
+
+    def mean(x: Array) -> Array:
+        total = np.vstack([np.zeros(x.shape[-1]), np.cumsum(x, axis=0)])
+        a, b = nearest[np.maximum(np.arange(len(nearest) - 1) - 1, 0)], nearest[1:]
+        return (total[b] - total[a]) / np.maximum(b - a, 1)[:, None]
+
+    return drive.each(mean)
+
+
+def nearest_steps(motion: Motion, grid: StepGrid) -> Array:
+    """Steps (n+1,) at which the bins begin, and the last one ends."""
+    edges = np.append(motion.time, motion.end)
+    nearest = np.round((edges - edges[0]) / grid.h).astype(int)
+    return np.clip(nearest, 0, len(grid.edges) - 1)

@@ -1,0 +1,64 @@
+"""What a replay returns: arrays aligned with the measurement, by horizon."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.files import read_arrays, write_arrays
+from rovsim.core.run import RunInfo
+
+OPEN_LOOP = "open_loop"
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What a model predicts at motion.time: NaN where nothing, infinite once it diverged.
+
+    `eta` (n, 7) pose, `nu` (n, 6) velocity, `nu_dot` (n, 6) acceleration, after the filter.
+    """
+
+    eta: Array
+    nu: Array
+    nu_dot: Array
+
+    @staticmethod
+    def empty(count: int) -> "Prediction":
+        """Nothing, at `count` instants."""
+        return Prediction(*(np.full((count, columns), np.nan) for columns in (7, 6, 6)))
+
+    def mark_diverged(self, at: slice) -> None:
+        """Make infinite what left the finite numbers, so that no score passes over it."""
+        lost = ~np.isfinite(self.nu[at]).all(axis=1)
+        for values in (self.eta, self.nu, self.nu_dot):
+            values[at][lost] = np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """Predictions of one model for one run, by horizon: `open_loop`, `0.5`, `2`, `5`."""
+
+    model: str
+    run: RunInfo
+    time: Array
+    horizons: dict[str, Prediction]
+
+    def write(self, path: Path) -> None:
+        """Write to `.npz`."""
+        arrays = {
+            f"{horizon}/{name}": getattr(prediction, name)
+            for horizon, prediction in self.horizons.items()
+            for name in ("eta", "nu", "nu_dot")
+        }
+        label = np.array([self.model, self.run.id, self.run.control, self.run.split])
+        write_arrays(path, label=label, time=self.time, **arrays)
+
+    @staticmethod
+    def read(path: Path) -> "Replay":
+        """Read what `write` wrote."""
+        a = read_arrays(path)
+        model, *run = (str(s) for s in a["label"])
+        names = dict.fromkeys(key.split("/")[0] for key in a if "/" in key)
+        horizons = {h: Prediction(a[f"{h}/eta"], a[f"{h}/nu"], a[f"{h}/nu_dot"]) for h in names}
+        return Replay(model, RunInfo(*run), a["time"], horizons)

@@ -1,0 +1,32 @@
+"""The integration steps of a run."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.measurement.signals.motion import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class StepGrid:
+    """`edges` (k+1,) s between k steps of one length; `stride` steps make a sample."""
+
+    edges: Array
+    stride: int
+
+    @property
+    def h(self) -> float:
+        """Step length in s."""
+        return float(self.edges[1] - self.edges[0])
+
+    @staticmethod
+    def over(motion: Motion, step: float) -> "StepGrid":
+        """Steps no longer than `step` s over a run; those of a sampled run meet its samples."""
+        if motion.binned:
+            count = int(np.ceil((motion.end - motion.time[0]) / step - 1e-9))
+            return StepGrid(motion.time[0] + step * np.arange(count + 1), 1)
+        period = float(motion.time[1] - motion.time[0])
+        stride = int(np.ceil(period / step - 1e-9))
+        h, count = period / stride, (len(motion.time) - 1) * stride
+        return StepGrid(motion.time[0] + h * np.arange(count + 1), stride)

@@ -1,0 +1,39 @@
+"""Where replays start anew: windows of some seconds inside usable stretches."""
+
+from typing import Iterator
+
+import numpy as np
+
+from rovsim.measurement.signals.motion import Motion
+
+
+def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
+    """Index pairs (anchor, end) of full windows inside usable stretches.
+
+    Sampled: predictions are anchor+1 .. end. Binned: bins anchor .. end-1, whose number follows the
+    uneven clock: the next window starts at the bin that begins nearest to `seconds` later.
+    """
+    for first, last in motion.segments():
+        if motion.binned:
+            yield from _find_bins(motion, first, last, seconds)
+            continue
+        count = round(seconds / float(motion.time[1] - motion.time[0]))
+        for anchor in range(first, last - count, count):
+            yield anchor, anchor + count
+
+
+def _find_bins(motion: Motion, first: int, last: int, seconds: float) -> Iterator[tuple[int, int]]:
+    starts = np.append(motion.time, motion.end)[: last + 1]
+    anchor = first
+    while starts[last] - starts[anchor] >= 0.75 * seconds:
+        end = anchor + 1 + int(np.argmin(np.abs(starts[anchor + 1 :] - starts[anchor] - seconds)))
+        yield anchor, end
+        if end >= last:
+            return
+        anchor = end
+
+
+def find_whole(motion: Motion) -> list[tuple[int, int]]:
+    """From the first usable sample to the last sample, once; nothing of an unusable run."""
+    last = len(motion.time) - (0 if motion.binned else 1)
+    return [(first, last) for first, _ in motion.segments()[:1] if first < last]
