@@ -9,7 +9,7 @@ from rovsim.application.study import Study
 study = Study(config)
 folds = LeaveOneRunOut(study)
 try:
-    config["effects_file"] = study.effect_files
+    config["effects_file"] = [str(path) for path in study.catalogue.files]
     study.on_effects
     folds.targets
 except RovsimError as error:

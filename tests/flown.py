@@ -5,6 +5,7 @@ from pathlib import Path
 from rovsim.application.loading import campaign_vehicle
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.of_campaign import Runs
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
@@ -16,9 +17,9 @@ from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[ObservedRun]]:
     """The nominal model, and one train run; `tank` are settings of the tank."""
     run = TankRun(id="a", control=control, split="train")
-    make_campaign(TankSettings(runs=(run,), **tank), folder / "raw")
+    make_campaign(TankSettings(runs=(run,), **tank), folder / "raw", built_in())
     campaign = load_campaign(folder / "raw")
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    runs = Runs({"a": motion}, {"a": stage}).prepare("train", 0.01)
+    runs = Runs({"a": motion}, {"a": stage}).prepare("train", 0.01, built_in())
     return nominal(campaign_vehicle(campaign)), runs

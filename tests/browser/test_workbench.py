@@ -10,7 +10,8 @@ from rovsim import AXES
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench.traces import HORIZONS
 from rovsim.diagnosis.apply import read_diagnosis
-from rovsim.dynamics.model import read_model
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.model_file import describe_effect, read_model
 
 pytestmark = pytest.mark.browser
 SCREENS = ("compare", "where", "why", "add", "ladder", "data", "gallery")
@@ -67,7 +68,7 @@ def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbenc
     assert saved["saved/after"] == pytest.approx(diagnosis["error"]["with_effects"], rel=1e-5)
     assert saved["saved/after"] < 0.3 * saved["saved/before"]
     file = folder / "my models" / "repaired.yaml"
-    entry = read_model(file).entries[0].plain()
+    entry = describe_effect(read_model(file, built_in()).added[0]).plain()
     assert entry["parameters"] == diagnosis["selected"][0]["parameters"]
 
     tab.page.get_by_role("button", name="See the whole ladder").click()

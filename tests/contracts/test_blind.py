@@ -15,8 +15,8 @@ from rovsim.benchmarks.blind.suites import FAMILIES, suite
 from rovsim.benchmarks.blind.summary import detection_limit, judged, summary
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
-from rovsim.dynamics.effects import catalogue
-from rovsim.dynamics.model import EffectEntry
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.model_file import EffectEntry, build_effect
 from rovsim.reporting.html.marked import BEGIN, END, replace_tables
 
 SHORT = {
@@ -43,9 +43,9 @@ def diagnosis(*named, verdict=None, groups=(), **parameters):
 
 @pytest.mark.parametrize("name", ["quick", "standard", "full"])
 def test_every_effect_of_the_catalogue_is_hidden_once_alone(name):
-    assert set(RECIPES) == set(catalogue()) == frozenset.union(*FAMILIES)
+    assert set(RECIPES) == set(built_in()) == frozenset.union(*FAMILIES)
     alone = [c.hidden[0].effect for c in suite(name, "development") if c.kind == "single"]
-    assert set(alone) == set(catalogue())
+    assert set(alone) == set(built_in())
 
 
 def test_cases_are_valid_and_their_effects_do_something():
@@ -57,7 +57,7 @@ def test_cases_are_valid_and_their_effects_do_something():
     for one in cases:
         one.settings()
         for entry in one.hidden:
-            assert entry.build().given()
+            assert build_effect(entry, built_in()).given()
         for unlisted in one.outside:
             assert unlisted.build().given()
 
@@ -76,7 +76,7 @@ def test_weaker_cases_hide_the_same_but_less():
     cases = {c.id: c for c in suite("full", "development")}
     for name in ("thruster_lag", "quadratic_damping", "thruster_gain", "payload"):
         full, tenth = cases[f"single/{name}/0"], cases[f"weak 0.1/{name}/0"]
-        strong, weak = full.hidden[0].build(), tenth.hidden[0].build()
+        strong, weak = (build_effect(one.hidden[0], built_in()) for one in (full, tenth))
         for p, a, b in zip(strong.parameters, strong.values, weak.values, strict=True):
             kept = p.name in RECIPES[name].fixed
             assert b == pytest.approx(a if kept else p.default + 0.1 * (a - p.default), rel=1e-3)
@@ -93,10 +93,10 @@ def test_sets_hold_effects_of_different_families():
 @pytest.mark.parametrize("name", OUTSIDE)
 def test_outside_physics_never_enters_the_catalogue(name):
     found = drawn_outside(name, 1.0, np.random.default_rng(0))
-    assert name not in catalogue()
+    assert name not in built_in()
     assert all([found.__doc__, found.equation, found.neglects, found.source])
     with pytest.raises(BadInput, match="unknown effect"):
-        EffectEntry(effect=name).build()
+        build_effect(EffectEntry(effect=name), built_in())
 
 
 # flying

@@ -6,7 +6,7 @@ import pytest
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.effects import built_in
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.learning.pairs import samples
@@ -67,12 +67,12 @@ def test_a_condition_that_does_not_exist_is_refused(conditions):
 def test_a_picture_is_the_same_every_time(tmp_path):
     cls = built_in()["thruster_gain"]
     for name in ("one", "two"):
-        write(signature(seen(cls.signature, short(cls))), tmp_path / name)
+        write(signature(seen(cls.signature, short(cls), built_in())), tmp_path / name)
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
 
 
 def test_black_and_orange_agree():
     """The effect is what the nominal model misses, apart from what the water does by itself."""
     cls = built_in()["thruster_gain"]
-    look = seen(cls.signature, short(cls))
+    look = seen(cls.signature, short(cls), built_in())
     assert abs(look.error - look.added).max() < 0.15 * abs(look.error).max()

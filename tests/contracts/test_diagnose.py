@@ -7,6 +7,7 @@ from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json, read_yaml
 from rovsim.diagnosis.apply import added
+from rovsim.dynamics.catalogue import built_in
 from rovsim.evaluation.ladder import floor_step, step, with_diagnosis
 
 
@@ -67,9 +68,9 @@ def test_a_diagnosis_is_a_run_and_every_step_a_run_in_it(diagnosed):
 
 def test_nothing_selected_adds_nothing(diagnosed, capsys):
     source = diagnosed / "found" / "diagnosis.json"
-    model, names = added(read_json(source), source, "nominal", None)
+    model, names = added(read_json(source), source, "nominal", None, built_in())
     assert names == []
-    assert model.entries == ()
+    assert model.added == ()
     main(["add", f"diagnosis={source}", f"model={diagnosed / 'new.yaml'}"])
     assert "selected no effect" in capsys.readouterr().out
     assert read_yaml(diagnosed / "new.yaml")["effects"] == []

@@ -5,9 +5,9 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
-from rovsim.dynamics.effects import built_in, effect
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wrench
-from rovsim.dynamics.model import read_model
+from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, some, sticks, tank
@@ -87,8 +87,8 @@ def test_bad_values_are_refused_with_the_nearest_name(cls):
 @EVERY
 def test_a_model_file_keeps_it(cls, tmp_path):
     world = model(some(cls))
-    world.write(tmp_path / "m.yaml")
-    again = read_model(tmp_path / "m.yaml")
+    write_model(world, tmp_path / "m.yaml")
+    again = read_model(tmp_path / "m.yaml", built_in())
     assert again.name == "m"
     assert [e.given() for e in again.effects] == [e.given() for e in world.effects]
     assert driven(again).tobytes() == driven(world).tobytes()
@@ -96,7 +96,7 @@ def test_a_model_file_keeps_it(cls, tmp_path):
 
 def test_an_unknown_effect_names_the_nearest():
     with pytest.raises(BadInput, match="Did you mean 'thruster_lag'"):
-        effect("thruster_lg")
+        built_in().find("thruster_lg")
 
 
 SIGNS = {  # effect, parameters: axis and sign of the first acceleration of a vehicle at rest
@@ -114,7 +114,7 @@ def test_it_pushes_the_right_way(name, parameter):
     start = [(0, 10, at_rest())]
     with_it, without = (
         simulate(world, run, start, ReplaySettings())[0][-1, 7 + axis]
-        for world in (model(effect(name)(**{parameter: 0.5})), model())
+        for world in (model(built_in()[name](**{parameter: 0.5})), model())
     )
     assert sign * (with_it - without) > 0
 

@@ -5,6 +5,7 @@ import pytest
 
 from rovsim.apps.cli.main import main
 from rovsim.dynamics.effects.thrusters import ThrusterLag
+from rovsim.dynamics.model_file import write_model
 from rovsim.simulation.stepper import Stepper
 from worlds import at_rest, model, sticks
 
@@ -15,7 +16,7 @@ def test_the_unit_moves_as_the_model_does(tmp_path):
     from fmpy.validation import validate_fmu
 
     world = model(ThrusterLag(time_constant=0.1))
-    world.write(tmp_path / "lagging.yaml")
+    write_model(world, tmp_path / "lagging.yaml")
     unit = tmp_path / "lagging.fmu"
     main(["fmu", f"model={tmp_path / 'lagging.yaml'}", f"out={unit}"])
     assert validate_fmu(str(unit)) == []

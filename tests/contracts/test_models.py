@@ -6,7 +6,8 @@ import yaml
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_yaml
 from rovsim.core.shipped import shipped
-from rovsim.dynamics.model import read_model
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.dynamics.vehicle import load_vehicle
 from worlds import SHARED, needed
 
@@ -38,7 +39,7 @@ def test_a_bad_model_file_is_explained(text, tmp_path):
     path = tmp_path / "bad.yaml"
     path.write_text(text)
     with pytest.raises(BadInput, match=BAD[text]):
-        read_model(path)
+        read_model(path, built_in())
 
 
 def changed(tmp_path, change):
@@ -54,9 +55,9 @@ def test_a_vehicle_can_be_a_path_or_stand_in_the_model(tmp_path):
     assert load_vehicle("v.yaml", beside=tmp_path).rigid_body.mass == 20.0
     model = tmp_path / "m.yaml"
     model.write_text(yaml.safe_dump({"vehicle": yaml.safe_load(path.read_text())}))
-    world = read_model(model)
-    world.write(tmp_path / "again.yaml")
-    assert read_model(tmp_path / "again.yaml").vehicle == world.vehicle
+    world = read_model(model, built_in())
+    write_model(world, tmp_path / "again.yaml")
+    assert read_model(tmp_path / "again.yaml", built_in()).vehicle == world.vehicle
 
 
 @pytest.mark.parametrize(
@@ -88,19 +89,19 @@ def test_a_bad_vehicle_inside_a_model_is_explained_too(change, message, tmp_path
     path = tmp_path / "m.yaml"
     path.write_text(yaml.safe_dump({"vehicle": vehicle}))
     with pytest.raises(BadInput, match=message):
-        read_model(path)
+        read_model(path, built_in())
 
 
 def test_a_key_given_twice_and_a_wrong_unit_are_refused(tmp_path):
     path = tmp_path / "m.yaml"
     path.write_text("vehicle: bluerov2_heavy\neffects: []\neffects: []")
     with pytest.raises(BadInput, match=r'line 3.*duplicate key "effects"'):
-        read_model(path)
+        read_model(path, built_in())
     lag = "{effect: thruster_lag, parameters: {time_constant: {value: 150, unit: ms}}}"
     path.write_text(f"{HEAVY}effects: [{lag}]")
     with pytest.raises(BadInput, match="unit 'ms'"):
-        read_model(path)
+        read_model(path, built_in())
     for wrong in ("true", "'0.2'", ".nan"):
         path.write_text(f"{HEAVY}effects: [{{effect: lift, parameters: {{coefficient: {wrong}}}}}]")
         with pytest.raises(BadInput, match="coefficient"):
-            read_model(path)
+            read_model(path, built_in())

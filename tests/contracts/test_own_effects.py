@@ -10,7 +10,7 @@ import pytest
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.effects import catalogue, effect, use_effect_files
+from rovsim.dynamics.catalogue import load_catalogue
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")
 
@@ -22,10 +22,8 @@ def blocks(kind):
 
 @pytest.fixture(autouse=True)
 def only_here(tmp_path, monkeypatch):
-    """Files named in a test are forgotten after it."""
+    """Files are written into a folder of the test's own."""
     monkeypatch.chdir(tmp_path)
-    yield
-    use_effect_files([])
 
 
 def write_files():
@@ -53,28 +51,25 @@ def test_the_page_works_as_printed():
 
 def test_a_file_counts_only_where_it_is_named():
     write_files()
-    use_effect_files([Path("floor_cushion.py")])
-    first = effect("floor_cushion")
+    first = load_catalogue([Path("floor_cushion.py")])["floor_cushion"]
     assert first(strength=1.0).given() == {"strength": 1.0}
-    use_effect_files([Path("floor_cushion.py")])
-    assert effect("floor_cushion") is first  # so that nothing is compiled twice
-    use_effect_files([])
+    again = load_catalogue([Path("floor_cushion.py")])
+    assert again["floor_cushion"] is first  # so that nothing is compiled twice
     with pytest.raises(BadInput, match="effects_file"):
-        effect("floor_cushion")
-    assert "floor_cushion" not in catalogue()
+        load_catalogue().find("floor_cushion")
 
 
 def test_the_study_takes_it_and_sees_edits():
     write_files()
     study = Study({"effects_file": "floor_cushion.py"})
-    assert study.effect_files == ["floor_cushion.py"]
-    assert "floor_cushion" in catalogue()
+    assert study.catalogue.files == (Path("floor_cushion.py"),)
+    assert "floor_cushion" in study.catalogue
     before = {name: study.code(name) for name in ("simulation.replay", "measurement.signals")}
     with Path("floor_cushion.py").open("a") as file:
         file.write("# later\n")
     assert study.code("simulation.replay") != before["simulation.replay"]
     assert study.code("measurement.signals") == before["measurement.signals"]
-    assert Study({}).effect_files == []
+    assert Study({}).catalogue.files == ()
 
 
 COMPLETE = """
@@ -131,10 +126,9 @@ def test_a_mistake_is_one_message(change, tmp_path, capsys):
 
 def test_missing_files_and_twins_are_refused(tmp_path):
     with pytest.raises(BadInput, match="no such file"):
-        use_effect_files([tmp_path / "none.py"])
+        load_catalogue([tmp_path / "none.py"])
     for name in ("a b.py", "b,c.py"):
         (tmp_path / name).write_text(COMPLETE)
     with pytest.raises(BadInput, match="'hose' is taken"):
-        use_effect_files([tmp_path / "a b.py", tmp_path / "b,c.py"])
-    use_effect_files([tmp_path / "b,c.py"])
-    assert "hose" in catalogue()
+        load_catalogue([tmp_path / "a b.py", tmp_path / "b,c.py"])
+    assert "hose" in load_catalogue([tmp_path / "b,c.py"])

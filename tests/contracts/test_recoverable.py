@@ -12,8 +12,9 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.gauss_newton import fit
-from rovsim.dynamics.effects import built_in
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
+from rovsim.dynamics.model_file import build_effect
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 
@@ -23,10 +24,11 @@ def test_a_tank_that_hides_it_gives_it_back(name, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
     settings = compose([f"campaign='{tmp_path / 'raw'}'"])
     data = measured(settings)
-    base, runs = nominal(data.vehicle), data.runs.prepare("train", settings.replay.step)
+    base, runs = nominal(data.vehicle), data.runs.prepare("train", settings.replay.step, built_in())
     bank = FilterBank.design(runs, base, FIRST_NOISE, "held")
-    hidden = flown.hidden[0].build().given()
-    known = [c for c in list_candidates(runs) if c.effect.id == name and set(hidden) <= set(c.free)]
+    hidden = build_effect(flown.hidden[0], built_in()).given()
+    listed = list_candidates(runs, built_in())
+    known = [c for c in listed if c.effect.id == name and set(hidden) <= set(c.free)]
     starts = [c.term(list(hidden)) for c in known]
     fits = [fit(Hypothesis(base, (term,)), bank, FIRST_NOISE) for term in starts]
     best = max(fits, key=lambda one: one.likelihood)

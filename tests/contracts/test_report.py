@@ -10,6 +10,7 @@ import pytest
 
 from rovsim import AXES
 from rovsim.core.files import write_json
+from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import leave_one_run_out, page, published_errors, terminal
@@ -115,8 +116,8 @@ def test_the_verdict_says_what_how_much_how_sure_and_what_is_open(html):
 
 def test_terminal_and_page_say_the_same(content):
     found = content["diagnosis"]
-    text = " ".join(terminal.diagnosed(found).split())
-    for remark in verdict(found).remarks:
+    text = " ".join(terminal.diagnosed(found, built_in()).split())
+    for remark in verdict(found, built_in()).remarks:
         assert " ".join(remark.split()) in text
 
 
@@ -134,7 +135,7 @@ def test_too_little_data_is_a_verdict_without_an_error():
         "verdict": "insufficient_data", "selected": [], "ranking": [], "indistinguishable": [],
         "unexplained": nothing, "next_experiment": "Record more.", "error": error,
     }  # fmt: skip
-    said = verdict(found)
+    said = verdict(found, built_in())
     assert said.remarks[0].startswith("No test run could be used")
     assert not any("noise" in remark for remark in said.remarks)
 

@@ -16,8 +16,8 @@ from rovsim.apps.workbench.work import Work
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
-from rovsim.dynamics.effects import catalogue
-from rovsim.dynamics.model import read_model
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.model_file import describe_model, read_model, write_model
 from worlds import model
 
 
@@ -27,13 +27,13 @@ def bench(tmp_path_factory):
     folder = tmp_path_factory.mktemp("desk")
     main(["tank", "tank=tiny", "tank.duration=8", f"out={folder / 'raw'}", "-q"])
     settings = compose([f"campaign='{folder / 'raw'}'", f"out='{folder / 'out'}'"])
-    return Workbench.opened(settings)
+    return Workbench.opened(settings, built_in())
 
 
 def diagnosis(**values):
     """A diagnosis that selects a lag with this fitted value."""
     lag = {"effect": "thruster_lag", "parameters": {"time_constant": {"value": 0.18, "std": 0.01}}}
-    return {"selected": [lag | values], "ranking": [], "base": model().content()}
+    return {"selected": [lag | values], "ranking": [], "base": describe_model(model())}
 
 
 @pytest.mark.parametrize("horizon", [0.5, 2.0, 5.0, None])
@@ -55,23 +55,31 @@ def test_its_ladder_holds_the_diagnosis_the_models_and_the_floor_last(bench, mon
 def test_a_diagnosis_of_other_recordings_settings_or_models_is_not_shown(bench):
     path = bench.diagnosis_path
     other = bench.settings.model_copy(update={"seed": 7})
-    assert Workbench(other, bench.data, bench.models, bench.paths).diagnosis_path != path
-    assert Workbench(bench.settings, bench.data, bench.models, bench.paths).diagnosis_path == path
-    lagging = {"nominal": Draft(bench.base, diagnosis()).model()}
-    assert Workbench(bench.settings, bench.data, lagging, bench.paths).diagnosis_path != path
+    assert (
+        Workbench(other, built_in(), bench.data, bench.models, bench.paths).diagnosis_path != path
+    )
+    assert (
+        Workbench(bench.settings, built_in(), bench.data, bench.models, bench.paths).diagnosis_path
+        == path
+    )
+    lagging = {"nominal": Draft(bench.base, diagnosis(), built_in()).model()}
+    assert (
+        Workbench(bench.settings, built_in(), bench.data, lagging, bench.paths).diagnosis_path
+        != path
+    )
 
 
 def test_a_campaign_that_cannot_be_read_is_one_message(tmp_path):
     with pytest.raises(BadInput, match="nowhere"):
-        Workbench.opened(compose([f"campaign='{tmp_path / 'nowhere'}'"]))
+        Workbench.opened(compose([f"campaign='{tmp_path / 'nowhere'}'"]), built_in())
 
 
 def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench, monkeypatch):
     drawn = []
     monkeypatch.setattr("rovsim.reporting.html.folder.present", lambda *given: drawn.append(given))
-    here = Workbench(bench.settings, bench.data, dict(bench.models), dict(bench.paths))
+    here = Workbench(bench.settings, built_in(), bench.data, dict(bench.models), dict(bench.paths))
     file = tasks.learn(here.only("nominal"), here.out / "knn_6dof.yaml")
-    here.add(read_model(file), file)
+    here.add(read_model(file, built_in()), file)
     page = tasks.tell(here.only(*here.models), {"ladder": here.ladder()}, here.out)
     assert page.name == "report.html"
     assert len(drawn) == 1
@@ -97,46 +105,43 @@ def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, name, found)
 
 
 def test_a_saved_draft_is_one_of_the_models_and_may_be_saved_again(bench, tmp_path):
-    here = Workbench(bench.settings, bench.data, dict(bench.models), dict(bench.paths))
+    here = Workbench(bench.settings, built_in(), bench.data, dict(bench.models), dict(bench.paths))
     here.draft.tick("thruster_lag", True)
     for value in (0.1, 0.2):
         here.draft.move("thruster_lag", "time_constant", value)
         saved = here.save(tmp_path / "lagging.yaml")
         assert here.models["lagging"] is saved
-        assert saved.entries[0].parameters["time_constant"].value == value
+        assert saved.added[0]["time_constant"] == value
     assert here.base.name == "nominal"
 
 
 def test_a_draft_begins_as_the_diagnosis_and_what_is_saved_is_read_back(tmp_path):
-    draft = Draft(model(), diagnosis())
-    draft.model().write(tmp_path / "new.yaml")
-    (entry,) = read_model(tmp_path / "new.yaml").entries
-    assert (entry.parameters["time_constant"].value, entry.parameters["time_constant"].std) == (
-        0.18,
-        0.01,
-    )
+    draft = Draft(model(), diagnosis(), built_in())
+    write_model(draft.model(), tmp_path / "new.yaml")
+    (lag,) = read_model(tmp_path / "new.yaml", built_in()).added
+    assert (lag["time_constant"], lag.std) == (0.18, {"time_constant": 0.01})
     draft.move("thruster_lag", "time_constant", 0.25)
     moved = draft.entry("thruster_lag").parameters["time_constant"]
     assert (moved.value, moved.std) == (0.25, None)  # the interval was that of the fit
     draft.tick("thruster_lag", False)
-    assert draft.model().content()["effects"] == []
+    assert describe_model(draft.model())["effects"] == []
 
 
-@pytest.mark.parametrize("effect", catalogue())
+@pytest.mark.parametrize("effect", built_in())
 def test_every_effect_can_be_added_and_moved_within_its_sliders(effect):
-    draft = Draft(model(), {})
+    draft = Draft(model(), {}, built_in())
     draft.tick(effect, True)
-    known = {p.name: p for p in catalogue()[effect].parameters}
+    known = {p.name: p for p in built_in()[effect].parameters}
     for name, value in draft.entry(effect).parameters.items():
         low, high = reach(known[name], value.value)
         assert known[name].low <= low <= value.value <= high <= known[name].high
         assert low < high
         draft.move(effect, name, high)
-    assert draft.model().entries[0].effect == effect
+    assert draft.model().added[0].id == effect
 
 
 def test_values_no_model_can_have_are_refused():
-    draft = Draft(model(), {})
+    draft = Draft(model(), {}, built_in())
     draft.tick("added_mass", True)
     draft.move("added_mass", "surge", -1e4)
     with pytest.raises(BadInput):
@@ -204,7 +209,7 @@ def test_a_file_that_is_no_diagnosis_is_explained(bench, tmp_path):
     (tmp_path / "other.json").write_text("{}")
     settings = bench.settings.model_copy(update={"diagnosis": str(tmp_path / "other.json")})
     with pytest.raises(BadInput, match="not a diagnosis"):
-        Workbench.opened(settings)
+        Workbench.opened(settings, built_in())
 
 
 def test_a_port_in_use_is_one_message(capsys):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rovsim.core.rotations import exp
-from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot
 from rovsim.evaluation.budget import RESTORING, Budget, budget
 from rovsim.learning.pairs import samples
@@ -29,7 +29,7 @@ def made(world, found=None):
     )
 
 
-@pytest.mark.parametrize("cls", catalogue().values(), ids=lambda cls: cls.id)
+@pytest.mark.parametrize("cls", built_in().values(), ids=lambda cls: cls.id)
 def test_the_parts_add_up_to_the_models_inertia_force(cls):
     world, measured = model(some(cls)), run("demand" if issubclass(cls, Autopilot) else "thruster")
     at = drive_as_measured(world, measured, ReplaySettings())

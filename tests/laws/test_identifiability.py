@@ -10,7 +10,7 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
-from rovsim.dynamics.effects import effect
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 
@@ -55,7 +55,9 @@ def test_a_value_that_is_surely_there_is_known_by_itself():
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     found = TrainDiagnosis(fit(alike()).hypothesis.base, fit(alike()), [], [], [], [], [], 60.0)
     loops = [f"onboard_control.gain_{axis}" for axis in AXES[:2]]
-    advice = next_experiment(found, [], [["added_mass.surge", "net_buoyancy.force"], loops])
-    reveals = effect("onboard_control").revealed_by
+    advice = next_experiment(
+        found, [], [["added_mass.surge", "net_buoyancy.force"], loops], built_in()
+    )
+    reveals = built_in()["onboard_control"].revealed_by
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
-    assert next_experiment(found, [], []).startswith("Nothing is needed")
+    assert next_experiment(found, [], [], built_in()).startswith("Nothing is needed")

@@ -15,7 +15,8 @@ from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.dynamics.model import EffectEntry
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.model_file import EffectEntry
 from rovsim.simulation.synthetic_tank.settings import Log
 
 GAIN = dict(zip(AXES, (0.9, 0.8, 0.7, 2.0, 2.0, 2.0), strict=True))
@@ -33,7 +34,8 @@ HIDDEN = (
 def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     base, runs = observed(tmp_path, duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
     bank = FilterBank.design(runs, base, FIRST_NOISE, "held")
-    some = [c for c in list_candidates(runs) if c.effect.id in ("added_mass", "linear_damping")]
+    listed = list_candidates(runs, built_in())
+    some = [c for c in listed if c.effect.id in ("added_mass", "linear_damping")]
     known = linearise_candidates(bank, Hypothesis(base), some)
     workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
     selection = fit_jointly(workspace, base, AXES)

@@ -5,7 +5,7 @@ import pytest
 
 from flown import observed
 from rovsim.diagnosis.selection.nominal_refit import refit_nominal
-from rovsim.dynamics.model import EffectEntry
+from rovsim.dynamics.model_file import EffectEntry
 
 
 def train(folder, effects, control="6dof", duration=25.0):
@@ -40,4 +40,4 @@ def test_too_little_changes_nothing(tmp_path):
     base, runs = train(tmp_path, (), duration=4.0)
     found = refit_nominal(base, runs, "held")
     assert found.name == "refitted"
-    assert found.entries == ()
+    assert found.added == ()

@@ -9,14 +9,16 @@ from rovsim.benchmarks.blind import methods
 from rovsim.benchmarks.blind.library import problem, steps
 from rovsim.benchmarks.blind.sparse import answered, forward, thresholded
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.effects import catalogue, effect
+from rovsim.dynamics.catalogue import built_in
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
 from rovsim.simulation.settings import ReplaySettings
 from worlds import model, motion, sticks, tank
 
 # enough to choose from, and nothing to compile
-OFFERED = {n: effect(n) for n in ("added_mass", "linear_damping", "net_buoyancy", "thruster_gain")}
+OFFERED = {
+    n: built_in()[n] for n in ("added_mass", "linear_damping", "net_buoyancy", "thruster_gain")
+}
 BOTH = pytest.mark.parametrize(
     "regression", [thresholded(0.1, 1e-3), forward(0.05, 8)], ids=["stlsq", "frols"]
 )
@@ -35,7 +37,7 @@ def exact(world):
 
 @BOTH
 def test_a_linear_effect_is_found_with_its_value(regression):
-    run = exact(model(effect("linear_damping")(**DRAG)))
+    run = exact(model(built_in()["linear_damping"](**DRAG)))
     answer = answered(problem(model(), [run], OFFERED), regression)
     assert answer["verdict"] == "missing_effects"
     assert [s["effect"] for s in answer["selected"]] == ["linear_damping"]
@@ -49,7 +51,7 @@ def test_nothing_is_found_where_nothing_is_hidden(regression):
 
 
 def test_every_effect_has_its_columns():
-    known = catalogue()
+    known = built_in()
     found = [(column, made) for column, made in steps(tank(), known)]
     assert {column.effect for column, _ in found} == set(known)
     for column, made in found:

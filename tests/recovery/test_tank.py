@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.model import EffectEntry, nominal
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.model_file import EffectEntry
 from rovsim.evaluation.scores import errors, rms
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality_report import quality_of
@@ -35,8 +37,8 @@ FLOOR = np.array([0.013] * 3 + [0.035] * 3)
 def recorded(tmp_path, **settings):
     """Settings, campaign and cleaned motion of one 30 s run."""
     chosen = TankSettings(**{"runs": (RUN,), "duration": 30.0, **settings})
-    make_campaign(chosen, tmp_path / "raw")
-    campaign = load_campaign(tmp_path / "raw")
+    make_campaign(chosen, tmp_path / "raw", built_in())
+    campaign = load_campaign(tmp_path / "raw", built_in())
     recording, anomalies = read_run(campaign, RUN.id)
     return chosen, recording, anomalies, clean(recording, SignalSettings())
 
@@ -49,7 +51,7 @@ def window_error(model, motion):
 @pytest.mark.parametrize("seed", [11, 12])
 def test_the_nominal_model_explains_an_empty_tank(tmp_path, seed):
     chosen, _, _, motion = recorded(tmp_path, seed=seed)
-    assert np.all(window_error(true_model(chosen), motion) < FLOOR)
+    assert np.all(window_error(true_model(chosen, built_in()), motion) < FLOOR)
 
 
 def entry(effect, **parameters):
@@ -80,7 +82,7 @@ NEW = [
 def test_a_hidden_effect_is_seen_and_the_true_model_explains_it(tmp_path, hidden):
     """Two integrators, one at 1 ms with streamed thrusters: they must agree."""
     chosen, _, _, motion = recorded(tmp_path, seed=5, effects=hidden)
-    truth = true_model(chosen)
+    truth = true_model(chosen, built_in())
     with_it, without = window_error(truth, motion), window_error(nominal(truth.vehicle), motion)
     assert np.all(with_it < FLOOR)
     assert np.max(without / FLOOR) > 1.5
@@ -98,7 +100,7 @@ def test_a_loop_on_board_is_seen_in_logged_demands(tmp_path, attitude):
     with pytest.raises(BadInput, match="this log holds none"):
         recorded(tmp_path, seed=5, effects=(loops,))
     chosen, _, _, motion = recorded(tmp_path, seed=5, effects=(loops,), log=logged)
-    truth = true_model(chosen)
+    truth = true_model(chosen, built_in())
     assert motion.commands.kind == "demand"
     assert np.all(window_error(truth, motion) < FLOOR)
     assert np.max(window_error(nominal(truth.vehicle), motion) / FLOOR) > 1.5
@@ -106,7 +108,7 @@ def test_a_loop_on_board_is_seen_in_logged_demands(tmp_path, attitude):
 
 def test_logged_demands_drive_an_empty_tank_too(tmp_path):
     chosen, _, _, motion = recorded(tmp_path, seed=6, log=Log(kind="demand"))
-    assert np.all(window_error(true_model(chosen), motion) < FLOOR)
+    assert np.all(window_error(true_model(chosen, built_in()), motion) < FLOOR)
 
 
 def test_the_exports_hold_the_stated_noise_and_faults(tmp_path):
@@ -127,13 +129,13 @@ def test_without_noise_the_measured_velocity_is_the_true_one(tmp_path):
     calm = Turbulence(force=0, moment=0)
     chosen, _, _, motion = recorded(tmp_path, seed=4, camera=still, turbulence=calm)
     # what is left: rounding of the export (1 um, 1e-6) and the filter's bias on fast motion
-    assert np.all(window_error(true_model(chosen), motion) < [0.004] * 3 + [0.02] * 3)
+    assert np.all(window_error(true_model(chosen, built_in()), motion) < [0.004] * 3 + [0.02] * 3)
 
 
 def test_same_seed_same_bytes_and_runs_do_not_depend_on_each_other(tmp_path):
     two = (RUN, TankRun(id="3dof-1", control="3dof", split="train"))
     for name, runs in (("a", two), ("b", two)):
-        make_campaign(TankSettings(runs=runs, duration=4.0, seed=9), tmp_path / name)
+        make_campaign(TankSettings(runs=runs, duration=4.0, seed=9), tmp_path / name, built_in())
     for file in sorted(path.name for path in (tmp_path / "a").iterdir()):
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
     names = {run["mocap"] for run in describe(TankSettings(runs=two))["runs"]}
@@ -149,19 +151,21 @@ def test_nothing_of_the_users_is_overwritten(tmp_path):
     (tmp_path / "raw").mkdir()
     (tmp_path / "raw" / "thesis.tex").write_text("years of work")
     with pytest.raises(BadInput, match="no tank wrote"):
-        make_campaign(TankSettings(duration=2.0), tmp_path / "raw")
+        make_campaign(TankSettings(duration=2.0), tmp_path / "raw", built_in())
     assert (tmp_path / "raw" / "thesis.tex").exists()
 
 
 def test_a_vehicle_that_is_swept_away_is_an_error_and_leaves_nothing(tmp_path):
     strong = EffectEntry(effect="net_buoyancy", parameters={"force": 200.0})
     with pytest.raises(BadInput, match="left the tank"):
-        make_campaign(TankSettings(effects=(strong,)), tmp_path / "raw")
+        make_campaign(TankSettings(effects=(strong,)), tmp_path / "raw", built_in())
     assert list(tmp_path.iterdir()) == []
 
 
 def test_the_truth_is_sealed(tmp_path):
     """Reading a campaign works without the truth file, so it cannot depend on it."""
-    make_campaign(TankSettings(runs=(RUN,), duration=4.0, effects=(LAG,)), tmp_path / "raw")
+    make_campaign(
+        TankSettings(runs=(RUN,), duration=4.0, effects=(LAG,)), tmp_path / "raw", built_in()
+    )
     (tmp_path / "raw" / SEALED).unlink()
     read_run(load_campaign(tmp_path / "raw"), RUN.id)

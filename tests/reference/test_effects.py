@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, matrix
-from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.added_mass import AddedMassCoupling
 from rovsim.dynamics.effects.coupled_damping import CoupledDamping
 from rovsim.dynamics.effects.current import Current
@@ -64,9 +64,9 @@ NAMES |= dict.fromkeys(
 COMMAND = np.array([0.4, -0.3, 0.5, 0.2, -0.4, 0.3, 0.1, -0.2])
 
 
-@pytest.mark.parametrize("name", sorted(set(NAMES) & set(catalogue())))
+@pytest.mark.parametrize("name", sorted(set(NAMES) & set(built_in())))
 def test_parameters_are_the_public_ones(name):
-    assert [p.name for p in catalogue()[name].parameters] == NAMES[name]
+    assert [p.name for p in built_in()[name].parameters] == NAMES[name]
 
 
 def push(world, state, force=None, walls=None, demand=None, memory=NO_MEMORY):

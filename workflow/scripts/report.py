@@ -4,13 +4,14 @@ from pathlib import Path
 
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html import page
 from rovsim.reporting.report_data import ONCE, about
 
 
 def main(
     *, campaign: str, contents: dict[str, Path], quality: dict[str, Path], figures: list[Path],
-    provenance: dict, out: Path,
+    provenance: dict, out: Path, catalogue: Catalogue,
 ) -> None:  # fmt: skip
     pictures = []
     for path in figures:
@@ -19,14 +20,20 @@ def main(
     found = {name: read_json(path) for name, path in contents.items()}
     reports = {run: read_json(path) for run, path in quality.items()}
     inputs = page.ReportInputs(
-        campaign, quality=reports, pictures=pictures, provenance=provenance, **found
+        campaign,
+        quality=reports,
+        pictures=pictures,
+        provenance=provenance,
+        catalogue=catalogue,
+        **found,
     )
     page.write(out, inputs)
 
 
 if __name__ == "__main__":
-    with job(snakemake):
+    with job(snakemake) as catalogue:
         main(
+            catalogue=catalogue,
             campaign=snakemake.params.campaign,
             contents={
                 name: Path(str(snakemake.input[name]))

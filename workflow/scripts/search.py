@@ -5,7 +5,8 @@ from pathlib import Path
 from rovsim.application.loading import campaign_vehicle
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
-from rovsim.dynamics.model import load_model
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model_file import load_model
 from rovsim.evaluation.error_conditions import content, judged
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
@@ -13,18 +14,20 @@ from rovsim.simulation.settings import rule_settings
 
 
 def main(
-    *, motions: list[Path], campaign: Path, file: str, name: str, out: Path, settings: dict
-) -> None:
+    *, motions: list[Path], campaign: Path, file: str, name: str, out: Path, settings: dict,
+    catalogue: Catalogue,
+) -> None:  # fmt: skip
     vehicle = campaign_vehicle(load_campaign(campaign))
-    model = load_model(file or name, vehicle).called(name)
+    model = load_model(file or name, vehicle, catalogue).called(name)
     signals, how = rule_settings(settings)
     runs = [Motion.read(path) for path in motions]
     write_json(out, content([judged(model, runs, signals, how)]))
 
 
 if __name__ == "__main__":
-    with job(snakemake):
+    with job(snakemake) as catalogue:
         main(
+            catalogue=catalogue,
             motions=[Path(path) for path in snakemake.input.motions],
             campaign=Path(snakemake.input.campaign),
             file=str(snakemake.input.get("model") or ""),

@@ -7,7 +7,9 @@ from rovsim.application.settings import TimingSettings
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
 from rovsim.core.schema import checked
-from rovsim.dynamics.model import nominal, read_model
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.model_file import read_model
 from rovsim.evaluation.latency import both_ways
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
@@ -15,14 +17,17 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import rule_settings
 
 
-def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict) -> None:
+def main(
+    *, motion: Path, campaign: Path, models: list[Path], out: Path, settings: dict,
+    catalogue: Catalogue,
+) -> None:  # fmt: skip
     base = nominal(campaign_vehicle(load_campaign(campaign)))
     signals, how = rule_settings(settings)
     timing = checked(TimingSettings, settings["timing"], "conf")
     found = samples(base, Motion.read(motion), signals, how)
     inference = {}
     for path in models:
-        residual = read_model(path).residual
+        residual = read_model(path, catalogue).residual
         queries = found.features(residual.features)
         inference[path.parent.name] = both_ways(
             residual, queries, timing.calls, timing.warmup, timing.seconds
@@ -31,8 +36,9 @@ def main(*, motion: Path, campaign: Path, models: list[Path], out: Path, setting
 
 
 if __name__ == "__main__":
-    with job(snakemake):
+    with job(snakemake) as catalogue:
         main(
+            catalogue=catalogue,
             motion=Path(snakemake.input.motion),
             campaign=Path(snakemake.input.campaign),
             models=[Path(path) for path in snakemake.input.models],

@@ -9,7 +9,9 @@ from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.diagnosis.of_campaign import Runs
-from rovsim.dynamics.model import Model, load_model
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
 from rovsim.measurement.quality_report import quality_of
@@ -100,14 +102,14 @@ def results_folder(path: str | Path) -> Path:
     )
 
 
-def models(settings: Settings, vehicle: Vehicle) -> list[Model]:
+def models(settings: Settings, vehicle: Vehicle, catalogue: Catalogue) -> list[Model]:
     """The models named in the settings, each once.
 
     Raises:
         BadInput: one cannot be loaded, or two files have the same stem.
     """
     specs = [settings.model] if isinstance(settings.model, str) else settings.model
-    loaded = [load_model(spec, vehicle) for spec in dict.fromkeys(specs)]
+    loaded = [load_model(spec, vehicle, catalogue) for spec in dict.fromkeys(specs)]
     names = [model.name for model in loaded]
     twice = {name for name in names if names.count(name) > 1}
     if twice:

@@ -9,8 +9,10 @@ from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted, reported, staged
 from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, diagnosed
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import write_residual
-from rovsim.dynamics.model import Model, read_model
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.evaluation.budget import Budget, budget
 from rovsim.evaluation.error_conditions import content, judged
 from rovsim.evaluation.scores import comparison, growth, score
@@ -63,7 +65,9 @@ def _budgets(data: Measured, model: Model, settings: Settings) -> dict[str, Budg
     }  # fmt: skip
 
 
-def diagnose(data: Measured, chosen: Sequence[Model], settings: Settings) -> Diagnosed:
+def diagnose(
+    data: Measured, chosen: Sequence[Model], settings: Settings, catalogue: Catalogue
+) -> Diagnosed:
     """Diagnose one model of physics on the campaign.
 
     Raises:
@@ -71,7 +75,7 @@ def diagnose(data: Measured, chosen: Sequence[Model], settings: Settings) -> Dia
     """
     base = _base(chosen)
     with staged("diagnosing", STAGES) as stage:
-        return diagnosed(data.runs, base, settings.diagnosing, stage)
+        return diagnosed(data.runs, base, settings.diagnosing, catalogue, stage)
 
 
 def _base(chosen: Sequence[Model]) -> Model:
@@ -85,7 +89,14 @@ def _base(chosen: Sequence[Model]) -> Model:
     )
 
 
-def train(data: Measured, base: Model, settings: Settings, out: Path, name: str = "model") -> Model:
+def train(
+    data: Measured,
+    base: Model,
+    settings: Settings,
+    catalogue: Catalogue,
+    out: Path,
+    name: str = "model",
+) -> Model:
     """Train a residual on top of a model; writes `out`/`name`.yaml and returns it as read back."""
     used = training_runs(list(data.motions.values()), settings.control)
     with reported(f"training {settings.learner.kind}") as progress:
@@ -96,5 +107,5 @@ def train(data: Measured, base: Model, settings: Settings, out: Path, name: str 
     description = write_residual(out, trained.residual(settings.control))
     story = provenance(settings) | {"train_runs": [m.run.id for m in used], "base": base.name}
     path = out / f"{name}.yaml"
-    base.write(path, description, story)
-    return read_model(path)
+    write_model(base, path, description, story)
+    return read_model(path, catalogue)

@@ -11,6 +11,8 @@ import rovsim
 from rovsim.core.schema import Section
 
 SOURCE = Path(rovsim.__file__).parent
+MODEL = "rovsim.dynamics.model"
+LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning")
 UNRELATED = ("command", "tracking", "timing", "blind", "bench", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch")
 
@@ -19,7 +21,7 @@ def digest(*names: str, effects: Sequence[Path] = ()) -> str:
     """Digest of modules of rovsim and of all they import, however deep.
 
     A package stands for all its modules: what is found by looking has no import to follow. So do
-    files of `effects` from elsewhere, for modules that use the catalogue.
+    files of `effects` from elsewhere, for modules that know models.
     """
     graph = _graph()
     wanted: set[str] = set()
@@ -30,7 +32,7 @@ def digest(*names: str, effects: Sequence[Path] = ()) -> str:
     for package in _discovered(wanted):
         wanted |= graph.find_descendants(package)
     content = hashlib.sha256()
-    outside = effects if "rovsim.dynamics.effects" in wanted else ()
+    outside = effects if MODEL in wanted else ()
     for path in (*map(_file, sorted(wanted)), *outside):
         content.update(path.read_bytes())
     return content.hexdigest()[:16]
@@ -45,9 +47,9 @@ def own_digest(package: str) -> str:
 
 
 def _discovered(modules: set[str]) -> set[str]:
-    """Packages whose members are found by looking into their folder."""
-    found = {"rovsim.dynamics.effects", "rovsim.measurement.recording", "rovsim.learning"}
-    return {package for package in found if package in modules}
+    """Packages found by looking into their folder; a model may hold any effect."""
+    found = {package for package in LOOKED_INTO if package in modules}
+    return found | ({"rovsim.dynamics.effects"} if MODEL in modules else set())
 
 
 @cache

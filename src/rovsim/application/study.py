@@ -8,7 +8,7 @@ from typing import Any, Mapping
 from rovsim.application.provenance import digest, own_digest, provenance
 from rovsim.application.settings import Settings, compose
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.effects import use_effect_files
+from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.evaluation.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
@@ -42,14 +42,13 @@ class Study:
         return given.split() if isinstance(given, str) else list(given)
 
     @cached_property
-    def effect_files(self) -> list[str]:
-        """Files of the user's own effects, in use from now on.
+    def catalogue(self) -> Catalogue:
+        """All effects, with those of the user's own files.
 
         Raises:
-            BadInput: one of them cannot be used.
+            BadInput: one of the files cannot be used.
         """
-        use_effect_files(self.settings.effect_files)
-        return [str(path) for path in self.settings.effect_files]
+        return load_catalogue(self.settings.effect_files)
 
     @cached_property
     def campaign_path(self) -> str | None:

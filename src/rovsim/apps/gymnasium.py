@@ -13,7 +13,9 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy import ndarray as Array
 
-from rovsim.dynamics.model import Model, load_model
+from rovsim.dynamics.catalogue import load_catalogue
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.stepper import Stepper
 
@@ -50,7 +52,11 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         seconds: float = 30.0,
         reach: float = 2.0,
     ) -> None:
-        known = model if isinstance(model, Model) else load_model(model, load_vehicle(vehicle))
+        known = (
+            model
+            if isinstance(model, Model)
+            else load_model(model, load_vehicle(vehicle), load_catalogue())
+        )
         self.stepper = Stepper(known, duration=seconds)
         self.dt, self.seconds, self.reach = dt, seconds, reach
         self.limit = known.vehicle.thrusters.command_limit

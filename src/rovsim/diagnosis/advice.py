@@ -3,11 +3,14 @@
 from typing import Sequence
 
 from rovsim.diagnosis.procedure import TrainDiagnosis
-from rovsim.dynamics.effects import effect
+from rovsim.dynamics.catalogue import Catalogue
 
 
 def next_experiment(
-    found: TrainDiagnosis, groups: Sequence[Sequence[str]], joint: Sequence[Sequence[str]]
+    found: TrainDiagnosis,
+    groups: Sequence[Sequence[str]],
+    joint: Sequence[Sequence[str]],
+    catalogue: Catalogue,
 ) -> str:
     """A few sentences.
 
@@ -15,6 +18,7 @@ def next_experiment(
         found: the diagnosis.
         groups: effects that cannot be told apart.
         joint: parameters, as `effect.parameter`, that are known only together.
+        catalogue: what the effects are, and what reveals each.
     """
     if not found.enough:
         return (
@@ -24,9 +28,11 @@ def next_experiment(
     parts = []
     if groups:
         names = " and ".join(groups[0])
-        parts.append(f"{names} cannot be told apart with these runs. {_revealed(groups[0])}")
+        parts.append(
+            f"{names} cannot be told apart with these runs. {_revealed(groups[0], catalogue)}"
+        )
     if joint:
-        parts.append(_apart(joint))
+        parts.append(_apart(joint, catalogue))
     if found.still:
         axes = ", ".join(found.still)
         parts.append(f"Move {axes} in a train run: nothing can be said about what acts there.")
@@ -39,20 +45,20 @@ def next_experiment(
     return " ".join(parts) or _confirm(found)
 
 
-def _revealed(names: Sequence[str]) -> str:
-    return " ".join(effect(name).revealed_by for name in names if effect(name).revealed_by)
+def _revealed(names: Sequence[str], catalogue: Catalogue) -> str:
+    return " ".join(text for name in names if (text := catalogue[name].revealed_by))
 
 
-def _apart(joint: Sequence[Sequence[str]]) -> str:
+def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue) -> str:
     """How to tell values apart: by what reveals the effect that most of them belong to."""
     owners = [name.split(".")[0] for group in joint for name in group]
     most = max(dict.fromkeys(owners), key=owners.count)
     group = next(g for g in joint if any(name.startswith(f"{most}.") for name in g))
-    return f"To know {', '.join(group)} one by one: {effect(most).revealed_by}"
+    return f"To know {', '.join(group)} one by one: {catalogue[most].revealed_by}"
 
 
 def _confirm(found: TrainDiagnosis) -> str:
     if not found.selected:
         return "Nothing is needed: drive faster or in other places to look for rarer effects."
     weakest = min(found.selected, key=lambda one: one.error_reduction)
-    return f"To be surer of {weakest.term.id}: {effect(weakest.term.id).revealed_by}"
+    return f"To be surer of {weakest.term.id}: {weakest.term.effect.revealed_by}"

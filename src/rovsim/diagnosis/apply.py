@@ -8,7 +8,10 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_json
 from rovsim.core.schema import checked
 from rovsim.diagnosis.result import SCHEMA
-from rovsim.dynamics.model import EffectEntry, Model, load_model, model_of
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import EffectEntry, build_effect, build_model, load_model
 
 
 def read_diagnosis(path: Path) -> dict[str, Any]:
@@ -30,7 +33,11 @@ def read_diagnosis(path: Path) -> dict[str, Any]:
 
 
 def added(
-    diagnosis: dict[str, Any], source: Path, to: str, effects: Sequence[str] | None
+    diagnosis: dict[str, Any],
+    source: Path,
+    to: str,
+    effects: Sequence[str] | None,
+    catalogue: Catalogue,
 ) -> tuple[Model, list[str]]:
     """The base model and the effects named, or selected, with their fitted values.
 
@@ -48,9 +55,10 @@ def added(
                 expected=f"one of {', '.join(fitted)}",
                 remedy=nearest(name, fitted),
             )
-    vehicle = model_of(diagnosis["base"], source).vehicle
-    base = load_model(to, vehicle)
-    return extended(base, entries_of([fitted[name] for name in names], source)), names
+    vehicle = build_model(diagnosis["base"], source, catalogue).vehicle
+    base = load_model(to, vehicle, catalogue)
+    entries = entries_of([fitted[name] for name in names], source)
+    return extended(base, [build_effect(entry, catalogue) for entry in entries]), names
 
 
 def entries_of(fitted: Sequence[Mapping[str, Any]], source: Path) -> list[EffectEntry]:
@@ -61,12 +69,12 @@ def entries_of(fitted: Sequence[Mapping[str, Any]], source: Path) -> list[Effect
     ]
 
 
-def extended(base: Model, entries: Sequence[EffectEntry]) -> Model:
+def extended(base: Model, effects: Sequence[Effect]) -> Model:
     """The base with further effects, called new.
 
     Raises:
         BadInput: values no model can have.
     """
-    model = replace(base, name="new", entries=(*base.entries, *entries))
-    _ = model.body.M, model.effects  # refuse a model that cannot move
+    model = replace(base, name="new", effects=(*base.effects, *effects))
+    _ = model.body.M  # refuse a model that cannot move
     return model

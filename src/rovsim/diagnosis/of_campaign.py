@@ -9,7 +9,9 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
 from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
 from rovsim.diagnosis.result import content
 from rovsim.diagnosis.settings import DiagnosisSettings
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import describe_model
 from rovsim.evaluation.error_conditions import content as where_content
 from rovsim.evaluation.error_conditions import judged
 from rovsim.evaluation.ladder import floor_step, ladder, step
@@ -38,10 +40,12 @@ class Runs:
             {motion.run.id: stage for motion, stage in usable},
         )
 
-    def prepare(self, split: str, step: float) -> list[ObservedRun]:
+    def prepare(self, split: str, step: float, catalogue: Catalogue) -> list[ObservedRun]:
         """The runs of one split as the observer sees them."""
         chosen = {run: m for run, m in self.motions.items() if m.run.split == split}
-        return [prepare_run(self.stages[run], motion, step) for run, motion in chosen.items()]
+        return [
+            prepare_run(self.stages[run], motion, step, catalogue) for run, motion in chosen.items()
+        ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,19 +57,24 @@ class Diagnosed:
 
 
 def diagnosed(
-    runs: Runs, base: Model, settings: DiagnosisSettings, stage: Callable[[str], None]
+    runs: Runs,
+    base: Model,
+    settings: DiagnosisSettings,
+    catalogue: Catalogue,
+    stage: Callable[[str], None],
 ) -> Diagnosed:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
-    train, test = (runs.prepare(split, settings.replay.step) for split in ("train", "test"))
+    h = settings.replay.step
+    train, test = (runs.prepare(split, h, catalogue) for split in ("train", "test"))
     between, seed = settings.replay.commands, settings.seed
-    found = diagnose(base, train, settings.search, between, seed, stage)
+    found = diagnose(base, train, settings.search, between, catalogue, seed, stage)
     stage("scoring")
     motions = [w.motion for w in train]
     fails = [judged(base, motions, settings.signals, settings.replay)] if motions else []
     entries = [finding.entry() for one in fails for finding in one.where.findings]
     steps = _steps(found, test, settings)
-    said = content(found, entries, _errors(steps), base.content())
+    said = content(found, entries, _errors(steps), describe_model(base), catalogue)
     return Diagnosed(said | {"ladder": ladder(steps)}, where_content(fails))
 
 

@@ -35,6 +35,7 @@ from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linear
 from rovsim.diagnosis.selection.workspace import SearchWorkspace, propose
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.actuation import Between
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 
 Stages = Callable[[str], None]
@@ -88,6 +89,7 @@ def diagnose(
     train: Sequence[ObservedRun],
     settings: SearchSettings,
     between: Between,
+    catalogue: Catalogue,
     seed: int = 0,
     stage: Stages = lambda name: None,
 ) -> TrainDiagnosis:
@@ -96,7 +98,7 @@ def diagnose(
     if not usable.enough:
         return TrainDiagnosis(base, None, [], [], [], [], usable.still, usable.seconds)
     stage("observing")
-    workspace = _observe(base, usable, between, settings)
+    workspace = _observe(base, usable, between, settings, catalogue)
     nothing = workspace.fit(Hypothesis(base))
     alone = propose(workspace, nothing)
     stage("searching")
@@ -116,7 +118,11 @@ def diagnose(
 
 
 def _observe(
-    base: Model, usable: UsableRuns, between: Between, settings: SearchSettings
+    base: Model,
+    usable: UsableRuns,
+    between: Between,
+    settings: SearchSettings,
+    catalogue: Catalogue,
 ) -> SearchWorkspace:
     """Columns of the candidates, and the noise that is left when all of them may act at once.
 
@@ -126,7 +132,9 @@ def _observe(
     first = FilterBank.design(usable.runs, base, FIRST_NOISE, between)
     noise, _ = first.fit_noise([e[0] for e in first.evaluate([base])], FIRST_NOISE)
     close = first.redesign(base, noise)
-    sensitivities = linearise_candidates(close, Hypothesis(base), list_candidates(usable.runs))
+    sensitivities = linearise_candidates(
+        close, Hypothesis(base), list_candidates(usable.runs, catalogue)
+    )
     noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
     return SearchWorkspace(close.redesign(base, noise), sensitivities, noise, settings)
 

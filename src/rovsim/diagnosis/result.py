@@ -7,6 +7,7 @@ from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
 from rovsim.diagnosis.selection.rivals import SURE, Rival
+from rovsim.dynamics.catalogue import Catalogue
 
 SCHEMA = "rovsim.diagnosis/1"
 LISTED = 10  # effects of the ranking
@@ -17,6 +18,7 @@ def content(
     where: Sequence[Mapping[str, Any]],
     error: Mapping[str, float | None],
     base: Mapping[str, Any],
+    catalogue: Catalogue,
 ) -> dict[str, Any]:
     """`diagnosis.json` (docs/formats.md).
 
@@ -25,6 +27,7 @@ def content(
         where: conditions in which the base fails, as listed by rovsim.evaluation.error_conditions.
         error: of the base, with the effects, and the noise floor, on the test runs.
         base: the base model's own content, so that `rovsim add` needs nothing else.
+        catalogue: what the effects are.
     """
     alike = indistinguishable(found.rivals)
     joint = group_joint_parameters(found.fit) if found.fit else []
@@ -37,7 +40,7 @@ def content(
         "known_together": joint,
         "where": list(where),
         "unexplained": unexplained(found),
-        "next_experiment": next_experiment(found, alike, joint),
+        "next_experiment": next_experiment(found, alike, joint, catalogue),
         "error": {name: _rounded(value) for name, value in error.items()},
         "not_excited": list(found.still),
         "rivals": [

@@ -106,12 +106,12 @@ class Vehicle(Section):
     hydrodynamics: Hydrodynamics
     thrusters: ThrusterSet
 
-    def effects(self) -> list[Effect]:
+    def effects(self) -> tuple[Effect, ...]:
         """The nominal physics as effects: what "the model" is until others are added."""
         dry, water = self.rigid_body, self.hydrodynamics
         place = dict(zip("xyz", dry.center_of_gravity, strict=True))
         buoyancy = self.fluid.density * self.fluid.gravity * dry.displaced_volume
-        return [
+        return (
             RigidBody(mass=dry.mass, **dry.inertia.model_dump(), **place),
             AddedMass(**_by_axis(water.added_mass)),
             LinearDamping(**_by_axis(water.linear_damping)),
@@ -119,7 +119,7 @@ class Vehicle(Section):
             NetBuoyancy(force=buoyancy),
             BuoyancyCenter(**dict(zip("xyz", dry.center_of_buoyancy, strict=True))),
             Thrusters(self.thrusters),
-        ]
+        )
 
 
 def _by_axis(values: Six) -> dict[str, float]:

@@ -104,7 +104,7 @@ def _cumulative(
     still = replace(motion, state_nu=0 * motion.state_nu)
     yield RESTORING, _force(bare, still, none)
     yield CORIOLIS, _force(bare, motion, none)
-    own = len(model.vehicle.effects())
+    own = len(model.effects) - len(model.added)
     for k in sorted(range(own), key=lambda k: _place(model.effects[k])):
         if model.effects[k].id in NOMINAL:
             neutral[k] = model.effects[k]
@@ -128,10 +128,8 @@ def _neutral(effect: Effect) -> Effect:
 
 
 def _with(model: Model, effects: Sequence[Effect]) -> Model:
-    """The model with these effects for its own, and no learned residual."""
-    found = replace(model, residual=None)
-    vars(found)["effects"] = list(effects)  # what the cached property would hold
-    return found
+    """The model of these effects alone, without a learned residual."""
+    return replace(model, effects=tuple(effects), residual=None)
 
 
 def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:

@@ -54,12 +54,12 @@ def _main(words: list[str]) -> None:
     else:
         from rovsim.application.settings import compose
         from rovsim.core.progress import heard_by
-        from rovsim.dynamics.effects import use_effect_files
+        from rovsim.dynamics.catalogue import load_catalogue
 
         settings = compose([f"command={command}", *overrides])
-        use_effect_files(settings.effect_files)
+        catalogue = load_catalogue(settings.effect_files)
         with heard_by() if settings.output == "quiet" else nullcontext():
-            _command(command).run(settings)
+            _command(command).run(settings, catalogue)
 
 
 def _help(names: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 from rovsim.application.settings import settings_of
 from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
-from rovsim.dynamics.effects import use_effect_files
+from rovsim.dynamics.catalogue import load_catalogue
 
 
 def job(composed: Any) -> None:
@@ -19,9 +19,10 @@ def job(composed: Any) -> None:
     if settings.out is None:
         settings = settings.model_copy(update={"out": HydraConfig.get().runtime.output_dir})
     try:
-        use_effect_files(settings.effect_files)
+        catalogue = load_catalogue(settings.effect_files)
         with heard_by() if settings.output == "quiet" else nullcontext():
-            importlib.import_module(f"rovsim.apps.cli.commands.{settings.command}").run(settings)
+            command = importlib.import_module(f"rovsim.apps.cli.commands.{settings.command}")
+            command.run(settings, catalogue)
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)
         sys.exit(2)

@@ -6,7 +6,8 @@ from xml.etree.ElementTree import SubElement
 import numpy as np
 from pythonfmu import Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
 
-from rovsim.dynamics.model import read_model
+from rovsim.dynamics.catalogue import load_catalogue
+from rovsim.dynamics.model_file import read_model
 from rovsim.simulation.stepper import Stepper
 
 STATE = ("x", "y", "z", "q0", "q1", "q2", "q3", "u", "v", "w", "p", "q", "r")
@@ -23,7 +24,7 @@ class Vehicle(Fmi2Slave):
     def __init__(self, **given):
         super().__init__(**given)
         self.description = "An underwater vehicle simulated by rovsim"
-        self.stepper = Stepper(read_model(Path(self.resources, MODEL)))
+        self.stepper = Stepper(read_model(Path(self.resources, MODEL), load_catalogue()))
         self.state = np.zeros(13)
         self.start = np.array([float(name == "q0") for name in STATE])
         self.command = np.zeros(self.stepper.columns)

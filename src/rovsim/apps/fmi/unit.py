@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from rovsim.core.errors import BadInput
 from rovsim.core.files import appearing, read_yaml
 from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import write_model
 
 SLAVE, MODEL = "slave.py", "model.yaml"
 
@@ -46,7 +47,7 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
 def _packed(model: Model, source: Path | None, folder: Path) -> list[Path]:
     """The model's files in a folder, the vehicle written into them where it is no built-in one."""
     residual = read_yaml(source).get("residual") if source else None
-    model.write(folder / MODEL, residual=residual)
+    write_model(model, folder / MODEL, residual=residual)
     if source and residual:
         shutil.copyfile(source.parent / residual["file"], folder / residual["file"])
     return sorted(folder.iterdir())

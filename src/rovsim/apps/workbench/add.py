@@ -20,7 +20,6 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.traces import Traces, excited, panels
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.model import Model
 from rovsim.reporting.catalogue.page import unit
 from rovsim.reporting.figures.marks import significant
@@ -69,7 +68,7 @@ class Add:
         with self.list:
             for name in offered[:5] + [n for n in offered[5:] if n in self.draft.ticked]:
                 self._effect(name)
-            rest = [name for name in catalogue() if name not in offered[:5]]
+            rest = [name for name in self.bench.catalogue if name not in offered[:5]]
             more = ui.select(rest, label="Another effect", with_input=True).classes("control wide")
             more.props("outlined dense")
             more.on_value_change(lambda e: self._another(e.value))
@@ -79,7 +78,7 @@ class Add:
             ticked = name in self.draft.ticked
             box = ui.checkbox(name, value=ticked)
             box.on_value_change(lambda e: self._tick(name, e.value))
-            known = catalogue()[name]
+            known = self.bench.catalogue[name]
             if not ticked:
                 text((known.__doc__ or "").split("\n")[0], "soft")
                 return

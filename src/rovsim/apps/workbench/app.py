@@ -15,6 +15,7 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from rovsim.application.settings import Settings, compose
 from rovsim.apps.workbench import HOST
 from rovsim.core.errors import RovsimError
+from rovsim.dynamics.catalogue import Catalogue
 
 SCREENS = ("compare", "where", "why", "add", "ladder", "data")
 STYLE = Path(__file__).with_name("style.css")
@@ -29,8 +30,8 @@ LOOK = 0.25  # s between two looks at long work
 class App:
     """What all pages share: the settings, the open campaign, long work that belongs to none."""
 
-    def __init__(self, settings: Settings) -> None:
-        self.settings, self.problem = settings, ""
+    def __init__(self, settings: Settings, catalogue: Catalogue) -> None:
+        self.settings, self.catalogue, self.problem = settings, catalogue, ""
         self.said = ""  # of the work that ended last
         self.bench: Any = None
         self.work: Any = None
@@ -68,7 +69,7 @@ class App:
                 from rovsim.apps.workbench.workbench import Workbench
 
                 try:
-                    self.bench = await computed(Workbench.opened, self.settings)
+                    self.bench = await computed(Workbench.opened, self.settings, self.catalogue)
                     gc.freeze()  # what is loaded stays: looking through it again costs 0.2 s
                 except RovsimError as error:
                     self.problem = str(error)
@@ -217,9 +218,9 @@ def _module(name: str) -> ModuleType:
     return importlib.import_module(f"rovsim.apps.workbench.{name}")
 
 
-def serve(settings: Settings) -> None:
+def serve(settings: Settings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
-    shared = App(settings)
+    shared = App(settings, catalogue)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
 
     @server.get("/report")

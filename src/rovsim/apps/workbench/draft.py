@@ -7,9 +7,10 @@ from typing import Any, Mapping
 import numpy as np
 
 from rovsim.diagnosis.apply import entries_of, extended
-from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.parameters import Parameter
-from rovsim.dynamics.model import EffectEntry, Model, Value
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import EffectEntry, Value, build_effect
 
 SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
 
@@ -23,6 +24,7 @@ class Draft:
 
     base: Model
     diagnosis: Mapping[str, Any]
+    catalogue: Catalogue
     ticked: list[str] = field(default_factory=list)
     values: dict[str, dict[str, float]] = field(default_factory=dict)
 
@@ -52,7 +54,7 @@ class Draft:
         if effect in self.fitted:
             (entry,) = entries_of([self.fitted[effect]], Path("diagnosis.json"))
         else:
-            cls = catalogue()[effect]
+            cls = self.catalogue[effect]
             known = {
                 p.name: p.default for p in cls.parameters if p.fitted and p.default == p.default
             }
@@ -67,7 +69,9 @@ class Draft:
         Raises:
             BadInput: values no model can have.
         """
-        return extended(self.base, [self.entry(name) for name in self.ticked])
+        return extended(
+            self.base, [build_effect(self.entry(name), self.catalogue) for name in self.ticked]
+        )
 
 
 def reach(parameter: Parameter, value: float) -> tuple[float, float]:

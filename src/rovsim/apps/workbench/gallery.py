@@ -9,7 +9,7 @@ from nicegui import ui
 from rovsim.apps.workbench.parts import computed, formula, heading, section, table, text, words
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.shipped import shipped
-from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.reporting.catalogue.page import PICTURES, chaptered, unit
@@ -21,7 +21,7 @@ DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`
 async def show(bench: Workbench) -> None:
     """Show all effects, by where they act."""
     heading(TITLE, QUESTION)
-    for chapter, effects in chaptered(catalogue()).items():
+    for chapter, effects in chaptered(bench.catalogue).items():
         section(chapter)
         with ui.column().classes("effects"):
             for cls in effects:
@@ -31,7 +31,7 @@ async def show(bench: Workbench) -> None:
 
 async def entry(bench: Workbench, effect: str) -> None:
     """Show one effect."""
-    cls = catalogue().get(effect)
+    cls = bench.catalogue.get(effect)
     if cls is None:
         heading("No such effect", f"The catalogue does not know '{effect}'.")
         ui.link("All effects", "/gallery")
@@ -62,7 +62,7 @@ async def picture(bench: Workbench, cls: type[Effect]) -> None:
         path = bench.out / "pictures" / path.name
     if not path.exists():
         waiting = ui.spinner()
-        await computed(_draw, cls, path)
+        await computed(_draw, cls, path, bench.catalogue)
         waiting.delete()
     about = f"{cls.id}: {_about(cls.signature)}"
     png = b64encode(path.read_bytes()).decode()
@@ -75,9 +75,10 @@ def _about(signature: Signature) -> str:
     return f"{signature.axis} error over {signature.condition}"
 
 
-def _draw(cls: type[Effect], path: Path) -> None:
+def _draw(cls: type[Effect], path: Path, catalogue: Catalogue) -> None:
     from rovsim.reporting.catalogue.flight import seen, settings
     from rovsim.reporting.figures.signature import signature, write
 
     assert cls.signature is not None
-    write(signature(seen(cls.signature, settings(cls, cls.signature))), path)
+    shown = seen(cls.signature, settings(cls, cls.signature), catalogue)
+    write(signature(shown), path)

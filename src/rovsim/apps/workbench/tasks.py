@@ -10,7 +10,7 @@ from rovsim.application.provenance import provenance
 from rovsim.application.settings import Settings
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
-from rovsim.dynamics.effects import use_effect_files
+from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.reporting.report_data import PER_RUN
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
@@ -21,18 +21,19 @@ ONCE = (
 
 def find(settings: Settings, path: Path) -> dict[str, Any]:
     """Diagnose settings.model; writes diagnosis.json to `path` and returns it."""
-    use_effect_files(settings.effect_files)
+    catalogue = load_catalogue(settings.effect_files)
     data = measured(settings, even_unusable=True)
-    content = diagnose(data, models(settings, data.vehicle), settings).content
+    content = diagnose(data, models(settings, data.vehicle, catalogue), settings, catalogue).content
     write_json(path, content)
     return content
 
 
 def learn(settings: Settings, path: Path) -> Path:
     """Train a residual on top of settings.model; returns the model file, `path`."""
-    use_effect_files(settings.effect_files)
+    catalogue = load_catalogue(settings.effect_files)
     data = measured(settings)
-    train(data, models(settings, data.vehicle)[0], settings, path.parent, path.stem)
+    base = models(settings, data.vehicle, catalogue)[0]
+    train(data, base, settings, catalogue, path.parent, path.stem)
     return path
 
 
@@ -40,14 +41,14 @@ def tell(settings: Settings, known: dict[str, Any], out: Path) -> Path:
     """Write comparison.json, where.json, what is `known` by name, and report.html; returns it."""
     from rovsim.reporting.html.folder import present
 
-    use_effect_files(settings.effect_files)
+    catalogue = load_catalogue(settings.effect_files)
     data = measured(settings)
-    chosen = models(settings, data.vehicle)
+    chosen = models(settings, data.vehicle, catalogue)
     evidence = replace(compare(data, chosen, settings), **known)
     wanted = [(figure, "") for figure in ONCE if figure != "ranking" or "diagnosis" in known]
     tests = [run for run, motion in data.motions.items() if motion.run.split == "test"]
     wanted += [(figure, run) for run in tests for figure in PER_RUN]
-    present(out, data.campaign.name, evidence, wanted, provenance(settings))
+    present(out, data.campaign.name, evidence, wanted, provenance(settings), catalogue)
     contents = {"comparison": evidence.comparison, "where": evidence.where, **known}
     for name, content in contents.items():
         write_json(out / f"{name}.json", content)
@@ -56,7 +57,7 @@ def tell(settings: Settings, known: dict[str, Any], out: Path) -> Path:
 
 def practise(settings: Settings, out: Path) -> Path:
     """Fly a synthetic campaign; returns its folder."""
-    use_effect_files(settings.effect_files)
+    catalogue = load_catalogue(settings.effect_files)
     with reported("flying the practice campaign") as progress:
-        make_campaign(settings.tank, out, progress)
+        make_campaign(settings.tank, out, catalogue, progress)
     return out

@@ -19,7 +19,6 @@ from rovsim.apps.workbench.parts import (
     words,
 )
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.dynamics.effects import catalogue
 from rovsim.reporting.html.verdict import Missing, percent, verdict
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
@@ -33,7 +32,7 @@ async def show(bench: Workbench) -> None:
         _ask(bench)
         return
     found = bench.diagnosis
-    said = verdict(found)
+    said = verdict(found, bench.catalogue)
     ui.html(
         f"<p><strong>{escape(said.sentence)}</strong> <span>({escape(said.name)})</span></p>",
         sanitize=False,
@@ -90,7 +89,7 @@ async def _effect(bench: Workbench, missing: Missing) -> None:
                 formula(missing.equation)
                 text(f"Usual cause: {missing.cause}")
                 ui.link("What it looks like, and how to be sure", f"/gallery/{missing.effect}")
-        if known := catalogue().get(missing.effect):
+        if known := bench.catalogue.get(missing.effect):
             with ui.column().classes("seen"):
                 await picture(bench, known)
                 ui.label("From the gallery: what it looks like in a calm tank, not your data.")

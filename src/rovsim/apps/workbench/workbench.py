@@ -16,7 +16,9 @@ from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json
 from rovsim.diagnosis.apply import read_diagnosis
-from rovsim.dynamics.model import BUILT_IN, Model, read_model, zero_acceleration
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
+from rovsim.dynamics.model_file import describe_model, read_model, write_model
 from rovsim.evaluation.error_conditions import Judged, judged
 from rovsim.evaluation.ladder import EFFECTS, ladder, step, with_diagnosis
 from rovsim.evaluation.scores import errors, metrics
@@ -31,6 +33,7 @@ class Workbench:
     """One campaign, its models (the base first, then what was loaded, saved or trained)."""
 
     settings: Settings
+    catalogue: Catalogue
     data: Measured
     models: dict[str, Model]
     paths: dict[str, str]  # of models that have a file
@@ -43,17 +46,17 @@ class Workbench:
     _judged: dict[Model, Judged] = field(default_factory=dict)
 
     @staticmethod
-    def opened(settings: Settings) -> "Workbench":
+    def opened(settings: Settings, catalogue: Catalogue) -> "Workbench":
         """Read the campaign and the models of the settings, and a diagnosis that is there.
 
         Raises:
             BadInput: one of them cannot be used.
         """
         data = measured(settings)
-        found = {m.name: m for m in models(settings, data.vehicle)}
+        found = {m.name: m for m in models(settings, data.vehicle, catalogue)}
         specs = [settings.model] if isinstance(settings.model, str) else settings.model
         paths = dict(zip(found, dict.fromkeys(specs), strict=True))
-        bench = Workbench(settings, data, found, paths)
+        bench = Workbench(settings, catalogue, data, found, paths)
         given = Path(settings.diagnosis) if settings.diagnosis else bench.diagnosis_path
         if settings.diagnosis or given.exists():
             bench.diagnosis = read_diagnosis(given)
@@ -85,9 +88,9 @@ class Workbench:
         for path in sorted(p for p in files if p.is_file()):
             content.update(path.read_bytes())
         content.update(self.settings.diagnosing.model_dump_json().encode())
-        content.update(json.dumps(self.base.content(), sort_keys=True).encode())
+        content.update(json.dumps(describe_model(self.base), sort_keys=True).encode())
         content.update(
-            digest("rovsim.diagnosis.of_campaign", effects=self.settings.effect_files).encode()
+            digest("rovsim.diagnosis.of_campaign", effects=self.catalogue.files).encode()
         )
         return self.out / content.hexdigest()[:12] / "diagnosis.json"
 
@@ -99,7 +102,7 @@ class Workbench:
     @cached_property
     def draft(self) -> Draft:
         """The model that is being put together."""
-        return Draft(self.base, self.diagnosis or {})
+        return Draft(self.base, self.diagnosis or {}, self.catalogue)
 
     def found(self, diagnosis: dict[str, Any]) -> None:
         """Take in a new diagnosis; a draft begins with what it selected."""
@@ -116,11 +119,12 @@ class Workbench:
         Raises:
             BadInput: no such model can be, or the place is taken by something else.
         """
-        _check_place(path, {*BUILT_IN, self.base.name})
+        _check_place(path, {*BUILT_IN, self.base.name}, self.catalogue)
         known = provenance(self.settings)
         story = {"base": self.base.name, "effects": self.draft.ticked, "moved": self.draft.values}
-        self.draft.model().write(path, None, story | {k: known[k] for k in ("code", "versions")})
-        saved = read_model(path)
+        story |= {k: known[k] for k in ("code", "versions")}
+        write_model(self.draft.model(), path, provenance=story)
+        saved = read_model(path, self.catalogue)
         self.add(saved, path)
         return saved
 
@@ -146,7 +150,7 @@ class Workbench:
         settings = self.only(name).model_copy(update={"residual": chosen})
 
         def take(path: Path) -> None:
-            self.add(read_model(path), path)
+            self.add(read_model(path, self.catalogue), path)
 
         path = self.out / "trained" / trained / f"{trained}.yaml"
         self.work = Work.start(f"Training {trained}", take, tasks.learn, settings, path)
@@ -222,7 +226,7 @@ class Workbench:
         return self._judged[model]
 
 
-def _check_place(path: Path, taken: set[str]) -> None:
+def _check_place(path: Path, taken: set[str], catalogue: Catalogue) -> None:
     """Refuse to write over what is no model file, and to call a model as another one is called."""
     found = ""
     if path.suffix not in (".yaml", ".yml"):
@@ -231,7 +235,7 @@ def _check_place(path: Path, taken: set[str]) -> None:
         found = f"would be called '{path.stem}', as another model is"
     elif path.exists():
         try:
-            read_model(path)
+            read_model(path, catalogue)
         except RovsimError:
             found = "is there, and is no model file"
     if found:

@@ -6,6 +6,7 @@ from typing import Any
 from rovsim.application.loading import measured
 from rovsim.application.settings import compose
 from rovsim.diagnosis.of_campaign import diagnosed
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 
 
@@ -14,4 +15,5 @@ def diagnosis(campaign: Path, out: Path) -> dict[str, Any]:
     settings = compose(["command=diagnose"]).model_copy(update={"campaign": str(campaign)})
     data = measured(settings, even_unusable=True)
     base = nominal(data.vehicle)
-    return diagnosed(data.runs, base, settings.diagnosing, lambda name: None).content
+    found = diagnosed(data.runs, base, settings.diagnosing, built_in(), lambda name: None)
+    return found.content

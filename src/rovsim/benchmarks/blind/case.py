@@ -9,9 +9,9 @@ from pydantic import Field
 from rovsim.benchmarks.blind.outside import OUTSIDE
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.core.schema import Section
-from rovsim.dynamics.effects import effect
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.model import EffectEntry, Value
+from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 # First and last seed of each range. Whoever builds or tunes a method looks at development cases
@@ -81,7 +81,7 @@ class Case(Section):
 
 def _shrunk(entry: EffectEntry) -> EffectEntry:
     """An entry whose first parameters, those a recipe sizes, are closer to their defaults."""
-    defaults = {p.name: p.default for p in effect(entry.effect).parameters}
+    defaults = {p.name: p.default for p in built_in()[entry.effect].parameters}
     fixed = RECIPES[entry.effect].fixed
     values = {
         k: v if k in fixed else Value(value=_closer(v.value, defaults[k]))

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from rovsim.benchmarks.blind.case import Case
 from rovsim.core.errors import BadInput
+from rovsim.dynamics.catalogue import built_in
 from rovsim.simulation.synthetic_tank.campaign import SEALED, make_campaign
 from rovsim.simulation.synthetic_tank.simulate import LeftTank
 
@@ -39,7 +40,7 @@ def _held(case: Case, out: Path) -> Case | None:
     for _ in range(TRIES):
         try:
             unlisted = [one.build() for one in case.outside]
-            make_campaign(case.settings(), out, unlisted=unlisted)
+            make_campaign(case.settings(), out, built_in(), unlisted=unlisted)
             return case
         except LeftTank:
             case = case.weaker()

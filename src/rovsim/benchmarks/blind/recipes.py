@@ -11,9 +11,9 @@ from typing import Any, Mapping
 
 import numpy as np
 
-from rovsim.dynamics.effects import effect
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Parameter
-from rovsim.dynamics.model import EffectEntry, Value
+from rovsim.dynamics.model_file import EffectEntry, Value
 
 Range = tuple[float, float]
 
@@ -95,7 +95,7 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
     What is drawn is the same at every strength; only the size of the change differs.
     """
     recipe = RECIPES[name]
-    known = {p.name: p for p in effect(name).parameters}
+    known = {p.name: p for p in built_in()[name].parameters}
     chosen = recipe.choices[random.integers(len(recipe.choices))]
     values = {k: _rounded(random.uniform(*r)) for k, r in recipe.fixed.items()}
     sign = recipe.sign or random.choice([-1, 1])

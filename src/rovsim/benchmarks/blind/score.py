@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Mapping, Sequence
 
 from rovsim.benchmarks.blind.case import Case
-from rovsim.dynamics.effects import effect
+from rovsim.dynamics.catalogue import built_in
 
 Diagnosis = Mapping[str, Any]
 SURE = 1.96  # standard deviations of a 95 % interval
@@ -104,7 +104,7 @@ def _parameters(case: Case, diagnosis: Diagnosis):
     answers = {s["effect"]: s["parameters"] for s in diagnosis["selected"]}
     for entry in case.hidden:
         if entry.effect in case.names and entry.effect in answers:
-            known = {p.name: p for p in effect(entry.effect).parameters}
+            known = {p.name: p for p in built_in()[entry.effect].parameters}
             for name, truth in entry.parameters.items():
                 if known[name].fitted:
                     yield _parameter(entry.effect, known[name], truth.value, answers[entry.effect])

@@ -17,7 +17,7 @@ from sklearn.exceptions import ConvergenceWarning
 
 from rovsim.application.loading import campaign_vehicle
 from rovsim.benchmarks.blind.library import Problem, problem
-from rovsim.dynamics.effects import catalogue, effect
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
@@ -88,7 +88,7 @@ def of_campaign(campaign: Path) -> Problem:
     found = load_campaign(campaign)
     runs = [run for run in found.runs if run.split == "train"]
     motions = [clean(read_run(found, run.id)[0], SignalSettings()) for run in runs]
-    return problem(nominal(campaign_vehicle(found)), motions, catalogue())
+    return problem(nominal(campaign_vehicle(found)), motions, built_in())
 
 
 def answered(given: Problem, regression: Regression) -> dict[str, Any]:
@@ -133,7 +133,7 @@ def distinct(X: Array, size: Array) -> Array:
 
 def _parameters(given: Problem, coefficients: Array, name: str) -> dict[str, Any]:
     """Each parameter's value, linear from its default: of the axis where its column acts most."""
-    declared = {p.name: p for p in effect(name).parameters}
+    declared = {p.name: p for p in built_in()[name].parameters}
     values: dict[str, Any] = {}
     for k, column in enumerate(given.columns):
         own = coefficients[:, k]

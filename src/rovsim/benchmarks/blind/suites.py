@@ -18,7 +18,7 @@ from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
-from rovsim.dynamics.model import EffectEntry, Value
+from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Camera
 

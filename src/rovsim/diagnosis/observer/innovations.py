@@ -10,7 +10,6 @@ from rovsim.diagnosis.observer.noise import Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.unlisted_drag import UNLISTED_DRAG
 from rovsim.dynamics.actuation import Between
-from rovsim.dynamics.effects import catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
@@ -64,7 +63,7 @@ def _accelerations(
 
 def observing(models: Sequence[Model], run: ObservedRun) -> Batch:
     """One engine for all models, at the site of a run."""
-    return Batch(models, run.motion.site, _slots(models))
+    return Batch(models, run.motion.site, _slots(models, run.wrenches))
 
 
 def drives(models: Sequence[Model], run: ObservedRun, between: Between) -> list[Drive]:
@@ -72,9 +71,8 @@ def drives(models: Sequence[Model], run: ObservedRun, between: Between) -> list[
     return drive_models(models, run.motion.commands, run.edges, between)
 
 
-def _slots(models: Sequence[Model]) -> list[type[Wrench]]:
+def _slots(models: Sequence[Model], known: Sequence[type[Wrench]]) -> list[type[Wrench]]:
     """Wrench effects of the one engine that serves all candidates, some perhaps twice."""
-    known = [c for c in catalogue().values() if issubclass(c, Wrench)]
     most: Counter[type[Wrench]] = Counter([*known, *UNLISTED_DRAG])
     for model in models:
         most |= Counter(type(w) for w in model.wrenches)

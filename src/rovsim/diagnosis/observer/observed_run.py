@@ -8,6 +8,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.actuation import ThrustPath
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.base import Wrench
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.simulation.step_grid import StepGrid
@@ -27,7 +29,8 @@ class ObservedRun:
     `readings` (k, 13): pose NED, and mean velocity since the reading before where velocities were
     measured; `ends` (k,) integration steps at which they hold; `edges` (s+1,) those steps, s;
     `spans` pairs (first, last) of readings: the observer starts at `first`, whose state is
-    `starts` (., 13), and reads up to `last`.
+    `starts` (., 13), and reads up to `last`. `wrenches` are those of the one engine that serves all
+    models of a diagnosis.
     """
 
     motion: Motion
@@ -36,6 +39,7 @@ class ObservedRun:
     edges: Array
     spans: tuple[tuple[int, int], ...]
     starts: Array
+    wrenches: tuple[type[Wrench], ...]
 
     @property
     def h(self) -> float:
@@ -89,17 +93,19 @@ class ObservedRun:
         return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
-def prepare_run(stage: Stage, motion: Motion, step: float) -> ObservedRun:
+def prepare_run(stage: Stage, motion: Motion, step: float, catalogue: Catalogue) -> ObservedRun:
     """A run as the observer sees it; without usable stretches it has no spans.
 
     Args:
         stage: its poses on a uniform clock, before the filter; binned recordings as they are.
         motion: the same run, filtered and differentiated.
         step: longest integration step, s.
+        catalogue: effects that may act in it.
     """
     steps = StepGrid.over(motion, step)
+    wrenches = tuple(c for c in catalogue.values() if issubclass(c, Wrench))
     if motion.binned:
-        return _bins(motion, steps.edges)
+        return _bins(motion, steps.edges, wrenches)
     assert isinstance(stage, Poses)
     readings = np.hstack([stage.eta, np.zeros((len(stage.eta), 6))])
     period = float(motion.time[1] - motion.time[0])
@@ -107,11 +113,11 @@ def prepare_run(stage: Stage, motion: Motion, step: float) -> ObservedRun:
     ends = np.arange(len(motion.time)) * steps.stride
     return ObservedRun(
         motion, readings, ends, steps.edges, tuple(spans),
-        np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13),
+        np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13), wrenches,
     )  # fmt: skip
 
 
-def _bins(motion: Motion, edges: Array) -> ObservedRun:
+def _bins(motion: Motion, edges: Array, wrenches: tuple[type[Wrench], ...]) -> ObservedRun:
     """Readings at the ends of bins: the pose there, and the mean velocity of the bin."""
     h = edges[1] - edges[0]
     ends = np.round((motion.time - motion.time[0]) / h).astype(int)
@@ -121,7 +127,7 @@ def _bins(motion: Motion, edges: Array) -> ObservedRun:
         (a, b - 1) for a, b in motion.segments() if motion.time[b - 1] - motion.time[a] > SHORTEST
     ]
     starts = np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13)
-    return ObservedRun(motion, readings, ends, edges, tuple(spans), starts)
+    return ObservedRun(motion, readings, ends, edges, tuple(spans), starts, wrenches)
 
 
 def blocks(runs: Sequence[ObservedRun]) -> Array:

@@ -6,7 +6,7 @@ from typing import Sequence
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 
 
@@ -28,11 +28,11 @@ class Candidate:
         return Term(self.start, self.free if free is None else tuple(free))
 
 
-def list_candidates(runs: Sequence[ObservedRun]) -> list[Candidate]:
+def list_candidates(runs: Sequence[ObservedRun], catalogue: Catalogue) -> list[Candidate]:
     """All candidates that these runs could show."""
     site = runs[0].motion.site
     found = []
-    for cls in catalogue().values():
+    for cls in catalogue.values():
         for values in cls.starts_at(site):
             start = cls(**values)
             if _possible(start, runs):

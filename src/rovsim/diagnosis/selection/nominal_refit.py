@@ -16,13 +16,12 @@ from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, ONE_GAIN, free_terms
 from rovsim.dynamics.actuation import Between
-from rovsim.dynamics.effects import effect
+from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
 STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center")
-GAINS = Bounds(
-    0.5, 2.0
-)  # a curve measured on the bench; gain, masses and drag are known to one scale only
+# A curve measured on the bench; gain, masses and drag are known to one scale only.
+GAINS = Bounds(0.5, 2.0)
 ROUNDS = 3  # the filters suit the noise of the round before
 
 
@@ -44,7 +43,7 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun], between: Between) -
 def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     """All parameters free and unchanged."""
     terms = free_terms(base, moved, STATED)
-    gain = Term(effect("thruster_gain")(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAINS))
+    gain = Term(ThrusterGain(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAINS))
     return Hypothesis(base, (*terms, gain))
 
 

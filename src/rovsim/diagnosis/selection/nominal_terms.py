@@ -6,7 +6,7 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.diagnosis.observer.hypothesis import Bounds, Term
-from rovsim.dynamics.effects import effect
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import Model
 
 DRAG = ("linear_damping", "quadratic_damping")
@@ -24,7 +24,7 @@ def free_terms(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple
     """
     bounds = _physical_bounds(base)
     return tuple(
-        Term(effect(name)(), _choose_free(name, moved), bounds.get(name, {})) for name in names
+        Term(built_in()[name](), _choose_free(name, moved), bounds.get(name, {})) for name in names
     )
 
 
@@ -47,4 +47,4 @@ def _choose_free(name: str, moved: Sequence[str]) -> tuple[str, ...]:
         return ONE_GAIN
     if name in PER_AXIS:
         return tuple(moved)
-    return tuple(p.name for p in effect(name).parameters if p.fitted)
+    return tuple(p.name for p in built_in()[name].parameters if p.fitted)

@@ -16,6 +16,7 @@ method. Effects are immutable and add: a model is a list of them.
 
 from abc import ABC, abstractmethod
 from collections import namedtuple
+from copy import copy
 from typing import Any, ClassVar, Mapping
 
 import numpy as np
@@ -64,6 +65,7 @@ class Effect(ABC):
         ]
         self.values: Array = np.array(numbers, dtype=float)
         self.values.setflags(write=False)
+        self.std: Mapping[str, float] = {}  # of values that were fitted, by name
 
     def _checked(self, parameter: Parameter, value: Any) -> float:
         is_number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
@@ -92,8 +94,14 @@ class Effect(ABC):
         }
 
     def with_values(self, values: Mapping[str, float]) -> "Effect":
-        """The same effect with some values replaced."""
+        """The same effect with some values replaced, and no standard deviations."""
         return type(self)(**self.given() | dict(values))
+
+    def with_std(self, std: Mapping[str, float]) -> "Effect":
+        """The same effect with the standard deviations of its fitted values."""
+        known = copy(self)
+        known.std = dict(std)
+        return known
 
     @classmethod
     def starts_at(cls, site: Site) -> tuple[dict[str, float], ...]:

@@ -28,7 +28,7 @@ def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]
         BadInput: it cannot be read or run, declares no effect, or an id that is taken.
     """
     path = path.expanduser().resolve()
-    return checked_effects(vars(_run(path, read_text(path))), path, taken)
+    return check_effects(vars(_run(path, read_text(path))), path, taken)
 
 
 @cache
@@ -53,7 +53,7 @@ def _run(path: Path, text: str) -> ModuleType:
     return module
 
 
-def checked_effects(
+def check_effects(
     content: Mapping[str, Any], where: object, taken: Mapping[str, Any]
 ) -> dict[str, type[Effect]]:
     """The effects that stand in a module, complete and with new ids.

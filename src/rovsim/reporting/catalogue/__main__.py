@@ -5,7 +5,7 @@ from pathlib import Path
 
 from rovsim.core.files import write_text
 from rovsim.core.progress import reported
-from rovsim.dynamics.effects import built_in
+from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.catalogue.flight import seen, settings
 from rovsim.reporting.catalogue.page import PAGE, PICTURES, page
 from rovsim.reporting.figures.signature import signature, write
@@ -18,7 +18,7 @@ def main(docs: Path, names: list[str]) -> None:
         for k, (name, cls) in enumerate(known.items()):
             progress(k, len(known))
             if cls.signature:
-                look = seen(cls.signature, settings(cls, cls.signature))
+                look = seen(cls.signature, settings(cls, cls.signature), built_in())
                 write(signature(look), docs / PICTURES / f"{name}.png")
         progress(len(known), len(known))
     write_text(docs / PAGE, page(built_in()))

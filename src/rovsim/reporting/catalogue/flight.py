@@ -7,9 +7,11 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Autopilot, Effect
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.dynamics.model import EffectEntry, nominal
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.model_file import describe_effect
 from rovsim.evaluation.error_conditions import Blocks, blocks
 from rovsim.evaluation.error_conditions.bins import binned, stretches, table
 from rovsim.evaluation.error_conditions.conditions import Condition
@@ -36,7 +38,6 @@ RUN = TankRun(id="run", control="6dof", split="train")
 
 def settings(cls: type[Effect], signature: Signature) -> TankSettings:
     """A calm tank small enough for walls and surface to matter, cameras better than usual."""
-    hidden = EffectEntry.model_validate({"effect": cls.id, "parameters": dict(signature.values)})
     return TankSettings(
         seed=3,
         runs=(RUN,),
@@ -47,21 +48,21 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
         ),
         log=Log(kind="demand" if issubclass(cls, Autopilot) else "pwm", missing=0.0),
         turbulence=Turbulence(force=0.1, moment=0.004),
-        effects=(hidden,),
+        effects=(describe_effect(cls(**signature.values)),),
     )
 
 
-def fly(tank: TankSettings) -> Motion:
+def fly(tank: TankSettings, catalogue: Catalogue) -> Motion:
     """The run as it is measured from its raw exports."""
     with tempfile.TemporaryDirectory() as folder:
-        make_campaign(tank, Path(folder) / "raw")
+        make_campaign(tank, Path(folder) / "raw", catalogue)
         recording, _ = read_run(load_campaign(Path(folder) / "raw"), RUN.id)
     return clean(recording, SignalSettings())
 
 
-def seen(signature: Signature, tank: TankSettings) -> Seen:
+def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen:
     """What the nominal model misses in this tank, and what the hidden effect adds to it."""
-    motion, truth = fly(tank), true_model(tank)
+    motion, truth = fly(tank, catalogue), true_model(tank, catalogue)
     missing, rest = (
         blocks(motion, samples(model, motion, SignalSettings(), ReplaySettings()))
         for model in (nominal(truth.vehicle), truth)

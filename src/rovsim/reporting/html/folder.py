@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, Iterable, Mapping
 
 from rovsim.core.progress import counted
+from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import page
@@ -18,12 +19,14 @@ def present(
     evidence: Evidence,
     wanted: Iterable[Wanted],
     provenance: Mapping[str, Any],
+    catalogue: Mapping[str, type[Effect]],
 ) -> list[Path]:
     """Draw figures into `out`/figures and write `out`/report.html; returns all that was written."""
     drawn = [_drawn(out, *one, evidence) for one in counted(list(wanted), "drawing")]
     inputs = page.ReportInputs(
         campaign, evidence.comparison, evidence.ladder, evidence.timing, evidence.quality,
         [picture for picture, _ in drawn], provenance, evidence.where, evidence.diagnosis,
+        catalogue=catalogue,
     )  # fmt: skip
     page.write(out / "report.html", inputs)
     return [out / "report.html", *(path for _, paths in drawn for path in paths)]

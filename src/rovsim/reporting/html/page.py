@@ -12,6 +12,7 @@ from markupsafe import Markup
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
 from rovsim.core.mappings import leaves
+from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, kind
 from rovsim.reporting.figures.inference_time import RATES
 from rovsim.reporting.figures.marks import AXES, number, significant
@@ -76,6 +77,7 @@ class ReportInputs:
     `comparison`, `ladder`, `timing`, `where`, `diagnosis`, `published_errors`, `pitfalls`: contents
     of the JSON files of those names. `quality`: the quality reports by run. `pictures`: in order
     of appearance. `provenance`: nested plain values (settings, code digest, versions).
+    `catalogue`: what the effects of the diagnosis are.
     """
 
     campaign: str
@@ -89,6 +91,7 @@ class ReportInputs:
     diagnosis: Mapping[str, Any] = field(default_factory=dict)
     published_errors: Mapping[str, Any] = field(default_factory=dict)
     pitfalls: Mapping[str, Any] = field(default_factory=dict)
+    catalogue: Mapping[str, type[Effect]] = field(default_factory=dict)
 
 
 def render(inputs: ReportInputs) -> str:
@@ -105,7 +108,7 @@ def render(inputs: ReportInputs) -> str:
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
     return environment.get_template("report.html").render(
         campaign=inputs.campaign,
-        verdict=verdict(inputs.diagnosis) if inputs.diagnosis else None,
+        verdict=verdict(inputs.diagnosis, inputs.catalogue) if inputs.diagnosis else None,
         summary=_summary(inputs),
         where=inputs.where.get("models", {}),
         errors=_errors(inputs.comparison) if inputs.comparison else [],

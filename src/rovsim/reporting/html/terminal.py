@@ -3,6 +3,7 @@
 import textwrap
 from typing import Any, Mapping, Sequence
 
+from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures.marks import number, short, significant
 from rovsim.reporting.html.verdict import Missing, verdict
 
@@ -43,9 +44,9 @@ def _findings(where: Mapping[str, Any]) -> list[str]:
     return [*lines, f"  … and {rest} more in the report"] if rest > 0 else lines
 
 
-def diagnosed(found: Mapping[str, Any]) -> str:
+def diagnosed(found: Mapping[str, Any], catalogue: Mapping[str, type[Effect]]) -> str:
     """The verdict, the selected effects and those most worth by themselves, with bars."""
-    said = verdict(found)
+    said = verdict(found, catalogue)
     lines = ["", f"{said.name}: {said.sentence}", ""]
     for one, words in zip(found["selected"], said.missing, strict=True):
         lines += _effect(one["error_reduction"] or 0.0, words)

@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
-from rovsim.dynamics.effects import catalogue
+from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures.marks import listed, number, significant
 
 VERDICTS = {
@@ -44,22 +44,22 @@ class Verdict:
     next: str
 
 
-def verdict(found: Mapping[str, Any]) -> Verdict:
-    """`diagnosis.json` in words."""
+def verdict(found: Mapping[str, Any], catalogue: Mapping[str, type[Effect]]) -> Verdict:
+    """`diagnosis.json` in words; the catalogue says what its effects are."""
     remarks = [
         error_sentence(found["error"], bool(found["selected"])),
         *apart_sentences(found),
         *unexplained_sentences(found),
         *still_sentences(found.get("not_excited", [])),
     ]
+    missing = tuple(_missing(one, catalogue.get(one["effect"])) for one in found["selected"])
     return Verdict(
-        found["verdict"], VERDICTS[found["verdict"]], tuple(map(_missing, found["selected"])),
-        tuple(remarks), found["next_experiment"] or "",
+        found["verdict"], VERDICTS[found["verdict"]], missing, tuple(remarks),
+        found["next_experiment"] or "",
     )  # fmt: skip
 
 
-def _missing(one: Mapping[str, Any]) -> Missing:
-    known = catalogue().get(one["effect"])
+def _missing(one: Mapping[str, Any], known: type[Effect] | None) -> Missing:
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
     equation, cause = (known.equation, known.cause) if known else ("", "")
     values = tuple(f"{name} {interval(v)}" for name, v in one["parameters"].items())

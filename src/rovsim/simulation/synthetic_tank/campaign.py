@@ -12,8 +12,10 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text, write_yaml
 from rovsim.core.rotations import HALF_TURN_X
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import build_effect
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.synthetic_tank.exports import BODY, commands_csv, qtm_tsv
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
@@ -40,15 +42,23 @@ def describe(settings: TankSettings) -> dict[str, Any]:
     }
 
 
-def true_model(settings: TankSettings, unlisted: Sequence[Effect] = ()) -> Model:
-    """The vehicle in the tank: nominal physics and all that is hidden."""
+def true_model(
+    settings: TankSettings, catalogue: Catalogue, unlisted: Sequence[Effect] = ()
+) -> Model:
+    """The vehicle in the tank: nominal physics and all that is hidden.
+
+    Raises:
+        BadInput: a hidden effect that the catalogue does not know, or values it cannot have.
+    """
     vehicle = load_vehicle(settings.vehicle)
-    return Model("truth", vehicle, settings.effects, unlisted=tuple(unlisted))
+    hidden = [build_effect(entry, catalogue) for entry in settings.effects]
+    return Model("truth", vehicle, (*vehicle.effects(), *hidden, *unlisted))
 
 
 def make_campaign(
     settings: TankSettings,
     out: Path,
+    catalogue: Catalogue,
     progress: Callable[[int, int], None] = lambda a, b: None,
     unlisted: Sequence[Effect] = (),
 ) -> None:
@@ -57,6 +67,7 @@ def make_campaign(
     Args:
         settings: what it is made of.
         out: a folder that is new, empty or an earlier tank campaign.
+        catalogue: effects that the settings can name.
         progress: told how many runs are done, of how many.
         unlisted: hidden physics that the catalogue does not know.
 
@@ -65,10 +76,11 @@ def make_campaign(
         LeftTank: the hidden effects are stronger than the pilot.
     """
     _replaceable(out)
+    model = true_model(settings, catalogue, unlisted)
     out.parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}-"))
     try:
-        _fill(settings, unlisted, folder, progress)
+        _fill(settings, model, unlisted, folder, progress)
         folder.chmod(0o755)
         shutil.rmtree(out, ignore_errors=True)
         os.replace(folder, out)
@@ -88,18 +100,19 @@ def _replaceable(out: Path) -> None:
 
 def _fill(
     settings: TankSettings,
+    model: Model,
     unlisted: Sequence[Effect],
     folder: Path,
     progress: Callable[[int, int], None],
 ) -> None:
-    model, runs = true_model(settings, unlisted), settings.runs
+    runs = settings.runs
     seeds = np.random.SeedSequence(settings.seed).spawn(len(runs))
     for k, (run, seed) in enumerate(zip(runs, seeds, strict=True)):
         progress(k, len(runs))
         _record(model, settings, run, folder, np.random.default_rng(seed))
     progress(len(runs), len(runs))
     write_yaml(folder / "campaign.yaml", describe(settings))
-    write_yaml(folder / SEALED, sealed(settings, unlisted))
+    write_yaml(folder / SEALED, sealed(settings, model, unlisted))
 
 
 def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, random) -> None:
@@ -112,9 +125,10 @@ def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, ra
     write_text(folder / f"{run.id}_commands.csv", commands_csv(truth, settings.log, random))
 
 
-def sealed(settings: TankSettings, unlisted: Sequence[Effect] = ()) -> dict[str, Any]:
+def sealed(settings: TankSettings, model: Model, unlisted: Sequence[Effect]) -> dict[str, Any]:
     """The answer, in the terms of the diagnosis, and how to make the campaign again."""
-    effects = [{"effect": e.effect, "parameters": e.build().given()} for e in settings.effects]
+    hidden = model.added[: len(settings.effects)]
+    effects = [{"effect": e.id, "parameters": e.given()} for e in hidden]
     verdict = "unexplained" if unlisted else "missing_effects" if effects else "adequate"
     content: dict[str, Any] = {"verdict": verdict, "effects": effects}
     if unlisted:

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from rovsim.core.schema import Section
-from rovsim.dynamics.model import EffectEntry
+from rovsim.dynamics.model_file import EffectEntry
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Interval = tuple[float, float]

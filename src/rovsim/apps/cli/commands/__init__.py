@@ -1,1 +1,1 @@
-"""The commands: one module each, with a docstring for --help and a function `run(settings)`."""
+"""The commands: one module each, its docstring for --help, and `run(settings, catalogue)`."""

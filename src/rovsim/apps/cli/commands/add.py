@@ -13,9 +13,11 @@ from rovsim.application.settings import Settings
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.apply import added, read_diagnosis
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model_file import write_model
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Write the new model, and say what is in it."""
     if (
         settings.diagnosis is None
@@ -29,11 +31,11 @@ def run(settings: Settings) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     source = Path(settings.diagnosis)
-    model, names = added(read_diagnosis(source), source, settings.to, settings.effects)
+    model, names = added(read_diagnosis(source), source, settings.to, settings.effects, catalogue)
     known = provenance(settings)
     story = {"diagnosis": str(source), "base": settings.to}
     story |= {key: known[key] for key in ("code", "versions")}
-    model.write(Path(settings.model), provenance=story)
+    write_model(model, Path(settings.model), provenance=story)
     text = f"{settings.to} + {' + '.join(names)}"
     if not names:
         text = f"{settings.to} as it is, for the diagnosis selected no effect"

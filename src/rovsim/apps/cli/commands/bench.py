@@ -24,6 +24,7 @@ from rovsim.benchmarks.speed.page import write_page
 from rovsim.benchmarks.speed.replay import replay_speeds
 from rovsim.core.extras import require
 from rovsim.core.files import write_json
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
 from rovsim.learning.pairs import samples
@@ -32,10 +33,10 @@ from rovsim.simulation.synthetic_tank.campaign import make_campaign
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Record the campaign, train on its train runs, time on its test runs."""
     require("benchmark", "learn", by="rovsim bench")
-    model, found = _samples(settings)
+    model, found = _samples(settings, catalogue)
     how = settings.bench
     pairs = _pairs(found, FeatureSettings()).drawn()
     large = _pairs(found, LARGE).drawn()
@@ -53,11 +54,11 @@ def run(settings: Settings) -> None:
     say(settings, str(path), content)
 
 
-def _samples(settings: Settings) -> tuple[Model, dict[str, list]]:
+def _samples(settings: Settings, catalogue: Catalogue) -> tuple[Model, dict[str, list]]:
     """Samples of the train and of the test runs, with the control of each."""
     tank = settings.tank.model_copy(update={"duration": settings.bench.duration})
     with TemporaryDirectory() as folder:
-        make_campaign(tank, Path(folder, "raw"))
+        make_campaign(tank, Path(folder, "raw"), catalogue)
         data = measured(settings.model_copy(update={"campaign": str(Path(folder, "raw"))}))
     model = nominal(data.vehicle)
     found: dict[str, list] = {"train": [], "test": []}

@@ -21,12 +21,13 @@ from rovsim.benchmarks.blind.suites import suite
 from rovsim.benchmarks.blind.summary import judged, summary
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.marked import replace_tables
 
 SCHEMA = "rovsim.blind.summary/1"
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Run what is missing, then score all."""
     asked = settings.blind
     out = Path(settings.out or "results/blind")

@@ -15,19 +15,20 @@ from rovsim.application.provenance import provenance
 from rovsim.application.settings import Settings
 from rovsim.apps.cli.output import say
 from rovsim.core.files import write_json
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.evaluation.budget import totals
 from rovsim.evaluation.ladder import step
 from rovsim.reporting.html.terminal import compared
 from rovsim.reporting.report_data import PER_RUN, Evidence
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Compare, then write numbers, figures and the report."""
     data = measured(settings)
-    chosen = models(settings, data.vehicle)
+    chosen = models(settings, data.vehicle, catalogue)
     out = results_folder(settings.out or f"results/{data.campaign.name}/compare")
     evidence = compare(data, chosen, settings)
-    _present(out, data.campaign.name, evidence, settings)
+    _present(out, data.campaign.name, evidence, settings, catalogue)
     write_json(out / "where.json", evidence.where)
     write_json(out / "budget.json", totals(list(evidence.budgets.values())))
     write_json(out / "comparison.json", evidence.comparison)
@@ -38,10 +39,12 @@ def run(settings: Settings) -> None:
     say(settings, f"{text}\n\n{files}", evidence.comparison)
 
 
-def _present(out: Path, campaign: str, evidence: Evidence, settings: Settings) -> None:
+def _present(
+    out: Path, campaign: str, evidence: Evidence, settings: Settings, catalogue: Catalogue
+) -> None:
     from rovsim.reporting.html.folder import present
 
     once = ("where", "where_map", "error_by_axis", "error_growth", "excitation")
     wanted = [(figure, "") for figure in once]
     wanted += [(figure, run) for run in evidence.motions for figure in PER_RUN]
-    present(out, campaign, evidence, wanted, provenance(settings))
+    present(out, campaign, evidence, wanted, provenance(settings), catalogue)

@@ -20,22 +20,23 @@ from rovsim.core.extras import installed
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.of_campaign import Diagnosed
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html import terminal
 from rovsim.reporting.report_data import Evidence
 
 FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Diagnose one model, write what was found, and say it."""
     data = measured(settings, even_unusable=True)
-    chosen = models(settings, data.vehicle)
+    chosen = models(settings, data.vehicle, catalogue)
     out = results_folder(settings.out or f"results/{data.campaign.name}/diagnosis")
-    found = diagnose(data, chosen, settings)
-    shown = _present(out, data, found, settings)
+    found = diagnose(data, chosen, settings, catalogue)
+    shown = _present(out, data, found, settings, catalogue)
     write_json(out / "diagnosis.json", found.content)
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
-    say(settings, f"{terminal.diagnosed(found.content)}\n\n{files}", found.content)
+    say(settings, f"{terminal.diagnosed(found.content, catalogue)}\n\n{files}", found.content)
     if installed("tracking"):
         with reported("logging to MLflow"):
             track_diagnosis(
@@ -44,7 +45,9 @@ def run(settings: Settings) -> None:
             )  # fmt: skip
 
 
-def _present(out: Path, data: Measured, found: Diagnosed, settings: Settings) -> list[Path]:
+def _present(
+    out: Path, data: Measured, found: Diagnosed, settings: Settings, catalogue: Catalogue
+) -> list[Path]:
     from rovsim.reporting.html.folder import present
 
     evidence = Evidence(
@@ -52,4 +55,4 @@ def _present(out: Path, data: Measured, found: Diagnosed, settings: Settings) ->
         diagnosis=found.content,
     )  # fmt: skip
     wanted = [(figure, "") for figure in FIGURES]
-    return present(out, data.campaign.name, evidence, wanted, provenance(settings))
+    return present(out, data.campaign.name, evidence, wanted, provenance(settings), catalogue)

@@ -12,22 +12,24 @@ from rovsim.application.settings import Settings
 from rovsim.apps.fmi.unit import write_unit
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
-from rovsim.dynamics.model import BUILT_IN, load_model
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import BUILT_IN
+from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import load_vehicle
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Write the unit."""
     require("fmi", by="rovsim fmu")
     spec = settings.model
-    if not isinstance(spec, str) or spec == "zero_acceleration" or settings.effect_files:
+    if not isinstance(spec, str) or spec == "zero_acceleration" or catalogue.files:
         raise BadInput(
-            f"model {spec}" + (", effects_file" if settings.effect_files else ""),
+            f"model {spec}" + (", effects_file" if catalogue.files else ""),
             where="rovsim fmu",
             expected="one model, of effects that are installed",
             remedy="Name one model file; install effects of your own (docs/your_own_effect.md).",
         )
     out = Path(settings.out or "results/vehicle.fmu")
-    model = load_model(spec, load_vehicle("bluerov2_heavy"))
+    model = load_model(spec, load_vehicle("bluerov2_heavy"), catalogue)
     write_unit(model, None if spec in BUILT_IN else Path(spec), out)
     print(out)

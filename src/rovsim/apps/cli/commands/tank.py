@@ -11,12 +11,13 @@ from pathlib import Path
 from rovsim.application.settings import Settings
 from rovsim.apps.cli.output import say
 from rovsim.core.progress import reported
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Fly the runs and write the folder."""
     out = Path(settings.out or f"results/{settings.tank.name}/raw")
     with reported("flying") as progress:
-        make_campaign(settings.tank, out, progress)
+        make_campaign(settings.tank, out, catalogue, progress)
     say(settings, str(out), {"campaign": str(out)})

@@ -16,13 +16,14 @@ from rovsim.core.errors import BadInput
 from rovsim.core.extras import installed, require
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
+from rovsim.dynamics.catalogue import Catalogue
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Train, write, score, and log."""
     require("learn", by="rovsim train")
     data = measured(settings)
-    chosen = models(settings, data.vehicle)
+    chosen = models(settings, data.vehicle, catalogue)
     if len(chosen) != 1:
         raise BadInput(
             f"{len(chosen)} models",
@@ -33,7 +34,7 @@ def run(settings: Settings) -> None:
     base = chosen[0]
     name = f"{settings.learner.kind}_{settings.control}"
     out = results_folder(settings.out or f"results/{data.campaign.name}/trained/{name}")
-    corrected = train(data, base, settings, out)
+    corrected = train(data, base, settings, catalogue, out)
     replays = replayed(data, [base, corrected], settings)
     found = scored(list(data.motions.values()), replays)
     write_json(out / "comparison.json", found)

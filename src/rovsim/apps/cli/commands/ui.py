@@ -15,9 +15,10 @@ from rovsim.apps.cli.output import say
 from rovsim.apps.workbench import HOST
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
+from rovsim.dynamics.catalogue import Catalogue
 
 
-def run(settings: Settings) -> None:
+def run(settings: Settings, catalogue: Catalogue) -> None:
     """Serve until interrupted."""
     require("workbench", by="rovsim ui")
     _free(settings.port)
@@ -25,7 +26,7 @@ def run(settings: Settings) -> None:
 
     address = f"http://{HOST}:{settings.port}"
     say(settings, f"The workbench is at {address} (Ctrl+C ends it)", {"address": address})
-    serve(settings)
+    serve(settings, catalogue)
 
 
 def _free(port: int) -> None:

@@ -1,0 +1,100 @@
+"""The catalogue: every effect that a model file can name and a diagnosis can find."""
+
+import importlib
+import pkgutil
+from functools import cache
+from importlib.metadata import entry_points
+from pathlib import Path
+from types import ModuleType
+from typing import Iterable, Iterator, Mapping, Sequence
+
+from rovsim.core.errors import BadInput, nearest
+from rovsim.dynamics import effects
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.user_files import check_effects, read_effects
+
+
+class Catalogue(Mapping[str, type[Effect]]):
+    """Effects by id, in the order of their ids; `files` are those that a user named."""
+
+    def __init__(self, found: Mapping[str, type[Effect]], files: Sequence[Path] = ()) -> None:
+        self._by_id = dict(sorted(found.items()))
+        self.files = tuple(files)
+
+    def __getitem__(self, name: str) -> type[Effect]:
+        return self._by_id[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_id)
+
+    def __len__(self) -> int:
+        return len(self._by_id)
+
+    def find(self, name: str) -> type[Effect]:
+        """The effect with this id.
+
+        Raises:
+            BadInput: there is none; names the nearest.
+        """
+        if name in self:
+            return self[name]
+        raise BadInput(
+            f"unknown effect '{name}'",
+            where="effects",
+            expected="an id of the catalogue, or one that effects_file=FILE.py declares",
+            remedy=nearest(name, self),
+        )
+
+
+def load_catalogue(files: Sequence[Path] = ()) -> Catalogue:
+    """The effects of this package, of installed packages, and of these files.
+
+    Raises:
+        BadInput: a file or an entry point that cannot be used, or without a complete effect.
+    """
+    found = dict(built_in())
+    for where, content in _installed():
+        found |= check_effects(content, where, found)
+    for path in files:
+        found |= read_effects(path, found)
+    return Catalogue(found, files)
+
+
+@cache
+def built_in() -> Catalogue:
+    """The effects of this package: every module of `rovsim.dynamics.effects`."""
+    for module in pkgutil.iter_modules(effects.__path__):
+        importlib.import_module(f"{effects.__name__}.{module.name}")
+    own = (c for c in _concrete(Effect) if c.__module__.startswith(f"{effects.__name__}."))
+    return Catalogue({cls.id: cls for cls in own})
+
+
+def _concrete(cls: type[Effect]) -> Iterable[type[Effect]]:
+    if getattr(cls, "id", None) and cls.listed:
+        yield cls
+    for inner in cls.__subclasses__():
+        yield from _concrete(inner)
+
+
+@cache
+def _installed() -> list[tuple[str, Mapping[str, object]]]:
+    """What the entry points `rovsim.effects` name, a class or a module each, with its origin.
+
+    Raises:
+        BadInput: one of them cannot be imported.
+    """
+    found: list[tuple[str, Mapping[str, object]]] = []
+    for entry in entry_points(group="rovsim.effects"):
+        where = f"entry point {entry.name} = {entry.value}"
+        try:
+            loaded = entry.load()
+        except Exception as error:
+            raise BadInput(
+                f"cannot be imported ({type(error).__name__}: {error})",
+                where=where,
+                expected="a class or a module of effects",
+                remedy="Correct that package, or remove it.",
+            ) from None
+        content = vars(loaded) if isinstance(loaded, ModuleType) else {entry.name: loaded}
+        found.append((where, content))
+    return found

@@ -1,0 +1,165 @@
+"""Model files, read and written: nothing else knows what stands in one."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import plain, read_yaml, write_yaml
+from rovsim.core.schema import Number, Section, checked
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.learned.residual import StoredResidual, read_residual
+from rovsim.dynamics.model import BUILT_IN, Model
+from rovsim.dynamics.vehicle import Vehicle, check_layout, known_vehicle, load_vehicle
+
+SCHEMA = "rovsim.model/1"
+
+
+class Value(Section):
+    """A parameter's value with what is known of it."""
+
+    value: Number
+    std: Number | None = None
+    unit: str | None = None
+
+
+def _with_key(value: Any) -> Any:
+    """A bare number is a value nothing more is known of."""
+    return value if isinstance(value, (dict, Value)) else {"value": value}
+
+
+class EffectEntry(Section):
+    """One effect of a model file; a parameter is a number, or a `value` with `std` and `unit`."""
+
+    effect: str
+    parameters: dict[str, Annotated[Value, BeforeValidator(_with_key)]] = Field(
+        default_factory=dict
+    )
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The values alone, by parameter."""
+        return {name: known.value for name, known in self.parameters.items()}
+
+    def plain(self) -> dict[str, Any]:
+        """As it is written: numbers alone where nothing more is known."""
+        known = {
+            name: v.value if v.std is None and v.unit is None else v.model_dump(exclude_none=True)
+            for name, v in self.parameters.items()
+        }
+        return {"effect": self.effect, "parameters": known}
+
+
+class ModelFile(Section):
+    """A model file as it stands on disk: data only."""
+
+    schema_: Literal["rovsim.model/1"] = Field("rovsim.model/1", alias="schema")
+    vehicle: str | dict[str, Any]
+    effects: tuple[EffectEntry, ...] = ()
+    residual: dict[str, Any] | None = None
+    provenance: dict[str, Any] | None = None
+
+
+def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
+    """The effect that an entry describes.
+
+    Raises:
+        BadInput: an unknown effect or parameter, a value out of range, another unit.
+    """
+    found = catalogue.find(entry.effect)(**entry.values)
+    units = {p.name: p.unit for p in found.parameters}
+    for name, known in entry.parameters.items():
+        if known.unit not in (None, units[name]):
+            raise BadInput(
+                f"{name} has the unit '{known.unit}'",
+                where=f"effect {entry.effect}",
+                expected=f"'{units[name]}'",
+                remedy="Convert the value, or leave the unit out.",
+            )
+    std = {name: v.std for name, v in entry.parameters.items() if v.std is not None}
+    return found.with_std(std)
+
+
+def describe_effect(effect: Effect) -> EffectEntry:
+    """The entry of an effect: what differs from the default, and what was fitted."""
+    given = effect.given()
+    values = {
+        p.name: Value(value=effect[p.name], std=effect.std[p.name], unit=p.unit)
+        if p.name in effect.std
+        else Value(value=given[p.name])
+        for p in effect.parameters
+        if p.name in given or p.name in effect.std
+    }
+    return EffectEntry(effect=effect.id, parameters=values)
+
+
+def read_model(path: Path, catalogue: Catalogue) -> Model:
+    """Read a model file, of effects of this catalogue; the model is called by the file's stem.
+
+    Raises:
+        BadInput: it is missing, or something in it is unknown or out of range.
+    """
+    return build_model(read_yaml(path), path, catalogue)
+
+
+def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
+    """The model of a file's content.
+
+    Raises:
+        BadInput: something in it is unknown or out of range.
+    """
+    file = checked(ModelFile, content, path)
+    if isinstance(file.vehicle, str):
+        vehicle = load_vehicle(file.vehicle, beside=path.parent)
+    else:
+        vehicle = checked(Vehicle, file.vehicle, f"{path}, vehicle")
+        check_layout(vehicle, path)
+    residual = read_residual(file.residual, path.parent) if file.residual else None
+    added = [build_effect(entry, catalogue) for entry in file.effects]
+    model = Model(path.stem, vehicle, (*vehicle.effects(), *added), residual)
+    _ = model.body.M  # refuse a model that cannot move
+    return model
+
+
+def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:
+    """A built-in model of this vehicle, or the model of a file, called by the file's stem.
+
+    Raises:
+        BadInput: no such file, or it does not describe a model.
+    """
+    if spec in BUILT_IN:
+        return BUILT_IN[spec](vehicle)
+    if not Path(spec).suffix and not Path(spec).exists():
+        raise BadInput(
+            f"unknown model '{spec}'",
+            where="model",
+            expected=f"{' or '.join(BUILT_IN)}, or the path of a model file",
+            remedy=nearest(spec, BUILT_IN),
+        )
+    return read_model(Path(spec), catalogue)
+
+
+def describe_model(model: Model) -> dict[str, Any]:
+    """The content of a model's file, without a residual."""
+    name = model.vehicle.name
+    known = known_vehicle(name) is not None and load_vehicle(name) == model.vehicle
+    return {
+        "schema": SCHEMA,
+        "vehicle": name if known else model.vehicle.model_dump(mode="json"),
+        "effects": [describe_effect(one).plain() for one in model.added],
+    }
+
+
+def write_model(
+    model: Model,
+    path: Path,
+    residual: StoredResidual | None = None,
+    provenance: dict[str, Any] | None = None,
+) -> None:
+    """Write a model file; `residual` describes arrays that lie beside it."""
+    content = describe_model(model)
+    content |= {"residual": residual.model_dump(mode="json")} if residual else {}
+    content |= {"provenance": plain(provenance)} if provenance else {}
+    write_yaml(path, content)
