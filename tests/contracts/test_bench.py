@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.benchmarks.speed.accuracy import _left
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
-from rovsim.benchmarks.speed.inference import Clock, Effort, _neighbours, _processes
+from rovsim.benchmarks.speed.inference import Effort, Stopwatch, _neighbours, _processes
 from rovsim.benchmarks.speed.page import text, write_page
 from rovsim.reporting.html.marked import BEGIN, END
 
@@ -24,12 +24,12 @@ def pairs(rows=150, asked=20):
 
 @pytest.fixture(scope="module")
 def found():
-    clock = Clock(pairs(), FEW)
+    watch = Stopwatch(pairs(), FEW)
     with pytest.MonkeyPatch.context() as patch:
         patch.delattr("os.setpriority")  # tests do not push other programs aside
-        _neighbours(clock, 150, 0.05)
-        _processes(clock, 150, 0.05)
-    return clock.found
+        _neighbours(watch, 150, 0.05)
+        _processes(watch, 150, 0.05)
+    return watch.found
 
 
 def test_all_ways_predict_the_same(found):

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import eigh
 from scipy.signal import lfilter
 
-from rovsim.learning.cross_validation import FACTORS, STRETCHES, noise_factor, stretches
+from rovsim.learning.cross_validation import FACTORS, PARTS, noise_factor, split_rows
 from rovsim.learning.posterior_variance import rbf
 
 
@@ -19,7 +19,7 @@ def rows():
 def missed(K, error, outputscale, noise):
     """Squared errors of every stretch, foretold by a process that never saw it."""
     total = 0.0
-    for out in stretches(len(K)):
+    for out in split_rows(len(K)):
         kept = np.setdiff1d(np.arange(len(K)), out)
         S = outputscale * K[np.ix_(kept, kept)] + noise * np.eye(len(kept))
         foretold = outputscale * K[np.ix_(out, kept)] @ np.linalg.solve(S, error[:, kept].T)
@@ -48,5 +48,5 @@ def test_what_is_right_is_left_alone(rows):
 
 def test_every_row_is_left_out_once_however_few():
     for rows in (1, 3, 10, 37):
-        assert np.array_equal(np.concatenate(list(stretches(rows))), np.arange(rows))
-        assert len(list(stretches(rows))) == min(rows, STRETCHES)
+        assert np.array_equal(np.concatenate(list(split_rows(rows))), np.arange(rows))
+        assert len(list(split_rows(rows))) == min(rows, PARTS)

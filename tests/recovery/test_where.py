@@ -8,7 +8,7 @@ import pytest
 from rovsim import AXES
 from rovsim.core.run import Site
 from rovsim.evaluation.error_conditions import blocks, explain, judged
-from rovsim.evaluation.error_conditions.bins import binned, stretches, table
+from rovsim.evaluation.error_conditions.bins import binned, number_stretches, table
 from rovsim.evaluation.error_conditions.conditions import BLOCK
 from rovsim.evaluation.error_conditions.sentences import summary
 from rovsim.learning.pairs import samples
@@ -107,7 +107,7 @@ def test_standard_errors_are_true(memory):
     inside = []
     for seed in range(30):
         world = driven(SECONDS, noise(memory, seed), seed)
-        stretch = stretches(world, world.error[:, 0])
+        stretch = number_stretches(world, world.error[:, 0])
         for condition, values in world.values.items():
             t = table(binned(condition, values, stretch), world.error[:, 0], stretch)
             inside += (np.abs(t.mean) <= 2 * t.error)[t.binning.judged].tolist()

@@ -9,13 +9,13 @@ from typing import Iterator
 import numpy as np
 from numpy import ndarray as Array
 
-STRETCHES = 10  # each left out once
+PARTS = 10  # each left out once
 FACTORS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # on the noise
 
 
-def stretches(rows: int) -> Iterator[Array]:
-    """Indices of each stretch of rows in the order of time; none is empty."""
-    yield from (s for s in np.array_split(np.arange(rows), STRETCHES) if len(s))
+def split_rows(rows: int) -> Iterator[Array]:
+    """Indices of each of `PARTS` stretches of rows in the order of time; none is empty."""
+    yield from (s for s in np.array_split(np.arange(rows), PARTS) if len(s))
 
 
 def noise_factor(
@@ -38,7 +38,7 @@ def noise_factor(
     for i, factor in enumerate(FACTORS):
         inverse = 1.0 / (outputscale * np.maximum(values, 0.0) + factor * noise)
         weights = vectors @ (inverse[:, None] * seen)
-        for out in stretches(len(values)):
+        for out in split_rows(len(values)):
             own = (vectors[out] * inverse) @ vectors[out].T
             missed[i] += np.sum(np.linalg.solve(own, weights[out]) ** 2)
     return FACTORS[int(np.argmin(missed))]

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.layout import MOST_NEIGHBOURS
-from rovsim.learning.cross_validation import STRETCHES, stretches
+from rovsim.learning.cross_validation import PARTS, split_rows
 from rovsim.learning.export import export_neighbours
 from rovsim.learning.learner import (
     Learner,
@@ -68,12 +68,12 @@ def best_k(Z: Array, Y: Array, weights: str) -> int:
         Y: targets (n, 6).
         weights: uniform or distance.
     """
-    tried = [k for k in TRIED if k <= len(Z) - -(-len(Z) // STRETCHES)]
+    tried = [k for k in TRIED if k <= len(Z) - -(-len(Z) // PARTS)]
     if len(tried) < 2:
         return max(1, min(TRIED[0], len(Z)))
     scale = np.maximum(np.std(Y, axis=0), CONSTANT)
     missed = np.zeros(len(tried))
-    for out in stretches(len(Z)):
+    for out in split_rows(len(Z)):
         kept = np.setdiff1d(np.arange(len(Z)), out)
         distance, near = map(np.asarray, cKDTree(Z[kept]).query(Z[out], tried[-1]))
         share = np.ones_like(distance) if weights == "uniform" else 1.0 / (distance + CONSTANT)

@@ -31,7 +31,7 @@ class Effort:
     seconds: float
 
 
-class Clock:
+class Stopwatch:
     """Times ways to predict and keeps what it found."""
 
     def __init__(self, pairs: Pairs, effort: Effort) -> None:
@@ -96,40 +96,40 @@ def busy(x: Array) -> Array:
 
 def inference(pairs: Pairs, effort: Effort, sweep: float) -> tuple[dict[str, Any], str]:
     """The named sizes beside the libraries, then sweeps, in which a library gets `sweep` s."""
-    clock = Clock(pairs, effort)
-    clock.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
+    watch = Stopwatch(pairs, effort)
+    watch.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
     for points in (2_000, 20_000):
-        _neighbours(clock, points, effort.seconds)
-    _processes(clock, 2_000, effort.seconds)
-    _six_kernels(clock, 2_000, sweep)
-    _inducing(clock, effort.seconds)
+        _neighbours(watch, points, effort.seconds)
+    _processes(watch, 2_000, effort.seconds)
+    _six_kernels(watch, 2_000, sweep)
+    _inducing(watch, effort.seconds)
     for points in (500, 5_000, 50_000):
-        _neighbours(clock, points, sweep)
+        _neighbours(watch, points, sweep)
     for points in (500, 1_000, 4_000):
-        _processes(clock, points, sweep)
+        _processes(watch, points, sweep)
     for name, own, points in _variants(pairs):
-        clock.beside(name, own, points, {}, sweep)
-    return clock.found, clock.scheduling
+        watch.beside(name, own, points, {}, sweep)
+    return watch.found, watch.scheduling
 
 
-def _neighbours(clock: Clock, points: int, seconds: float) -> None:
-    knn = fitted("knn", clock.pairs.first(points))
-    clock.beside("knn", ours(knn), points, libraries.neighbours(knn), seconds)
+def _neighbours(watch: Stopwatch, points: int, seconds: float) -> None:
+    knn = fitted("knn", watch.pairs.first(points))
+    watch.beside("knn", ours(knn), points, libraries.neighbours(knn), seconds)
 
 
-def _processes(clock: Clock, points: int, seconds: float) -> None:
+def _processes(watch: Stopwatch, points: int, seconds: float) -> None:
     """One kernel for six outputs: mean, mean and variance, and the faded correction."""
-    pairs = clock.pairs.first(points)
+    pairs = watch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points, **GP)
     never = unfading(gp)
-    clock.beside("gp_mean", ours(never), points, libraries.means(never), seconds)
-    clock.beside("gp_faded", ours(gp), points, {}, seconds)
+    watch.beside("gp_mean", ours(never), points, libraries.means(never), seconds)
+    watch.beside("gp_faded", ours(gp), points, {}, seconds)
     theirs = libraries.variances(gp) if points <= 2_000 else {}
-    clock.beside("gp_variance", both(gp), points, theirs, seconds)
+    watch.beside("gp_variance", both(gp), points, theirs, seconds)
 
 
-def _six_kernels(clock: Clock, points: int, seconds: float) -> None:
-    pairs = clock.pairs.first(points)
+def _six_kernels(watch: Stopwatch, points: int, seconds: float) -> None:
+    pairs = watch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points)
     never = unfading(gp)
     ways: tuple[tuple[str, Callable, dict[str, Any]], ...] = (
@@ -139,15 +139,15 @@ def _six_kernels(clock: Clock, points: int, seconds: float) -> None:
     )
     for name, own, found in ways:
         theirs = {f"{other}_six_kernels": call for other, call in found.items()}
-        clock.beside(f"{name}_six_kernels", own, points, theirs, seconds)
+        watch.beside(f"{name}_six_kernels", own, points, theirs, seconds)
 
 
-def _inducing(clock: Clock, seconds: float) -> None:
-    svgp = unfading(fitted("svgp", clock.pairs.first(2_000)))
+def _inducing(watch: Stopwatch, seconds: float) -> None:
+    svgp = unfading(fitted("svgp", watch.pairs.first(2_000)))
     points = svgp.points
-    clock.beside("svgp", ours(svgp), points, {"gpytorch_svgp": library_of(svgp)}, seconds)
+    watch.beside("svgp", ours(svgp), points, {"gpytorch_svgp": library_of(svgp)}, seconds)
     theirs = {"gpytorch_svgp_variance": libraries.variances(svgp)["gpytorch_variance"]}
-    clock.beside("svgp_variance", both(svgp), points, theirs, seconds)
+    watch.beside("svgp_variance", both(svgp), points, theirs, seconds)
 
 
 def _variants(pairs: Pairs) -> Iterator[tuple[str, Callable, int]]:

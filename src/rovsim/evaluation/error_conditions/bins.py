@@ -46,7 +46,7 @@ class Table:
     share: float  # of the squared error that the means explain, what chance adds taken off
 
 
-def stretches(blocks: Blocks, error: Array) -> Array:
+def number_stretches(blocks: Blocks, error: Array) -> Array:
     """Number (n,) of the stretch each block belongs to, 0 .. g-1, for errors (n,) of one axis."""
     length = float(np.clip(TIMES * memory(_unexplained(blocks, error), blocks), SHORTEST, LONGEST))
     key = np.stack([blocks.run, np.floor(blocks.time / length)], axis=1)

@@ -17,7 +17,7 @@ from rovsim.evaluation.error_conditions.bins import (
     Table,
     binned,
     evidence,
-    stretches,
+    number_stretches,
     table,
 )
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Blocks, Condition
@@ -79,7 +79,7 @@ def explain(blocks: Blocks, seed: int = 0) -> Where:
     tables, found, enough = {}, [], True
     for k, axis in enumerate(AXES):
         error = blocks.error[:, k]
-        stretch = stretches(blocks, error)
+        stretch = number_stretches(blocks, error)
         cuts = [binned(c, x, stretch) for c, x in blocks.values.items()]
         tables[axis] = {b.condition.name: table(b, error, stretch) for b in cuts}
         worth = max(SMALLEST, NEGLIGIBLE**2 * _relative_power(blocks, k))

@@ -11,7 +11,7 @@ from numpy import ndarray as Array
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.recording import Recording
-from rovsim.measurement.signals.clock import stretches
+from rovsim.measurement.signals.clock import find_stretches
 from rovsim.measurement.signals.motion import Motion
 
 # A bin this many median bins long has rows missing in it. Bins of 0.1 to 0.3 s occur side by side
@@ -95,7 +95,7 @@ def _states(recording: Recording, nu: Array, edges: Array, usable: Array) -> tup
     """Pose (n, 7) and velocity (n, 6) at each bin's start; unusable rows as recorded."""
     attitude = recording.attitude.copy()
     state = np.concatenate([recording.position, attitude, nu], axis=1)
-    for first, last in stretches(usable):
+    for first, last in find_stretches(usable):
         state[first:last, 3:7] = rotations.continuous(attitude[first:last])
         state[first:last] = edge_values(edges[first : last + 1], state[first:last])
     eta = state[:, :7]

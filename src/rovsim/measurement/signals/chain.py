@@ -13,7 +13,7 @@ from rovsim.core.files import read_arrays
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.binned import bin_motion
-from rovsim.measurement.signals.clock import stretches, time_step, without_margins
+from rovsim.measurement.signals.clock import find_stretches, time_step, without_margins
 from rovsim.measurement.signals.differentiate import (
     Differentiation,
     Spline,
@@ -83,7 +83,7 @@ def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
     nu = np.full((len(poses.time), 6), np.nan)
     nu_dot = nu.copy()
     dt = time_step(poses.time) if len(poses.time) > 1 else 1.0
-    for first, last in stretches(poses.usable):
+    for first, last in find_stretches(poses.usable):
         nu[first:last], nu_dot[first:last] = differentiate_eta(
             poses.eta[first:last], dt, settings.differentiate
         )

@@ -14,7 +14,7 @@ def time_step(time: Array) -> float:
     return float((time[-1] - time[0]) / (len(time) - 1))
 
 
-def stretches(usable: Array) -> list[tuple[int, int]]:
+def find_stretches(usable: Array) -> list[tuple[int, int]]:
     """Stretches [first, last) of True in `usable` (n,), in order."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], usable, [0]]).astype(int)))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
@@ -23,7 +23,7 @@ def stretches(usable: Array) -> list[tuple[int, int]]:
 def without_short(usable: Array, length: int) -> Array:
     """`usable` (n,) without its stretches of fewer than `length` samples."""
     kept = usable.copy()
-    for first, last in stretches(usable):
+    for first, last in find_stretches(usable):
         kept[first:last] = last - first >= length
     return kept
 
@@ -31,6 +31,6 @@ def without_short(usable: Array, length: int) -> Array:
 def without_margins(usable: Array, samples: int) -> Array:
     """`usable` (n,) with `samples` fewer at either end of every stretch."""
     kept = np.zeros_like(usable)
-    for first, last in stretches(usable):
+    for first, last in find_stretches(usable):
         kept[first + samples : max(last - samples, first + samples)] = True
     return kept

@@ -11,7 +11,7 @@ from pydantic import Field
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import Section
-from rovsim.measurement.signals.clock import stretches, time_step
+from rovsim.measurement.signals.clock import find_stretches, time_step
 from rovsim.measurement.signals.motion import Poses
 
 # The extension at either end and the stretch its parabola is fitted to, in periods of the cut-off
@@ -109,7 +109,7 @@ def filter_poses(poses: Poses, settings: Filter) -> Poses:
         BadInput: the filter cannot work at this sampling rate.
     """
     eta = poses.eta.copy()
-    for first, last in stretches(poses.usable):
+    for first, last in find_stretches(poses.usable):
         eta[first:last] = filter_eta(poses.eta[first:last], time_step(poses.time), settings)
     return replace(poses, eta=eta)
 

@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 from rovsim.core.files import read_arrays, write_arrays
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.recording.recording import labels, unlabelled
+from rovsim.measurement.signals.clock import find_stretches
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,9 +72,7 @@ class Motion:
 
     def segments(self) -> list[tuple[int, int]]:
         """Stretches [first, last) of usable samples, in order."""
-        padded = np.concatenate([[False], self.usable, [False]])
-        changes = np.flatnonzero(padded[1:] != padded[:-1])
-        return [(int(a), int(b)) for a, b in zip(changes[::2], changes[1::2], strict=True)]
+        return find_stretches(self.usable)
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""

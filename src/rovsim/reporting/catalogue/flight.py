@@ -13,7 +13,7 @@ from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import describe_effect
 from rovsim.evaluation.error_conditions import Blocks, blocks
-from rovsim.evaluation.error_conditions.bins import binned, stretches, table
+from rovsim.evaluation.error_conditions.bins import binned, number_stretches, table
 from rovsim.evaluation.error_conditions.conditions import Condition
 from rovsim.learning.pairs import samples
 from rovsim.measurement.campaign import load_campaign
@@ -70,7 +70,7 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
     k = AXES.index(signature.axis)
     condition, values = found(signature.condition, missing)
     error, added = missing.error[:, k], missing.error[:, k] - rest.error[:, k]
-    stretch = stretches(missing, error)
+    stretch = number_stretches(missing, error)
     cut = binned(condition, values, stretch)
     missed, effect = (table(cut, x, stretch) for x in (error, added))
     return Seen(signature, missed, effect, values, missing.time, error, added)
