@@ -1,6 +1,7 @@
 """The command line: every argument arrives, every mistake is one message and exit code 2."""
 
 import json
+import shutil
 import subprocess
 import sys
 
@@ -9,7 +10,10 @@ import yaml
 
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import listed, main, override, quoted
-from rovsim.core.files import read_yaml
+from rovsim.core import extras
+from rovsim.core.files import read_yaml, write_text
+from rovsim.core.shipped import conf_names, shipped
+from rovsim.dynamics.vehicle import load_vehicle
 
 AWKWARD = [
     "my tank, 2.5 m (a=b) é",
@@ -41,6 +45,33 @@ def test_lists_of_models_keep_commas_that_belong_to_files(tmp_path):
     assert listed(f"nominal,{odd}") == ["nominal", str(odd)]
     assert compose([override(f"model=[nominal,{odd}]")]).model == ["nominal", str(odd)]
     assert quoted("null") == "null"
+
+
+@pytest.mark.parametrize(
+    ("command", "extra"),
+    [("train", "learn"), ("ui", "workbench"), ("fmu", "fmi"), ("bench", "benchmark,learn"),
+     ("blind", "benchmark")],
+)  # fmt: skip
+def test_a_command_without_its_extra_says_what_to_install(command, extra, capsys, monkeypatch):
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
+    text = failing(capsys, command)
+    assert text.count("\n") == 1
+    assert f"pip install 'rovsim[{extra}]'" in text
+
+
+def test_files_of_the_working_folder_come_first(tmp_path, monkeypatch):
+    own, shipped_names = tmp_path / "conf", conf_names("tank")
+    for name in ("mine", "tiny"):
+        write_text(own / "tank" / f"{name}.yaml", f"name: my-{name}\nduration: 7.0\n")
+    monkeypatch.chdir(tmp_path)
+    assert conf_names("tank") == sorted([*shipped_names, "mine"])
+    assert compose(["tank=mine"]).tank.duration == 7.0
+    assert compose(["tank=tiny"]).tank.name == "my-tiny"
+    assert compose(["tank=lag"]).tank.name == "tank-lag"  # what is not here comes with rovsim
+    shutil.copy(shipped("conf/vehicle") / "bluerov2_heavy.yaml", tmp_path)
+    text = (tmp_path / "bluerov2_heavy.yaml").read_text().replace("name: ", "name: my_", 1)
+    write_text(own / "vehicle" / "bluerov2_heavy.yaml", text)
+    assert load_vehicle("bluerov2_heavy").name == "my_bluerov2_heavy"
 
 
 def failing(capsys, *words):

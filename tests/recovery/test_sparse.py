@@ -8,6 +8,7 @@ import pytest
 from rovsim.benchmarks.blind import methods
 from rovsim.benchmarks.blind.library import problem, steps
 from rovsim.benchmarks.blind.sparse import answered, forward, thresholded
+from rovsim.core import extras
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.measurement.signals.chain import SignalSettings
@@ -60,6 +61,6 @@ def test_every_effect_has_its_columns():
 
 
 def test_without_the_package_the_message_says_what_to_do(monkeypatch):
-    monkeypatch.setattr(methods, "find_spec", lambda name: None)
-    with pytest.raises(BadInput, match="make setup"):
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
+    with pytest.raises(BadInput, match=r"pip install 'rovsim\[benchmark\]'"):
         methods.chosen(["frols"])
