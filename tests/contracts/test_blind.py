@@ -15,7 +15,11 @@ from rovsim.benchmarks.blind.suites import FAMILIES, suite
 from rovsim.benchmarks.blind.summary import detection_limit, judged, summary
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
+from rovsim.core.rotations import from_euler, matrix
+from rovsim.diagnosis.observer.unlisted_drag import UNLISTED_DRAG
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.base import Wrench
+from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.dynamics.model_file import EffectEntry, build_effect
 from rovsim.reporting.html.marked import BEGIN, END, replace_tables
 
@@ -97,6 +101,30 @@ def test_outside_physics_never_enters_the_catalogue(name):
     assert all([found.__doc__, found.equation, found.neglects, found.source])
     with pytest.raises(BadInput, match="unknown effect"):
         build_effect(EffectEntry(effect=name), built_in())
+
+
+def pushes(effect, count=400):
+    """Wrench (count, 6) on a vehicle that moves and leans at random."""
+    random, found = np.random.default_rng(0), []
+    for k in range(count):
+        nu = tuple(random.uniform(-0.5, 0.5, 6))
+        R = matrix(from_euler(*random.uniform(-0.4, 0.4, 3)))
+        place = tuple(random.uniform(1.0, 3.0, 3))
+        at = EXAMPLE._replace(t=0.1 * k, duration=40.0, nu=nu, nu_r=nu, R=R, position=place)
+        found.append(type(effect).wrench(at, effect.named_parameters()(*effect.values)))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("name", [n for n, cls in OUTSIDE.items() if issubclass(cls, Wrench)])
+def test_outside_physics_is_no_drag_law_that_a_diagnosis_tries(name):
+    found = pushes(drawn_outside(name, 1.0, np.random.default_rng(0)))
+    pushed = np.flatnonzero(np.any(found != 0.0, axis=0))
+    assert len(pushed)
+    for law in UNLISTED_DRAG:
+        tried = pushes(law(**{p.name: p.scale for p in law.parameters}))
+        for axis in pushed:
+            alike = np.corrcoef(found[:, axis], tried[:, axis])[0, 1]
+            assert abs(alike) < 0.5, law.id
 
 
 # flying

@@ -1,7 +1,8 @@
 """Physics that no entry of the catalogue describes, in the same form as effects.
 
 They are not listed: no model file can name them and no diagnosis can select them. What is right to
-say of them is that something is left that nothing known explains.
+say of them is that something is left that nothing known explains. None is a drag law that a
+diagnosis tries beside the catalogue (`rovsim.diagnosis.observer.unlisted_drag`).
 """
 
 from math import cos, exp, floor, pi, sin, tanh
@@ -73,38 +74,43 @@ class Shedding(Wrench):
         return 0.0, side, 0.0, 0.0, 0.0, 0.0
 
 
-class CubicDamping(Wrench):
-    """Heave resistance that grows with the third power of speed."""
+class Squat(Wrench):
+    """A hull of uneven height sucks itself down, whichever way it moves."""
 
-    id = "cubic_damping"
+    id = "squat"
     listed = False
-    equation = r"Z = -d\,w^3"
-    neglects = "other axes"
-    source = "Taylor expansion, odd terms"
-    parameters = (Parameter("heave", "N s3/m3", "d", scale=2000.0),)
+    equation = r"Z = c\,(u^2 + v^2)"
+    neglects = "the moment that comes with it"
+    source = "Bernoulli's equation; Barrass 1979 on ships in shallow water"
+    parameters = (Parameter("coefficient", "kg/m", "c", scale=40.0),)
 
     @staticmethod
     def wrench(at, p):
         """Heave force."""
-        w = at.nu_r[2]
-        return 0.0, 0.0, -p.heave * w * w * w, 0.0, 0.0, 0.0
+        u, v = at.nu_r[0], at.nu_r[1]
+        return 0.0, 0.0, p.coefficient * (u * u + v * v), 0.0, 0.0, 0.0
 
 
-class Friction(Wrench):
-    """Coulomb friction: a cable that drags over an edge, always with the same force."""
+class LooseBallast(Wrench):
+    """A weight that came loose: it lies at the lower end of its slot, whichever that is."""
 
-    id = "friction"
+    id = "loose_ballast"
     listed = False
-    equation = r"X = -f \tanh(u / 0.01)"
-    neglects = "sticking"
-    source = "Coulomb's law, smoothed"
-    parameters = (Parameter("force", "N", "f", scale=2.0),)
+    equation = r"r_b = s\,(\tanh(-\sin\theta / 0.05), \tanh(\cos\theta \sin\phi / 0.05), 0)"
+    neglects = "the inertia of the weight, and the time that it slides"
+    source = "definition"
+    parameters = (
+        Parameter("weight", "N", "W", scale=4.0),
+        Parameter("travel", "m", "s", low=0.0, default=0.15, scale=0.03),
+    )
 
     @staticmethod
     def wrench(at, p):
-        """Friction in surge and sway."""
-        u, v = at.nu[0], at.nu[1]
-        return -p.force * tanh(100.0 * u), -p.force * tanh(100.0 * v), 0.0, 0.0, 0.0, 0.0
+        """Moments of a weight that hangs at one end of the slot; its mean is trimmed out."""
+        down = at.R[2]
+        x, y = p.travel * tanh(20.0 * down[0]), p.travel * tanh(20.0 * down[1])
+        K, M = y * down[2], -x * down[2]
+        return 0.0, 0.0, 0.0, p.weight * K, p.weight * M, p.weight * (x * down[1] - y * down[0])
 
 
 class Jet(Wrench):
@@ -212,7 +218,7 @@ class Backlash(Response):
 OUTSIDE: dict[str, type[Effect]] = {
     cls.id: cls
     for cls in (
-        SquareWave, Tone, Shedding, CubicDamping, Friction, Jet, Kicks, Ingress, Compression,
+        SquareWave, Tone, Shedding, Squat, LooseBallast, Jet, Kicks, Ingress, Compression,
         Backlash,
     )
 }  # fmt: skip
