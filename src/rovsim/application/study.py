@@ -14,7 +14,7 @@ from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.reporting.report_data import PER_RUN
-from rovsim.simulation.synthetic_tank.campaign import SEALED, describe
+from rovsim.simulation.synthetic_tank.description import SEALED, describe
 
 BASELINES = ("zero_acceleration", "nominal")
 PHYSICS = ("refitted", EFFECTS)
@@ -66,7 +66,7 @@ class Study:
         """The user's campaign, or what the synthetic one will be."""
         if self.campaign_path is not None:
             return load_campaign(Path(self.campaign_path))
-        return CampaignFile.model_validate(describe(self.settings.tank))
+        return describe(self.settings.tank)
 
     @property
     def name(self) -> str:

@@ -5,8 +5,9 @@ from pathlib import Path
 from rovsim.benchmarks.blind.case import Case
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
-from rovsim.simulation.synthetic_tank.campaign import SEALED, make_campaign
-from rovsim.simulation.synthetic_tank.simulate import LeftTank
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.description import SEALED
+from rovsim.simulation.synthetic_tank.true_run import LeftTank
 
 TRIES = 12  # 0.8^12 = 0.07 of the size
 PILOTS = 3

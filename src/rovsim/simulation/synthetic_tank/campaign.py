@@ -4,11 +4,10 @@ import os
 import shutil
 import tempfile
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 
-from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text, write_yaml
 from rovsim.core.rotations import HALF_TURN_X
@@ -17,29 +16,10 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import build_effect
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.simulation.synthetic_tank.exports import BODY, commands_csv, qtm_tsv
+from rovsim.simulation.synthetic_tank.description import SEALED, describe, seal
+from rovsim.simulation.synthetic_tank.exports import export_commands, export_poses
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
-from rovsim.simulation.synthetic_tank.simulate import simulate
-
-SEALED = "truth.yaml"  # nothing that reads a campaign may open it
-
-
-def describe(settings: TankSettings) -> dict[str, Any]:
-    """The content of `campaign.yaml`, without simulating anything."""
-    thrusters = [unit.name for unit in load_vehicle(settings.vehicle).thrusters.units]
-    kind = settings.log.kind
-    columns = thrusters if kind == "pwm" else list(AXES)
-    return {
-        "name": settings.name,
-        "vehicle": settings.vehicle,
-        "tank": {axis: list(getattr(settings.tank, axis)) for axis in "xyz"},
-        "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
-        "commands": {"format": "csv", "kind": kind, "columns": columns},
-        "runs": [
-            {**run.model_dump(), "mocap": f"{run.id}_6D.tsv", "commands": f"{run.id}_commands.csv"}
-            for run in settings.runs
-        ],
-    }
+from rovsim.simulation.synthetic_tank.true_run import fly_run
 
 
 def true_model(
@@ -75,12 +55,12 @@ def make_campaign(
         BadInput: `out` holds something that is not a tank campaign.
         LeftTank: the hidden effects are stronger than the pilot.
     """
-    _replaceable(out)
+    _refuse_other_files(out)
     model = true_model(settings, catalogue, unlisted)
     out.parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}-"))
     try:
-        _fill(settings, model, unlisted, folder, progress)
+        _record_all(settings, model, unlisted, folder, progress)
         folder.chmod(0o755)
         shutil.rmtree(out, ignore_errors=True)
         os.replace(folder, out)
@@ -88,7 +68,7 @@ def make_campaign(
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _replaceable(out: Path) -> None:
+def _refuse_other_files(out: Path) -> None:
     if out.exists() and not (out.is_dir() and (not any(out.iterdir()) or (out / SEALED).exists())):
         raise BadInput(
             "holds files that no tank wrote",
@@ -98,39 +78,31 @@ def _replaceable(out: Path) -> None:
         )
 
 
-def _fill(
+def _record_all(
     settings: TankSettings,
     model: Model,
     unlisted: Sequence[Effect],
     folder: Path,
     progress: Callable[[int, int], None],
 ) -> None:
-    runs = settings.runs
+    runs, hidden = settings.runs, len(settings.effects)
     seeds = np.random.SeedSequence(settings.seed).spawn(len(runs))
     for k, (run, seed) in enumerate(zip(runs, seeds, strict=True)):
         progress(k, len(runs))
         _record(model, settings, run, folder, np.random.default_rng(seed))
     progress(len(runs), len(runs))
-    write_yaml(folder / "campaign.yaml", describe(settings))
-    write_yaml(folder / SEALED, sealed(settings, model, unlisted))
+    campaign, truth = describe(settings), seal(settings, model.added[:hidden], unlisted)
+    write_yaml(folder / "campaign.yaml", campaign.model_dump(mode="json", exclude_unset=True))
+    beyond = None if truth.outside else {"outside"}
+    write_yaml(folder / SEALED, truth.model_dump(mode="json", exclude=beyond))
 
 
-def _record(model: Model, settings: TankSettings, run: TankRun, folder: Path, random) -> None:
+def _record(
+    model: Model, settings: TankSettings, run: TankRun, folder: Path, random: np.random.Generator
+) -> None:
     box = np.array([getattr(settings.tank, axis) for axis in "xyz"])
     tank = np.sort(box * HALF_TURN_X[:, None], axis=1)
-    truth = simulate(model, settings, run.control, tank, random)
-    write_text(
-        folder / f"{run.id}_6D.tsv", qtm_tsv(truth, settings.camera, model.mocap_view, random)
-    )
-    write_text(folder / f"{run.id}_commands.csv", commands_csv(truth, settings.log, random))
-
-
-def sealed(settings: TankSettings, model: Model, unlisted: Sequence[Effect]) -> dict[str, Any]:
-    """The answer, in the terms of the diagnosis, and how to make the campaign again."""
-    hidden = model.added[: len(settings.effects)]
-    effects = [{"effect": e.id, "parameters": e.given()} for e in hidden]
-    verdict = "unexplained" if unlisted else "missing_effects" if effects else "adequate"
-    content: dict[str, Any] = {"verdict": verdict, "effects": effects}
-    if unlisted:
-        content["outside"] = [{"name": e.id, "parameters": e.given()} for e in unlisted]
-    return {**content, "settings": settings.model_dump(mode="json")}
+    truth = fly_run(model, settings, run.control, tank, random)
+    poses = export_poses(truth, settings.camera, model.mocap_view, random)
+    write_text(folder / f"{run.id}_6D.tsv", poses)
+    write_text(folder / f"{run.id}_commands.csv", export_commands(truth, settings.log, random))

@@ -8,22 +8,24 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import MocapView
+from rovsim.simulation.synthetic_tank.description import BODY
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
-from rovsim.simulation.synthetic_tank.simulate import Truth
+from rovsim.simulation.synthetic_tank.true_run import TrueRun
 
-BODY = "BlueROV2"
 COLUMNS = (
     "X Y Z Roll Pitch Yaw Residual Rot[0] Rot[1] Rot[2] Rot[3] Rot[4] Rot[5] Rot[6] Rot[7] Rot[8]"
 )
 
 
-def qtm_tsv(truth: Truth, camera: Camera, view: MocapView, random) -> str:
+def export_poses(
+    truth: TrueRun, camera: Camera, view: MocapView, random: np.random.Generator
+) -> str:
     """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras."""
     stride = round(1.0 / (camera.rate * (truth.time[1] - truth.time[0])))
     time, state = truth.time[:-1:stride], truth.state[:-1:stride]
-    position, attitude = _measured(view.poses(state[:, :7]), camera, random)
-    rows = _rows(position, attitude, random)
-    rows[_hidden(len(time), camera, random)] = [0.0] * 6 + [-1.0] + [0.0] * 9
+    position, attitude = _measure(view.poses(state[:, :7]), camera, random)
+    rows = _format_rows(position, attitude, random)
+    rows[_lose_frames(len(time), camera, random)] = [0.0] * 6 + [-1.0] + [0.0] * 9
     text = io.StringIO()
     text.write(_header(len(time), camera.rate))
     table = np.column_stack([np.arange(1, len(time) + 1), time, rows])
@@ -32,7 +34,7 @@ def qtm_tsv(truth: Truth, camera: Camera, view: MocapView, random) -> str:
     return text.getvalue()
 
 
-def _measured(eta: Array, camera: Camera, random) -> tuple[Array, Array]:
+def _measure(eta: Array, camera: Camera, random: np.random.Generator) -> tuple[Array, Array]:
     """Noisy poses in the MoCap's own axes, of poses (n, 7) of what it calls the body."""
     n, flip = len(eta), np.concatenate([[1.0], HALF_TURN_X])
     attitude = multiply(eta[:, 3:7], exp(camera.attitude_noise * random.normal(size=(n, 3))))
@@ -45,7 +47,7 @@ def _measured(eta: Array, camera: Camera, random) -> tuple[Array, Array]:
     return position * HALF_TURN_X, attitude * flip
 
 
-def _rows(position: Array, attitude: Array, random) -> Array:
+def _format_rows(position: Array, attitude: Array, random: np.random.Generator) -> Array:
     """Millimetres, degrees, marker residual, and the rotation matrix column by column."""
     angles = np.degrees(to_euler(attitude))
     columns = np.swapaxes(matrix(attitude), -1, -2).reshape(-1, 9)
@@ -53,7 +55,7 @@ def _rows(position: Array, attitude: Array, random) -> Array:
     return np.hstack([1000.0 * position, angles, residual, columns])
 
 
-def _hidden(frames: int, camera: Camera, random) -> Array:
+def _lose_frames(frames: int, camera: Camera, random: np.random.Generator) -> Array:
     """Frames in which the body was not found: bursts of random length."""
     hidden = np.zeros(frames, dtype=bool)
     starts = np.flatnonzero(random.random(frames) < camera.bursts_per_minute / (60 * camera.rate))
@@ -80,7 +82,7 @@ def _header(frames: int, rate: float) -> str:
     return "".join(f"{key}\t{value}\n" for key, value in lines.items()) + column_line + "\n"
 
 
-def commands_csv(truth: Truth, log: Log, random) -> str:
+def export_commands(truth: TrueRun, log: Log, random: np.random.Generator) -> str:
     """Thruster PWM in us or demands per axis, one line a tick; some lines are lost."""
     commands = truth.commands
     time = commands.time + log.jitter * random.normal(size=len(commands.time))

@@ -1,7 +1,5 @@
 """A pilot who looks at the vehicle and moves the sticks, late; the autopilot keeps it upright."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy import ndarray as Array
 
@@ -28,45 +26,40 @@ CLEARANCE = 0.5  # m, kept from walls, floor and surface
 SET_POINT_TIME = 8.0  # s
 
 
-@dataclass(frozen=True)
-class Wander:
-    """Smooth random stick movements (k, 6) of unit variance, one row a tick."""
-
-    values: Array
-
-    @staticmethod
-    def drawn(ticks: int, dt: float, random: np.random.Generator) -> "Wander":
-        """Two first-order lags in a row on white noise, scaled to unit variance."""
-        a, x = np.exp(-2.0 * dt / WANDER_TIME), np.zeros((2, 6))
-        rows = np.empty((ticks + 400, 6))
-        for row, kick in zip(rows, random.normal(size=rows.shape), strict=True):
-            x[0] = a * x[0] + (1 - a) * kick
-            x[1] = a * x[1] + (1 - a) * x[0]
-            row[:] = x[1]
-        rows = rows[400:]
-        return Wander(rows / np.maximum(rows.std(axis=0), 1e-12))
+def draw_wander(ticks: int, dt: float, random: np.random.Generator) -> Array:
+    """Smooth random stick movements (ticks, 6): white noise, lagged twice, of unit variance."""
+    a, x = np.exp(-2.0 * dt / WANDER_TIME), np.zeros((2, 6))
+    rows = np.empty((ticks + 400, 6))
+    for row, kick in zip(rows, random.normal(size=rows.shape), strict=True):
+        x[0] = a * x[0] + (1 - a) * kick
+        x[1] = a * x[1] + (1 - a) * x[0]
+        row[:] = x[1]
+    rows = rows[400:]
+    return rows / np.maximum(rows.std(axis=0), 1e-12)
 
 
 class Pilot:
     """Wanders between set-points inside the tank; sees the vehicle with a delay."""
 
-    def __init__(self, control: str, tank: Array, ticks: int, dt: float, random) -> None:
+    def __init__(
+        self, control: str, tank: Array, ticks: int, dt: float, random: np.random.Generator
+    ) -> None:
         self.dt, self.delay = dt, max(1, round(REACTION / dt))
         self.middle = tank.mean(axis=1)
         half = np.minimum(NEAR * (0.5 * np.ptp(tank, axis=1) - CLEARANCE), REACH)
         count = int(ticks * dt / SET_POINT_TIME) + 2
         self.set_points = self.middle + half * random.uniform(-1, 1, (count, 3))
-        self.wander = Wander.drawn(ticks, dt, random).values * WANDER[control]
+        self.wander = draw_wander(ticks, dt, random) * WANDER[control]
         self.seen: list[Array] = []
         self.drift = np.zeros(3)
 
-    def start(self, random) -> Array:
+    def choose_start(self, random: np.random.Generator) -> Array:
         """State (13,) to start from: at rest near the first set-point, any heading."""
         heading = random.uniform(-np.pi, np.pi)
         attitude = [np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)]
         return np.concatenate([self.set_points[0], attitude, np.zeros(6)])
 
-    def demand(self, tick: int, state: Array) -> Array:
+    def steer(self, tick: int, state: Array) -> Array:
         """Demand (6,) per axis after seeing this state (13,)."""
         self.seen.append(state.copy())
         seen = self.seen[max(0, tick - self.delay)]

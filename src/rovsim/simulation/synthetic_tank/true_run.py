@@ -17,13 +17,14 @@ from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.synthetic_tank.pilot import Pilot
-from rovsim.simulation.synthetic_tank.settings import TankSettings, Turbulence
+from rovsim.simulation.synthetic_tank.settings import TankSettings
+from rovsim.simulation.synthetic_tank.turbulence import draw_turbulence
 
 FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact to a nanosecond
 
 
 @dataclass(frozen=True, eq=False)
-class Truth:
+class TrueRun:
     """What happened: `time` (n,) s, `state` (n, 13) in NED, `commands` as the pilot sent them."""
 
     time: Array
@@ -31,7 +32,9 @@ class Truth:
     commands: Commands
 
 
-def simulate(model: Model, settings: TankSettings, control: str, tank: Array, random) -> Truth:
+def fly_run(
+    model: Model, settings: TankSettings, control: str, tank: Array, random: np.random.Generator
+) -> TrueRun:
     """Fly one run.
 
     Args:
@@ -47,22 +50,22 @@ def simulate(model: Model, settings: TankSettings, control: str, tank: Array, ra
     h, tick = settings.step, 1.0 / settings.log.rate
     ticks, per_tick = round(settings.duration / tick), round(tick / h)
     pilot = Pilot(control, tank, ticks, tick, random)
-    pushes = disturbance(settings.turbulence, ticks * per_tick, h, random)
+    pushes = draw_turbulence(settings.turbulence, ticks * per_tick, h, random)
     pushes = np.ascontiguousarray(pushes @ model.constants.M_inv[0].T)
-    vehicle = _Vehicle(model, tank, settings, tick)
+    vehicle = _TrueVehicle(model, tank, settings, tick)
     states = np.empty((ticks * per_tick + 1, 13))
-    states[0] = pilot.start(random)
+    states[0] = pilot.choose_start(random)
     for k in range(ticks):
         first = k * per_tick
-        command = vehicle.as_logged(pilot.demand(k, states[first]))
+        command = vehicle.log(pilot.steer(k, states[first]))
         rows = slice(first, first + per_tick)
         states[first + 1 :][:per_tick] = vehicle.advance(k, command, states[first], pushes[rows])
         _stay_inside(states[first + per_tick], tank, (k + 1) * tick)
     time = np.arange(len(states)) * h
-    return Truth(time, states, Commands(vehicle.times, vehicle.commands, vehicle.kind))
+    return TrueRun(time, states, Commands(vehicle.times, vehicle.commands, vehicle.kind))
 
 
-class _Vehicle:
+class _TrueVehicle:
     """The true vehicle, tick by tick; remembers the commands and the thrusters' state."""
 
     def __init__(self, model: Model, tank: Array, settings: TankSettings, tick: float) -> None:
@@ -76,7 +79,7 @@ class _Vehicle:
         self.memory = np.zeros(6)
         self.batch = Batch([model], site)
 
-    def as_logged(self, demand: Array) -> Array:
+    def log(self, demand: Array) -> Array:
         """What a demand (6,) leaves in the log: itself, or thruster PWM in whole microseconds."""
         if self.kind == "demand":
             return np.round(demand, 4)
@@ -108,18 +111,6 @@ class _Vehicle:
         demand = held if self.kind == "demand" else np.full((steps, 6), np.nan)
         drive = Drive.by(self.model, Thrust(force, np.zeros((steps, 6)), demand), self.duration)
         return self.batch.advance_by_heun(drive, pushes, state, self.memory, t, self.h)
-
-
-def disturbance(settings: Turbulence, steps: int, h: float, random) -> Array:
-    """Gauss-Markov wrench (steps, 6) in body axes, stationary from the start."""
-    level = np.repeat([settings.force, settings.moment], 3)
-    a = np.exp(-h / settings.time_constant)
-    kicks = random.normal(size=(steps, 6)) * np.sqrt(1.0 - a * a)
-    wrench, x = np.empty((steps, 6)), random.normal(size=6)
-    for row, kick in zip(wrench, kicks, strict=True):
-        x = a * x + kick
-        row[:] = x
-    return wrench * level
 
 
 class LeftTank(BadInput):
