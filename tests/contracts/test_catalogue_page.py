@@ -9,7 +9,7 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.reporting.catalogue.flight import blocks, fly, found, seen, settings
 from rovsim.reporting.catalogue.page import PAGE, PICTURES, entry, page
@@ -29,7 +29,7 @@ def short(cls):
 def conditions():
     motion = fly(short(built_in()["thruster_gain"]))
     model = nominal(load_vehicle("bluerov2_heavy"))
-    return blocks(motion, samples(model, motion, SignalSettings(), ReplaySettings()))
+    return blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
 
 
 @EVERY

@@ -9,7 +9,7 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.fluid_memory import ARM, FluidMemory
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.initial_memory import lag_of_lines, measured_memory
@@ -79,7 +79,7 @@ def test_training_sees_the_remembered_water():
     rate = np.gradient(steady.nu, 0.01, axis=0)
     run = replace(steady, nu_dot=rate)
     clear = slice(50, -50)
-    left = [np.abs(samples(w, run, OPEN, ReplaySettings()).a_res[clear]).max()
+    left = [np.abs(sample_run(w, run, OPEN, ReplaySettings()).a_res[clear]).max()
             for w in (world, model(WATER))]  # fmt: skip
     assert left[0] < 0.05 * left[1]
 

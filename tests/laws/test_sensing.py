@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from rovsim.core.rotations import exp, log, matrix, multiply, normalized
 from rovsim.dynamics.effects.sensing import MarkerMisalignment, MarkerOffset, WorldTilt
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.replay import replay, simulate
@@ -94,8 +94,8 @@ def test_replay_predicts_what_is_reported():
 def test_a_residual_learns_in_true_axes():
     """Behind the right view nothing is left to learn, and the features are the true motion."""
     true, run = driven(BAD)
-    found = samples(BAD, run, OPEN, ReplaySettings())
-    blind = samples(model(), run, OPEN, ReplaySettings())
+    found = sample_run(BAD, run, OPEN, ReplaySettings())
+    blind = sample_run(model(), run, OPEN, ReplaySettings())
     np.testing.assert_allclose(log(multiply(
         found.attitude * [1, -1, -1, -1], true[found.index, 3:7])), 0, atol=1e-9)  # fmt: skip
     assert np.sqrt(np.mean((found.nu - true[found.index, 7:]) ** 2)) < 5e-4

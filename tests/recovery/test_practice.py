@@ -6,7 +6,7 @@ import pytest
 from rovsim.application.loading import campaign_vehicle
 from rovsim.dynamics.model import nominal
 from rovsim.evaluation.scores import errors, pooled, rms, score
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
@@ -54,7 +54,7 @@ def test_bins_are_compared_as_bins(binned):
 def test_binned_training_pairs_miss_what_the_score_misses(binned):
     """a_res of one bin step is the acceleration error of a window of two bins."""
     model, motion = binned
-    found = samples(model, motion, SignalSettings(), ReplaySettings())
+    found = sample_run(model, motion, SignalSettings(), ReplaySettings())
     assert len(found.index) > 1000
     assert np.isfinite(found.a_res).all()
     a_sim_like = motion.nu_dot[found.index] - found.a_res

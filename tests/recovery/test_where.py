@@ -11,7 +11,7 @@ from rovsim.evaluation.error_conditions import blocks, explain, judged
 from rovsim.evaluation.error_conditions.bins import binned, number_stretches, table
 from rovsim.evaluation.error_conditions.conditions import BLOCK
 from rovsim.evaluation.error_conditions.sentences import summary
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings
 from synthetic_study import driven
@@ -119,7 +119,7 @@ def test_standard_errors_are_true(memory):
 def test_blocks_are_means_over_half_a_second():
     measured = motion(sticks(), seconds=3.0)
     measured = replace(measured, site=Site(np.array([[0, 4.0], [0, 3], [-1, 2]]), np.ones(3)))
-    found = samples(model(), measured, SignalSettings(), ReplaySettings())
+    found = sample_run(model(), measured, SignalSettings(), ReplaySettings())
     made = blocks(measured, found)
     mine = found.index // 50 == 2
     np.testing.assert_allclose(made.error[2], found.a_res[mine].mean(axis=0))

@@ -11,7 +11,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import read_model
 from rovsim.evaluation.latency import both_ways
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import rule_settings
@@ -24,7 +24,7 @@ def main(
     base = nominal(campaign_vehicle(load_campaign(campaign)))
     signals, how = rule_settings(settings)
     timing = checked(TimingSettings, settings["timing"], "conf")
-    found = samples(base, Motion.read(motion), signals, how)
+    found = sample_run(base, Motion.read(motion), signals, how)
     inference = {}
     for path in models:
         residual = read_model(path, catalogue).residual

@@ -16,7 +16,7 @@ from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.evaluation.budget import Budget, budget
 from rovsim.evaluation.error_conditions import content, judged
 from rovsim.evaluation.scores import comparison, growth, score
-from rovsim.learning.pairs import samples, train_residual, training_runs
+from rovsim.learning.pairs import choose_training_runs, sample_run, train_residual
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.report_data import Evidence
 from rovsim.simulation.prediction import Replay
@@ -58,7 +58,7 @@ def _budgets(data: Measured, model: Model, settings: Settings) -> dict[str, Budg
     """Budget of the last model, by run."""
     return {
         run: budget(
-            model, motion, samples(model, motion, settings.signals, settings.replay),
+            model, motion, sample_run(model, motion, settings.signals, settings.replay),
             settings.replay,
         )
         for run, motion in counted(list(data.motions.items()), "balancing forces")
@@ -98,7 +98,7 @@ def train(
     name: str = "model",
 ) -> Model:
     """Train a residual on top of a model; writes `out`/`name`.yaml and returns it as read back."""
-    used = training_runs(list(data.motions.values()), settings.control)
+    used = choose_training_runs(list(data.motions.values()), settings.control)
     with reported(f"training {settings.learner.kind}") as progress:
         trained = train_residual(
             base, used, settings.control, settings.learner, settings.signals, settings.replay,

@@ -48,7 +48,7 @@ class Samples:
         return assemble(settings, self.nu, self.a_sim, self.wrench, self.attitude)
 
 
-def samples(
+def sample_run(
     model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
 ) -> Samples:
     """Samples of one run at its usable instants.
@@ -121,7 +121,7 @@ def flown_with(control: str, run: Any) -> bool:
     return control in ("all", run.control)
 
 
-def training_runs(motions: Sequence[Motion], control: str) -> list[Motion]:
+def choose_training_runs(motions: Sequence[Motion], control: str) -> list[Motion]:
     """The runs a residual of this control may learn from.
 
     Raises:
@@ -161,7 +161,9 @@ def train_residual(
             expected="a model of physics alone",
             remedy="Train on the model that residual was trained on.",
         )
-    found = [samples(model, m, signals, settings) for m in training_runs(motions, control)]
+    found = [
+        sample_run(model, m, signals, settings) for m in choose_training_runs(motions, control)
+    ]
     X = np.concatenate([s.features(learner.features) for s in found])
     Y = np.concatenate([s.a_res for s in found])
     return train(X, Y, learner, seed, progress)

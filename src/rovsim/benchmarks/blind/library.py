@@ -17,7 +17,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import ReplaySettings
@@ -61,7 +61,7 @@ def problem(
 
 
 def _residual(model: Model, motion: Motion) -> Array:
-    return samples(model, motion, SignalSettings(), ReplaySettings()).a_res[::EVERY]
+    return sample_run(model, motion, SignalSettings(), ReplaySettings()).a_res[::EVERY]
 
 
 def steps(site: Site, effects: Mapping[str, type[Effect]]) -> Iterator[tuple[Column, Effect]]:

@@ -6,7 +6,7 @@ from typing import Sequence
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.conditions import blocks, together
 from rovsim.evaluation.error_conditions.findings import Where, explain
-from rovsim.learning.pairs import Samples, samples
+from rovsim.learning.pairs import Samples, sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import ReplaySettings
@@ -38,7 +38,7 @@ def judged(
 ) -> Judged:
     """Search the runs of a campaign for conditions in which the model fails."""
     runs = chosen(model, motions)
-    found: list[Samples] = [samples(model, m, signals, settings) for m in runs]
+    found: list[Samples] = [sample_run(model, m, signals, settings) for m in runs]
     parts = [blocks(m, s) for m, s in zip(runs, found, strict=True) if len(s.index) > 1]
     where = explain(together(parts)) if parts else Where.nothing()
     names = tuple(m.run.id for m in runs)

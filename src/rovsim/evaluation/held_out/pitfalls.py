@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import errors, normalised, rms
 from rovsim.learning.learner import LearnerSettings, Trained, train
-from rovsim.learning.pairs import Samples, samples
+from rovsim.learning.pairs import Samples, sample_run
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
@@ -76,8 +76,8 @@ def measure_pitfalls(
         signals: the signal chain.
         settings: of the replays.
     """
-    found = {m.run.id: samples(model, m, signals, settings) for m in runs}
-    asked = samples(model, test, signals, settings)
+    found = {m.run.id: sample_run(model, m, signals, settings) for m in runs}
+    asked = sample_run(model, test, signals, settings)
 
     def taught(kind: str, names: Sequence[str]) -> tuple[Trained, Array]:
         own = [found[name] for name in names]

@@ -15,7 +15,7 @@ from rovsim.dynamics.model_file import describe_effect
 from rovsim.evaluation.error_conditions import Blocks, blocks
 from rovsim.evaluation.error_conditions.bins import binned, number_stretches, table
 from rovsim.evaluation.error_conditions.conditions import Condition
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
@@ -64,7 +64,7 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
     """What the nominal model misses in this tank, and what the hidden effect adds to it."""
     motion, truth = fly(tank, catalogue), true_model(tank, catalogue)
     missing, rest = (
-        blocks(motion, samples(model, motion, SignalSettings(), ReplaySettings()))
+        blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
         for model in (nominal(truth.vehicle), truth)
     )
     k = AXES.index(signature.axis)

@@ -27,7 +27,7 @@ from rovsim.core.files import write_json
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
-from rovsim.learning.pairs import samples
+from rovsim.learning.pairs import sample_run
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
@@ -63,7 +63,7 @@ def _samples(settings: Settings, catalogue: Catalogue) -> tuple[Model, dict[str,
     model = nominal(data.vehicle)
     found: dict[str, list] = {"train": [], "test": []}
     for motion in data.motions.values():
-        taken = samples(model, motion, settings.signals, settings.replay)
+        taken = sample_run(model, motion, settings.signals, settings.replay)
         found[motion.run.split].append((motion.run.control, taken))
     return model, found
 
