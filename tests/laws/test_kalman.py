@@ -12,8 +12,9 @@ from scipy.signal import lfilter
 from rovsim.diagnosis.observer.kalman import (
     LEAST_DRIVING,
     SOLVABLE,
-    axis_filter,
+    AxisNoise,
     characteristic,
+    design_filter,
     filter_kept,
     sum_of_squares,
 )
@@ -51,7 +52,7 @@ def innovations(f, y):
 @given(noises)
 def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
     binned, d, level, memory, reading = noise
-    f = axis_filter(binned, H, d, level, memory, reading)
+    f = design_filter(binned, H, d, AxisNoise(level, memory, reading))
     n, r = len(f.C), reading**2
     Q = SOLVABLE * r * np.eye(n)
     Q[-1, -1] = level**2 * (1.0 - np.exp(-2.0 * H / memory)) + LEAST_DRIVING
@@ -62,7 +63,7 @@ def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
 
 @given(noises)
 def test_a_filter_is_stable_and_its_poles_are_its_eigenvalues(noise):
-    f = axis_filter(noise[0], H, *noise[1:])
+    f = design_filter(noise[0], H, noise[1], AxisNoise(*noise[2:]))
     A = f.F @ (np.eye(len(f.C)) - np.outer(f.gain, f.C))
     assert np.abs(np.linalg.eigvals(A)).max() < 1.0
     np.testing.assert_allclose(f.poles, np.poly(A), atol=1e-9)
@@ -72,8 +73,8 @@ def test_a_filter_is_stable_and_its_poles_are_its_eigenvalues(noise):
 @pytest.mark.parametrize("binned", [False, True])
 def test_innovations_of_one_filter_become_those_of_another(binned):
     h = 0.16 if binned else H
-    old = axis_filter(binned, h, 1.0, 0.2, 0.5, 1e-3)
-    new = axis_filter(binned, h, 1.0, 0.05, 1.5, 2e-3)
+    old = design_filter(binned, h, 1.0, AxisNoise(0.2, 0.5, 1e-3))
+    new = design_filter(binned, h, 1.0, AxisNoise(0.05, 1.5, 2e-3))
     y = rung(new, h, 0.05, 1.5, 2e-3, 4000, 3)
     np.testing.assert_allclose(
         lfilter(*new.whitening(old), innovations(old, y)), innovations(new, y), atol=1e-9
@@ -81,7 +82,7 @@ def test_innovations_of_one_filter_become_those_of_another(binned):
 
 
 def test_the_right_filter_leaves_white_noise_of_the_variance_it_says():
-    f = axis_filter(False, H, 1.0, 0.05, 1.0, 1e-3)
+    f = design_filter(False, H, 1.0, AxisNoise(0.05, 1.0, 1e-3))
     e = innovations(f, rung(f, H, 0.05, 1.0, 1e-3, 40000, 1))[500:]
     assert np.var(e) == pytest.approx(f.variance, rel=0.03)
     for lag in (1, 3, 10, 50):
@@ -91,7 +92,7 @@ def test_the_right_filter_leaves_white_noise_of_the_variance_it_says():
 @pytest.mark.parametrize("binned", [False, True])
 def test_a_push_shows_in_the_innovations_as_the_response_says(binned):
     h = 0.16 if binned else H
-    f = axis_filter(binned, h, 1.0, 0.05, 1.0, 1e-3)
+    f = design_filter(binned, h, 1.0, AxisNoise(0.05, 1.0, 1e-3))
     push = np.where(np.arange(400) % 90 < 30, 0.3, -0.1)
     x, y = np.zeros(len(f.C)), np.empty(len(push))
     B = np.array([0.5 * h * h, h, 0.0][-len(x) :])
@@ -122,8 +123,8 @@ def test_the_noise_of_made_innovations_is_found():
     damping = np.ones(6)
 
     def tuned(noise):
-        rows = zip(damping, noise.level, noise.memory, noise.reading, strict=True)
-        return Tuning(tuple(axis_filter(False, H, *row) for row in rows), H)
+        axes = enumerate(damping)
+        return Tuning(tuple(design_filter(False, H, d, noise.of_axis(i)) for i, d in axes), H)
 
     start = Noise(np.full(6, 0.1), np.full(6, 0.5), np.full(6, 5e-4))
     found = tuned(start)

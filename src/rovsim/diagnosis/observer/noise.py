@@ -10,14 +10,19 @@ candidates be compared, without observing anew.
 """
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
-from rovsim import AXES
-from rovsim.diagnosis.observer.kalman import AxisFilter, axis_filter, filter_kept, sum_of_squares
+from rovsim.diagnosis.observer.kalman import (
+    AxisFilter,
+    AxisNoise,
+    design_filter,
+    filter_kept,
+    sum_of_squares,
+)
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
 
@@ -34,6 +39,10 @@ class Noise:
     level: Array
     memory: Array
     reading: Array
+
+    def of_axis(self, i: int) -> AxisNoise:
+        """The noise of one axis."""
+        return AxisNoise(self.level[i], self.memory[i], self.reading[i])
 
 
 # Turbulence that moves this vehicle by some mm/s2, and a usual motion capture: only a first guess.
@@ -66,10 +75,10 @@ class Tuning:
 
 
 def tune(noise: Noise, damping: Array, run: ObservedRun) -> Tuning:
-    """The filters for one noise."""
-    of_axes = zip(damping, noise.level, noise.memory, noise.reading, strict=True)
-    found = [axis_filter(run.motion.binned, run.period, *one) for one in of_axes]
-    return Tuning(tuple(found), run.period)
+    """The filters for one noise; velocities decay at `damping` (6,) 1/s."""
+    binned, h = run.motion.binned, run.period
+    filters = [design_filter(binned, h, d, noise.of_axis(i)) for i, d in enumerate(damping)]
+    return Tuning(tuple(filters), h)
 
 
 def whiten(
@@ -104,37 +113,73 @@ def _white_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Arr
     return out.reshape(*e.shape[:-1], out.shape[-1])
 
 
+class NoiseFit(NamedTuple):
+    """The most likely noise, and twice the log likelihood under it, up to a constant."""
+
+    noise: Noise
+    likelihood: float
+
+
 def fit_noise(
     e: Sequence[Array],
     runs: Sequence[ObservedRun],
     found: Sequence[Tuning],
     damping: Array,
     start: Noise,
-) -> tuple[Noise, float]:
-    """The most likely noise of innovations e (6, n_run), and twice the log likelihood.
+) -> NoiseFit:
+    """The most likely noise of innovations e (6, n_run).
 
     The memory has a prior: turbulence remembers about a second, within a factor of two.
+
+    Args:
+        e: innovations of each run.
+        runs: the runs.
+        found: the tuning each was found with.
+        damping: decay (6,) of the velocities, 1/s.
+        start: where to begin.
     """
-    fitted = [_fit_axis(i, e, runs, found, damping, start) for i in range(len(AXES))]
-    level, memory, reading = np.array([f[0] for f in fitted]).T
-    return Noise(level, memory, reading), -2.0 * sum(f[1] for f in fitted)
+    noises, costs = [], []
+    for i, d in enumerate(damping):
+        filters = tuple(one.filters[i] for one in found)
+        axis = _AxisInnovations(tuple(one[i] for one in e), tuple(runs), filters, d)
+        noise, cost = _fit_axis(axis, start.of_axis(i))
+        noises.append(noise)
+        costs.append(cost)
+    return NoiseFit(Noise(*np.array(noises).T), -2.0 * sum(costs))
 
 
-def _fit_axis(i, e, runs, found, damping, start) -> tuple[Array, float]:
-    def cost(x: Array) -> float:
-        level, memory, reading = np.exp(x)
-        outside = max(0.0, memory / LONGEST_MEMORY - 1.0) + max(0.0, SHORTEST_MEMORY / memory - 1.0)
-        prior = 0.5 * (np.log(memory / TYPICAL_MEMORY) / MEMORY_SPREAD) ** 2 + 1e3 * outside
+@dataclass(frozen=True, eq=False)
+class _AxisInnovations:
+    """Innovations (n_run,) of one axis, and the filter of each run they were found with."""
+
+    e: tuple[Array, ...]
+    runs: tuple[ObservedRun, ...]
+    filters: tuple[AxisFilter, ...]
+    damping: float
+
+    def cost(self, noise: AxisNoise) -> float:
+        """Negative log likelihood of a noise, up to a constant."""
         new = {
-            w.period: axis_filter(w.motion.binned, w.period, damping[i], level, memory, reading)
-            for w in runs
+            run.period: design_filter(run.motion.binned, run.period, self.damping, noise)
+            for run in self.runs
         }
-        return prior + sum(
-            _unlikely(one[i], run, old.filters[i], new[run.period])
-            for one, run, old in zip(e, runs, found, strict=True)
-        )
+        each = zip(self.e, self.runs, self.filters, strict=True)
+        return sum(_run_cost(e, run, old, new[run.period]) for e, run, old in each)
 
-    first = np.log([start.level[i], start.memory[i], start.reading[i]])
+
+def _run_cost(e: Array, run: ObservedRun, old: AxisFilter, new: AxisFilter) -> float:
+    squares, count = sum_of_squares(*new.whitening(old), e, run.rows, run.settled)
+    return 0.5 * float(squares / new.variance + count * np.log(new.variance))
+
+
+def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[Array, float]:
+    """Level, memory and reading noise (3,) of one axis, and what they cost."""
+
+    def cost(x: Array) -> float:
+        noise = AxisNoise(*np.exp(x))
+        return _memory_prior(noise.memory) + axis.cost(noise)
+
+    first = np.log(start)
     simplex = first + np.vstack([np.zeros(3), 0.3 * np.eye(3)])
     best = minimize(
         cost, first, method="Nelder-Mead",
@@ -143,7 +188,7 @@ def _fit_axis(i, e, runs, found, damping, start) -> tuple[Array, float]:
     return np.exp(best.x), float(best.fun)
 
 
-def _unlikely(e: Array, run: ObservedRun, old: AxisFilter, new: AxisFilter) -> float:
-    """Negative log likelihood of one axis (n,) of one run, up to a constant."""
-    squares, count = sum_of_squares(*new.whitening(old), e, run.rows, run.settled)
-    return 0.5 * float(squares / new.variance + count * np.log(new.variance))
+def _memory_prior(memory: float) -> float:
+    """Negative log of the prior of a memory, s; steep outside of what eddies can do."""
+    outside = max(0.0, memory / LONGEST_MEMORY - 1.0) + max(0.0, SHORTEST_MEMORY / memory - 1.0)
+    return 0.5 * (np.log(memory / TYPICAL_MEMORY) / MEMORY_SPREAD) ** 2 + 1e3 * outside
