@@ -5,6 +5,7 @@ import numpy as np
 from rovsim import AXES
 from rovsim.diagnosis.advice import next_experiment
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
+from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.procedure import TrainDiagnosis
@@ -21,7 +22,8 @@ NOISE = Noise(np.ones(6), np.ones(6), np.ones(6))
 def fit(covariance, x=None):
     base = nominal(load_vehicle("bluerov2_heavy"))
     h = Hypothesis(base, free_terms(base, AXES, TERMS))
-    return Fit(h.at(np.zeros(7) if x is None else x), [], [], NOISE, 0.0, covariance)
+    seen = Linearised(h.at(np.zeros(7) if x is None else x), [], [])
+    return Fit(seen, NOISE, 0.0, covariance)
 
 
 def alike(*pairs):

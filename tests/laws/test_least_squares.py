@@ -5,11 +5,11 @@ import pytest
 
 from rovsim.diagnosis.observer.least_squares import (
     coarsen,
-    greedy,
     inner_products,
-    joint,
+    project_out,
+    select_columns,
     solve,
-    without,
+    solve_bounded,
 )
 
 
@@ -21,7 +21,7 @@ def columns():
 def test_the_few_that_matter_are_chosen_among_many(columns):
     noise = np.random.default_rng(5).normal(size=500)
     target = -(3.0 * columns[2] - 2.0 * columns[6]) + 0.1 * noise
-    found = greedy(inner_products(columns), columns @ target, price=12.0)
+    found = select_columns(inner_products(columns), columns @ target, price=12.0)
     assert set(found.chosen) == {2, 6}
     by_name = dict(zip(found.chosen, found.x, strict=True))
     assert by_name[2] == pytest.approx(3.0, abs=0.05)
@@ -33,16 +33,16 @@ def test_the_few_that_matter_are_chosen_among_many(columns):
 def test_the_joint_solution_is_the_bounded_one(columns):
     target = -(3.0 * columns[0] - 2.0 * columns[1])
     b, H = columns[:2] @ target, inner_products(columns[:2])
-    free = joint(H, b, 0.0, np.full(2, -9.0), np.full(2, 9.0))
+    free = solve_bounded(H, b, 0.0, np.full(2, -9.0), np.full(2, 9.0))
     np.testing.assert_allclose(free.x, [3.0, -2.0], atol=1e-6)
-    held = joint(H, b, 0.0, np.full(2, -1.0), np.full(2, 1.0))
+    held = solve_bounded(H, b, 0.0, np.full(2, -1.0), np.full(2, 1.0))
     np.testing.assert_allclose(held.x, [1.0, -1.0], atol=1e-6)
     assert 0.0 < held.decrease < free.decrease
 
 
 def test_projected_columns_are_gone(columns):
     M = inner_products(columns)
-    left = without(M, [0, 3])
+    left = project_out(M, [0, 3])
     np.testing.assert_allclose(left[[0, 3]], 0.0, atol=1e-5)
     basis = np.linalg.qr(columns[[0, 3]].T)[0]
     own = columns[5] - basis @ (basis.T @ columns[5])

@@ -32,7 +32,7 @@ from rovsim.diagnosis.selection.ranking import Ranked, Selected, rank_alone, ran
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linearise_candidates
-from rovsim.diagnosis.selection.workspace import SearchWorkspace, propose
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.catalogue import Catalogue
@@ -100,7 +100,7 @@ def diagnose(
     stage("observing")
     workspace = _observe(base, usable, between, settings, catalogue)
     nothing = workspace.fit(Hypothesis(base))
-    alone = propose(workspace, nothing)
+    alone = workspace.propose(nothing)
     stage("searching")
     selection = search(workspace, nothing, seed)
     stage("checking")

@@ -79,8 +79,8 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
 
 def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
     """What a fit leaves, axis by axis, without what a gap in the command log may have done."""
-    J = bank.whiten(found.J, found.noise)
-    white = _split_by_run(bank.whiten(found.e, found.noise), bank.runs)
+    J = bank.whiten(found.seen.J, found.noise)
+    white = _split_by_run(bank.whiten(found.seen.e, found.noise), bank.runs)
     path, tunings = found.hypothesis.model.thrust_path, bank.tune(found.noise)
     unknown = [run.vague(path) for run in bank.runs]
     residuals = []

@@ -2,20 +2,18 @@
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Callable, Sequence
+from typing import Sequence
 
-import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.innovations import estimate_damping, observe
 from rovsim.diagnosis.observer.least_squares import coarsen
-from rovsim.diagnosis.observer.noise import Noise, Tuning, fit_noise, tune, whiten
+from rovsim.diagnosis.observer.noise import Noise, NoiseFit, Tuning, fit_noise, tune, whiten
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
-
-STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +41,7 @@ class FilterBank:
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
         return [
-            of_possible(models, len(run.time), partial(self._of_run, run, own))
+            evaluate_possible(models, len(run.time), partial(self._of_run, run, own))
             for run, own in zip(self.runs, self.tunings, strict=True)
         ]
 
@@ -63,44 +61,10 @@ class FilterBank:
         """Filters of each run that suit another noise."""
         return [tune(noise, self.damping, w) for w in self.runs]
 
-    def fit_noise(self, e: Sequence[Array], start: Noise) -> tuple[Noise, float]:
-        """The most likely noise of innovations (6, n) of each run; twice its log likelihood."""
+    def fit_noise(self, e: Sequence[Array], start: Noise) -> NoiseFit:
+        """The most likely noise of innovations (6, n) of each run."""
         return fit_noise(e, self.runs, self.tunings, self.damping, start)
 
-    def linearise(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
+    def linearise(self, at: Hypothesis) -> Linearised:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
         return linearise(at, self.evaluate)
-
-
-def of_possible(
-    models: Sequence[Model], count: int, errors: Callable[[Sequence[Model]], Array]
-) -> Array:
-    """Errors (m, 6, count) of models; NaN where a model cannot move at all."""
-    able = [m.possible for m in models]
-    e = np.full((len(models), 6, count), np.nan)
-    if any(able):
-        e[able] = errors([m for m, yes in zip(models, able, strict=True) if yes])
-    return e
-
-
-def linearise(
-    at: Hypothesis, errors: Callable[[Sequence[Model]], list[Array]]
-) -> tuple[list[Array], list[Array]]:
-    """Errors (6, n) of each run, and their derivatives (k, 6, n) to the k scaled parameters.
-
-    `errors` returns (m, 6, n) of each run for m models.
-    """
-    x = at.x
-    steps = [_inward(at, x, i) for i in range(len(x))]
-    moved = [at.at(x + step).model for step in steps]
-    sizes = np.array([step.sum() for step in steps])[:, None, None]
-    found = errors([at.model, *moved])
-    return [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found]
-
-
-def _inward(at: Hypothesis, x: Array, i: int) -> Array:
-    """A step of one parameter that stays inside its range."""
-    step = np.zeros(len(x))
-    parameter = [p for term in at.terms for p in term.parameters][i]
-    step[i] = max(STEP, parameter.grain / parameter.scale)
-    return -step if (x[i] + step[i]) * parameter.scale > parameter.high else step

@@ -37,7 +37,7 @@ def solve(H: Array, b: Array) -> Array:
     return (x.T / scale).T
 
 
-def without(M: Array, columns: Sequence[int]) -> Array:
+def project_out(M: Array, columns: Sequence[int]) -> Array:
     """Inner products after projecting some columns out of all others."""
     C = list(columns)
     return M - M[:, C] @ solve(M[np.ix_(C, C)], M[C])
@@ -52,7 +52,7 @@ class Gain:
     x: Array
 
 
-def joint(H: Array, b: Array, offset: float, low: Array, high: Array) -> Gain:
+def solve_bounded(H: Array, b: Array, offset: float, low: Array, high: Array) -> Gain:
     """All columns together, their coefficients (k,) between bounds.
 
     `b` (k,) are their products with the target, `offset` is what the target itself costs more.
@@ -64,7 +64,7 @@ def joint(H: Array, b: Array, offset: float, low: Array, high: Array) -> Gain:
     return Gain(float(-2.0 * b @ x - x @ H @ x) - offset, tuple(range(len(b))), x)
 
 
-def greedy(H: Array, b: Array, price: float) -> Gain:
+def select_columns(H: Array, b: Array, price: float) -> Gain:
     """The columns that are worth their price each, added one by one, then pruned."""
     chosen: list[int] = []
     while len(chosen) < min(len(b), MOST):

@@ -9,13 +9,9 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival, Selection
-from rovsim.diagnosis.selection.workspace import (
-    Proposal,
-    SearchWorkspace,
-    draw_chance_gains,
-    propose,
-)
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
@@ -71,7 +67,7 @@ def without_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
 
 def promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
     """The proposals that should gain something."""
-    return [p for p in propose(workspace, current) if p.gain > 0.0]
+    return [p for p in workspace.propose(current) if p.gain > 0.0]
 
 
 def close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
@@ -131,9 +127,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
     """
     current, settings = base, workspace.settings
     while len(current.hypothesis.terms) < settings.most_effects:
-        by_chance = draw_chance_gains(workspace, current, settings.draws, seed)
-        threshold = max(0.0, float(np.quantile(by_chance, 1.0 - settings.false_alarm)))
-        found = add_best(workspace, current, threshold)
+        found = add_best(workspace, current, workspace.chance_limit(current, seed))
         if found is None:
             current, rivals = contest(workspace, current, settings.trials)
             return Selection(workspace, current, tuple(rivals), complete=True)

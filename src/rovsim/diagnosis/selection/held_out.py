@@ -47,8 +47,7 @@ def cross_validate(found: Fit, smaller: Fit, bank: FilterBank) -> float:
 
 def _held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> float:
     """Sum of the squared innovations of all blocks, each with the others' parameters."""
-    stacked = [np.concatenate([e[None], J]) for e, J in zip(one.e, one.J, strict=True)]
-    rows = bank.whiten(stacked, noise)
+    rows = bank.whiten(one.seen.rows, noise)
     parts = [_products(rows[..., fold == k]) for k in np.unique(fold)]
     total = sum(parts)
     return sum(_cost(part, _step(total - part)) for part in parts)

@@ -10,8 +10,9 @@ from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival
-from rovsim.diagnosis.selection.workspace import Proposal, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 

@@ -14,7 +14,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank, linearise, of_possible
+from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
+from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
@@ -47,9 +48,10 @@ class Replays:
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Scaled errors (m, 6, n) of each run; NaN where a model cannot move at all."""
+        counts = [len(_window(run)) + int(np.sum(_follows(run))) for run in self.runs]
         return [
-            of_possible(models, len(_window(w)) + np.sum(_follows(w)), partial(self._of_run, w))
-            for w in self.runs
+            evaluate_possible(models, count, partial(self._of_run, run))
+            for run, count in zip(self.runs, counts, strict=True)
         ]
 
     def _of_run(self, run: ObservedRun, models: Sequence[Model]) -> Array:
@@ -59,8 +61,8 @@ class Replays:
         both = [nu / velocity, step[:, _follows(run)] / acceleration]
         return soft(np.concatenate(both, axis=1)).swapaxes(1, 2)
 
-    def linearise(self, at: Hypothesis) -> tuple[list[Array], list[Array]]:
-        """Errors (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
+    def linearise(self, at: Hypothesis) -> Linearised:
+        """Errors of a hypothesis, and how they change with its parameters."""
         return linearise(at, self.evaluate)
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
@@ -102,12 +104,13 @@ def soft(x: Array) -> Array:
 def fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
     evidence = Replays(bank.runs, bank.between)
-    here, e, J = descend(found.hypothesis, evidence, found.noise, REACH)
+    seen = descend(found.hypothesis, evidence, found.noise, REACH)
     covariance = _sandwich(
-        evidence.whiten(e, found.noise), evidence.whiten(J, found.noise), evidence.window()
-    )
-    fresh = bank.redesign(here.model, found.noise)
-    again = judge(here, *fresh.linearise(here), fresh, found.noise)
+        evidence.whiten(seen.e, found.noise), evidence.whiten(seen.J, found.noise),
+        evidence.window(),
+    )  # fmt: skip
+    fresh = bank.redesign(seen.at.model, found.noise)
+    again = judge(fresh.linearise(seen.at), fresh, found.noise)
     return replace(again, covariance=covariance)
 
 

@@ -1,0 +1,79 @@
+"""Errors of models, how they change with parameters, and what makes them comparable."""
+
+from dataclasses import dataclass
+from typing import Callable, Protocol, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.dynamics.model import Model
+
+STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
+
+Errors = Callable[[Sequence[Model]], list[Array]]
+
+
+@dataclass(frozen=True, eq=False)
+class Linearised:
+    """A hypothesis, its errors `e` (6, n) of each run, not whitened, and how they change.
+
+    `J` (k, 6, n) of each run are their derivatives to the k scaled parameters.
+    """
+
+    at: Hypothesis
+    e: list[Array]
+    J: list[Array]
+
+    @property
+    def finite(self) -> bool:
+        """Whether the model stayed finite on all runs, there and a step beside."""
+        return all(np.isfinite(one).all() for one in (*self.e, *self.J))
+
+    @property
+    def rows(self) -> list[Array]:
+        """Errors and derivatives (1 + k, 6, n) of each run."""
+        return [np.concatenate([e[None], J]) for e, J in zip(self.e, self.J, strict=True)]
+
+
+class Evidence(Protocol):
+    """What a hypothesis is fitted to."""
+
+    def evaluate(self, models: Sequence[Model]) -> list[Array]:
+        """Errors (m, 6, n) of each run; NaN where a model cannot move at all."""
+
+    def linearise(self, at: Hypothesis) -> Linearised:
+        """Errors of a hypothesis, and how they change with its parameters."""
+
+    def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
+        """Errors (..., 6, n) of all runs, each worth the same."""
+
+
+def linearise(at: Hypothesis, errors: Errors) -> Linearised:
+    """Differences of the errors (m, 6, n) of each run that `errors` returns for m models."""
+    x = at.x
+    steps = [_step_inward(at, x, i) for i in range(len(x))]
+    moved = [at.at(x + step).model for step in steps]
+    sizes = np.array([step.sum() for step in steps])[:, None, None]
+    found = errors([at.model, *moved])
+    return Linearised(at, [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found])
+
+
+def _step_inward(at: Hypothesis, x: Array, i: int) -> Array:
+    """A step of one parameter that stays inside its range."""
+    step = np.zeros(len(x))
+    parameter = [p for term in at.terms for p in term.parameters][i]
+    step[i] = max(STEP, parameter.grain / parameter.scale)
+    return -step if (x[i] + step[i]) * parameter.scale > parameter.high else step
+
+
+def evaluate_possible(
+    models: Sequence[Model], count: int, errors: Callable[[Sequence[Model]], Array]
+) -> Array:
+    """Errors (m, 6, count) of models; NaN where a model cannot move at all."""
+    able = [m.possible for m in models]
+    e = np.full((len(models), 6, count), np.nan)
+    if any(able):
+        e[able] = errors([m for m, yes in zip(models, able, strict=True) if yes])
+    return e
