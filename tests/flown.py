@@ -10,6 +10,7 @@ from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, differentiated, filtered, resampled
+from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 
@@ -21,5 +22,5 @@ def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[O
     campaign = load_campaign(folder / "raw")
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    runs = Runs({"a": motion}, {"a": stage}).prepare("train", 0.01, built_in())
+    runs = Runs({"a": motion}, {"a": stage}).prepare("train", ReplaySettings(), built_in())
     return nominal(campaign_vehicle(campaign)), runs

@@ -24,8 +24,8 @@ def test_a_tank_that_hides_it_gives_it_back(name, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
     settings = compose([f"campaign='{tmp_path / 'raw'}'"])
     data = measured(settings)
-    base, runs = nominal(data.vehicle), data.runs.prepare("train", settings.replay.step, built_in())
-    bank = FilterBank.design(runs, base, FIRST_NOISE, "held")
+    base, runs = nominal(data.vehicle), data.runs.prepare("train", settings.replay, built_in())
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
     hidden = build_effect(flown.hidden[0], built_in()).given()
     listed = list_candidates(runs, built_in())
     known = [c for c in listed if c.effect.id == name and set(hidden) <= set(c.free)]

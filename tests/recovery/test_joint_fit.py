@@ -33,7 +33,7 @@ HIDDEN = (
 
 def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     base, runs = observed(tmp_path, duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
-    bank = FilterBank.design(runs, base, FIRST_NOISE, "held")
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
     listed = list_candidates(runs, built_in())
     some = [c for c in listed if c.effect.id in ("added_mass", "linear_damping")]
     known = linearise_candidates(bank, Hypothesis(base), some)
@@ -59,7 +59,7 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     loop = "linear_damping.surge", "onboard_control.gain_surge", "onboard_control.bandwidth_surge"
     assert set(loop) in joint  # as said above
     assert any({"quadratic_damping.surge", "added_mass.surge"} <= g for g in joint)  # one scale
-    before, after = Replays(tuple(runs), "held").evaluate(
-        [found.hypothesis.model, again.hypothesis.model]
-    )[0]
+    before, after = Replays(tuple(runs)).evaluate([found.hypothesis.model, again.hypothesis.model])[
+        0
+    ]
     assert np.sum(after**2) <= np.sum(before**2)

@@ -19,7 +19,7 @@ def test_wrong_nominal_parameters_come_back(tmp_path):
         EffectEntry(effect="net_buoyancy", parameters={"force": 3.0}),
     )
     base, runs = train(tmp_path, hidden)
-    found = refit_nominal(base, runs, "held")
+    found = refit_nominal(base, runs)
     changes = {e.id: e for e in found.effects[len(base.effects) :]}
     gain = changes["thruster_gain"]["all"]  # masses, drag and forces are known in units of it
     assert changes["net_buoyancy"]["force"] / gain == pytest.approx(3.0, abs=0.3)
@@ -30,7 +30,7 @@ def test_wrong_nominal_parameters_come_back(tmp_path):
 def test_what_is_not_theirs_leaves_them_physical(tmp_path):
     lag = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.3})
     base, runs = train(tmp_path, (lag,), control="3dof")
-    body = refit_nominal(base, runs, "held").body
+    body = refit_nominal(base, runs).body
     assert np.all(body.linear >= -1e-9)
     assert np.all(body.quadratic >= -1e-9)
     assert np.all(np.linalg.eigvalsh(body.M) > 0.0)
@@ -38,6 +38,6 @@ def test_what_is_not_theirs_leaves_them_physical(tmp_path):
 
 def test_too_little_changes_nothing(tmp_path):
     base, runs = train(tmp_path, (), duration=4.0)
-    found = refit_nominal(base, runs, "held")
+    found = refit_nominal(base, runs)
     assert found.name == "refitted"
     assert found.added == ()

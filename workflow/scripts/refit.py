@@ -20,9 +20,9 @@ def main(
 ) -> None:  # fmt: skip
     base = nominal(campaign_vehicle(load_campaign(campaign)))
     how = checked(ReplaySettings, settings["replay"], "conf")
-    train = Runs.read(motions, stages).prepare("train", how.step, catalogue)
+    train = Runs.read(motions, stages).prepare("train", how, catalogue)
     story = {"base": "nominal", "train_runs": [one.motion.run.id for one in train]}
-    write_model(refit_nominal(base, train, how.commands), out, provenance=story)
+    write_model(refit_nominal(base, train), out, provenance=story)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from rovsim.evaluation.ladder import floor_step, ladder, step
 from rovsim.measurement.signals.chain import Stage, read_stage
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import ReplaySettings
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
@@ -40,11 +41,14 @@ class Runs:
             {motion.run.id: stage for motion, stage in usable},
         )
 
-    def prepare(self, split: str, step: float, catalogue: Catalogue) -> list[ObservedRun]:
+    def prepare(
+        self, split: str, settings: ReplaySettings, catalogue: Catalogue
+    ) -> list[ObservedRun]:
         """The runs of one split as the observer sees them."""
         chosen = {run: m for run, m in self.motions.items() if m.run.split == split}
         return [
-            prepare_run(self.stages[run], motion, step, catalogue) for run, motion in chosen.items()
+            prepare_run(self.stages[run], motion, settings, catalogue)
+            for run, motion in chosen.items()
         ]
 
 
@@ -65,10 +69,10 @@ def diagnosed(
 ) -> Diagnosed:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
-    h = settings.replay.step
-    train, test = (runs.prepare(split, h, catalogue) for split in ("train", "test"))
-    between, seed = settings.replay.commands, settings.seed
-    found = diagnose(base, train, settings.search, between, catalogue, seed, stage)
+    train, test = (runs.prepare(split, settings.replay, catalogue) for split in ("train", "test"))
+    found = diagnose(
+        base, train, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
+    )
     stage("scoring")
     motions = [w.motion for w in train]
     fails = [judged(base, motions, settings.signals, settings.replay)] if motions else []
@@ -102,8 +106,7 @@ def _floor(
     if found.fit is None or not test:
         return None
     floor = simulate_noise_floor(
-        found.models()[-1], test, found.fit.noise, settings.signals, settings.replay.commands,
-        settings.seed,
+        found.models()[-1], test, found.fit.noise, settings.signals, settings.seed,
     )  # fmt: skip
     return None if floor is None else min([floor, *reached])
 

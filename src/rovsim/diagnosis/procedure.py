@@ -34,7 +34,6 @@ from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linearise_candidates
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 
@@ -88,7 +87,7 @@ def diagnose(
     base: Model,
     train: Sequence[ObservedRun],
     settings: SearchSettings,
-    between: Between,
+    *,
     catalogue: Catalogue,
     seed: int = 0,
     stage: Stages = lambda name: None,
@@ -98,7 +97,7 @@ def diagnose(
     if not usable.enough:
         return TrainDiagnosis(base, None, [], [], [], [], usable.still, usable.seconds)
     stage("observing")
-    workspace = _observe(base, usable, between, settings, catalogue)
+    workspace = _observe(base, usable, settings, catalogue)
     nothing = workspace.fit(Hypothesis(base))
     alone = workspace.propose(nothing)
     stage("searching")
@@ -111,30 +110,25 @@ def diagnose(
         found = fit_to_replays(found, bank)
     rivals = selection.named_rivals
     return TrainDiagnosis(
-        base, found, rank_selected(found, rivals, usable.runs, between),
+        base, found, rank_selected(found, rivals, usable.runs),
         rank_alone(workspace, nothing, alone, found), rivals, structures,
         usable.still, usable.seconds,
     )  # fmt: skip
 
 
 def _observe(
-    base: Model,
-    usable: UsableRuns,
-    between: Between,
-    settings: SearchSettings,
-    catalogue: Catalogue,
+    base: Model, usable: UsableRuns, settings: SearchSettings, catalogue: Catalogue
 ) -> SearchWorkspace:
     """Columns of the candidates, and the noise that is left when all of them may act at once.
 
     The columns are made with filters that take all the base misses for noise: these hold it close
     to the measurement. The filters of the search then suit the noise that was found.
     """
-    first = FilterBank.design(usable.runs, base, FIRST_NOISE, between)
+    first = FilterBank.design(usable.runs, base, FIRST_NOISE)
     noise, _ = first.fit_noise([e[0] for e in first.evaluate([base])], FIRST_NOISE)
     close = first.redesign(base, noise)
-    sensitivities = linearise_candidates(
-        close, Hypothesis(base), list_candidates(usable.runs, catalogue)
-    )
+    candidates = list_candidates(usable.runs, catalogue)
+    sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
     noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
     return SearchWorkspace(close.redesign(base, noise), sensitivities, noise, settings)
 

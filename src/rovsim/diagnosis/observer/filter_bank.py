@@ -12,7 +12,6 @@ from rovsim.diagnosis.observer.innovations import estimate_damping, observe
 from rovsim.diagnosis.observer.least_squares import coarsen
 from rovsim.diagnosis.observer.noise import Noise, NoiseFit, Tuning, fit_noise, tune, whiten
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 
 
@@ -23,20 +22,17 @@ class FilterBank:
     runs: tuple[ObservedRun, ...]
     damping: Array
     tunings: tuple[Tuning, ...]
-    between: Between
 
     @staticmethod
-    def design(
-        runs: Sequence[ObservedRun], base: Model, noise: Noise, between: Between
-    ) -> "FilterBank":
+    def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
-        damping = estimate_damping(base, runs, between)
+        damping = estimate_damping(base, runs)
         found = tuple(tune(noise, damping, w) for w in runs)
-        return FilterBank(tuple(runs), damping, found, between)
+        return FilterBank(tuple(runs), damping, found)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""
-        return FilterBank.design(self.runs, model, noise, self.between)
+        return FilterBank.design(self.runs, model, noise)
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
@@ -46,7 +42,7 @@ class FilterBank:
         ]
 
     def _of_run(self, run: ObservedRun, tuning: Tuning, models: Sequence[Model]) -> Array:
-        return observe(models, run, tuning, self.between)
+        return observe(models, run, tuning)
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""

@@ -9,7 +9,6 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.noise import Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.unlisted_drag import UNLISTED_DRAG
-from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
@@ -20,9 +19,7 @@ from rovsim.simulation.measured_states import as_true
 NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
 
 
-def observe(
-    models: Sequence[Model], run: ObservedRun, tuning: Tuning, between: Between = "held"
-) -> Array:
+def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
     """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle.
 
     Each in the axes and at the point that the motion capture reports: there its noise does not
@@ -32,12 +29,12 @@ def observe(
     seen = Correction(
         readings, run.ends, tuning.gains, tuning.decay(run.h), by_velocity=run.motion.binned
     )
-    e = observing(models, run).innovations(drives(models, run, between), starts, run.h, seen)
+    e = serve_all(models, run).innovations(drive_all(models, run), starts, run.h, seen)
     reported = np.stack([m.mocap_view.twists(own) for m, own in zip(models, e, strict=True)])
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 
 
-def estimate_damping(model: Model, runs: Sequence[ObservedRun], between: Between) -> Array:
+def estimate_damping(model: Model, runs: Sequence[ObservedRun]) -> Array:
     """How fast each velocity decays (6,) 1/s: -d nu_dot / d nu, mean over the measured states."""
     slopes = []
     for run in runs:
@@ -46,29 +43,27 @@ def estimate_damping(model: Model, runs: Sequence[ObservedRun], between: Between
         states = np.tile(states[index], (7, 1, 1))
         for i in range(6):
             states[i + 1, :, 7 + i] += NUDGE
-        found = _accelerations(model, run, between, index, states)
+        found = _accelerate(model, run, index, states)
         slopes.append([(found[0, :, i] - found[i + 1, :, i]) / NUDGE for i in range(6)])
     return np.array([float(np.mean(np.concatenate(own))) for own in zip(*slopes, strict=True)])
 
 
-def _accelerations(
-    model: Model, run: ObservedRun, between: Between, index: Array, states: Array
-) -> Array:
+def _accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:
     """Accelerations (s, k, 6) at states (s, k, 13) of some readings (k,)."""
-    ends, batch = run.ends[index], observing([model], run)
-    drive = drives([model], run, between)[0].at(np.minimum(ends, len(run.edges) - 2))
-    memory = remembered([model], run, ends).reshape(-1, 6)
+    ends, batch = run.ends[index], serve_all([model], run)
+    drive = drive_all([model], run)[0].at(np.minimum(ends, len(run.edges) - 2))
+    memory = recall([model], run, ends).reshape(-1, 6)
     return np.stack([batch.accelerations(drive, ends * run.h, own, memory) for own in states])
 
 
-def observing(models: Sequence[Model], run: ObservedRun) -> Batch:
+def serve_all(models: Sequence[Model], run: ObservedRun) -> Batch:
     """One engine for all models, at the site of a run."""
     return Batch(models, run.motion.site, _slots(models, run.wrenches))
 
 
-def drives(models: Sequence[Model], run: ObservedRun, between: Between) -> list[Drive]:
+def drive_all(models: Sequence[Model], run: ObservedRun) -> list[Drive]:
     """What the logged commands do to each model, over the integration steps of a run."""
-    return drive_models(models, run.motion.commands, run.edges, between)
+    return drive_models(models, run.motion.commands, run.edges, run.between)
 
 
 def _slots(models: Sequence[Model], known: Sequence[type[Wrench]]) -> list[type[Wrench]]:
@@ -89,11 +84,11 @@ def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts
     first = np.array([a for a, _ in run.spans], np.int64)
     steps = np.array([b - a for a, b in run.spans], np.int64)
     states = np.stack([m.mocap_view.inverse.states(run.starts) for m in models])
-    starts = Starts(states, first, steps, remembered(models, run, run.ends[first]))
+    starts = Starts(states, first, steps, recall(models, run, run.ends[first]))
     return [readings[m.mocap_view.inverse.key] for m in models], starts
 
 
-def remembered(models: Sequence[Model], run: ObservedRun, steps: Array) -> Array:
+def recall(models: Sequence[Model], run: ObservedRun, steps: Array) -> Array:
     """What the water remembers (m, s, 6) at integration steps (s,); empty if it never does."""
     true = (as_true(m, run.motion) for m in models)
     return remembered_at(models, true, run.edges, steps)

@@ -7,11 +7,12 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.actuation import ThrustPath
+from rovsim.dynamics.actuation import Between, ThrustPath
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.motion import Motion, Poses
+from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
@@ -29,8 +30,8 @@ class ObservedRun:
     `readings` (k, 13): pose NED, and mean velocity since the reading before where velocities were
     measured; `ends` (k,) integration steps at which they hold; `edges` (s+1,) those steps, s;
     `spans` pairs (first, last) of readings: the observer starts at `first`, whose state is
-    `starts` (., 13), and reads up to `last`. `wrenches` are those of the one engine that serves all
-    models of a diagnosis.
+    `starts` (., 13), and reads up to `last`. `between` two lines of the log, commands are
+    held or joined; `wrenches` are those of the one engine that serves all models of a diagnosis.
     """
 
     motion: Motion
@@ -39,6 +40,7 @@ class ObservedRun:
     edges: Array
     spans: tuple[tuple[int, int], ...]
     starts: Array
+    between: Between
     wrenches: tuple[type[Wrench], ...]
 
     @property
@@ -93,41 +95,52 @@ class ObservedRun:
         return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
-def prepare_run(stage: Stage, motion: Motion, step: float, catalogue: Catalogue) -> ObservedRun:
+def prepare_run(
+    stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue
+) -> ObservedRun:
     """A run as the observer sees it; without usable stretches it has no spans.
 
     Args:
         stage: its poses on a uniform clock, before the filter; binned recordings as they are.
         motion: the same run, filtered and differentiated.
-        step: longest integration step, s.
+        settings: the longest integration step, and how commands are held.
         catalogue: effects that may act in it.
     """
-    steps = StepGrid.over(motion, step)
-    wrenches = tuple(c for c in catalogue.values() if issubclass(c, Wrench))
-    if motion.binned:
-        return _bins(motion, steps.edges, wrenches)
-    assert isinstance(stage, Poses)
-    readings = np.hstack([stage.eta, np.zeros((len(stage.eta), 6))])
-    period = float(motion.time[1] - motion.time[0])
-    spans = [(a, b - 1) for a, b in motion.segments() if (b - a) * period > SHORTEST]
-    ends = np.arange(len(motion.time)) * steps.stride
+    grid = StepGrid.over(motion, settings.step)
+    ends, readings = _read_bins(motion, grid) if motion.binned else _read_poses(stage, grid)
+    spans = tuple((a, b - 1) for a, b in motion.segments() if _lasts(motion, a, b))
     return ObservedRun(
-        motion, readings, ends, steps.edges, tuple(spans),
-        np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13), wrenches,
-    )  # fmt: skip
+        motion=motion,
+        readings=readings,
+        ends=ends,
+        edges=grid.edges,
+        spans=spans,
+        starts=np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13),
+        between=settings.commands,
+        wrenches=tuple(c for c in catalogue.values() if issubclass(c, Wrench)),
+    )
 
 
-def _bins(motion: Motion, edges: Array, wrenches: tuple[type[Wrench], ...]) -> ObservedRun:
-    """Readings at the ends of bins: the pose there, and the mean velocity of the bin."""
-    h = edges[1] - edges[0]
-    ends = np.round((motion.time - motion.time[0]) / h).astype(int)
+def _lasts(motion: Motion, a: int, b: int) -> bool:
+    """Whether the stretch from sample or bin a to b - 1 is long enough."""
+    if motion.binned:
+        return bool(motion.time[b - 1] - motion.time[a] > SHORTEST)
+    return bool((b - a) * (motion.time[1] - motion.time[0]) > SHORTEST)
+
+
+def _read_poses(stage: Stage, grid: StepGrid) -> tuple[Array, Array]:
+    """Steps (k,) at which readings (k, 13) hold: the poses."""
+    assert isinstance(stage, Poses)
+    count = len(stage.eta)
+    return np.arange(count) * grid.stride, np.hstack([stage.eta, np.zeros((count, 6))])
+
+
+def _read_bins(motion: Motion, grid: StepGrid) -> tuple[Array, Array]:
+    """Steps (k,) at which readings (k, 13) hold: the pose there, the mean velocity of the bin."""
+    h = grid.edges[1] - grid.edges[0]
     means = np.vstack([np.zeros(6), motion.nu[:-1]])
-    readings = np.hstack([motion.eta, means])
-    spans = [
-        (a, b - 1) for a, b in motion.segments() if motion.time[b - 1] - motion.time[a] > SHORTEST
-    ]
-    starts = np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13)
-    return ObservedRun(motion, readings, ends, edges, tuple(spans), starts, wrenches)
+    ends = np.round((motion.time - motion.time[0]) / h).astype(int)
+    return ends, np.hstack([motion.eta, means])
 
 
 def blocks(runs: Sequence[ObservedRun]) -> Array:

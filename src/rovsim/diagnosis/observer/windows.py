@@ -4,14 +4,15 @@ The same number as `windows_2s` of the ladder, on the train runs, but for one th
 not filtered once more. Disturbances may push, so the same code tells what noise alone would give.
 """
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.innovations import drives, observing, remembered
+from rovsim.diagnosis.observer.innovations import drive_all, recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalised, rms
 from rovsim.measurement.signals.binned import bin_means
@@ -21,87 +22,105 @@ from rovsim.simulation.windows import find_windows
 SECONDS = 2.0  # contract, section 3
 
 
-def score_windows(
-    models: Sequence[Model], runs: Sequence[ObservedRun], between: Between = "held"
-) -> tuple[Array, list[float | None]]:
-    """Velocity RMSE (m, 6) of models in windows of 2 s, and the normalised mean of each.
+@dataclass(frozen=True, eq=False)
+class WindowErrors:
+    """Of m models: velocity RMSE (m, 6) m/s and rad/s, and its mean relative to how much it varies.
 
-    NaN for models that cannot exist.
+    NaN, or None, for models that cannot exist.
     """
+
+    rmse: Array
+    normalised: list[float | None]
+
+
+def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> WindowErrors:
+    """Errors of models in windows of 2 s."""
     able = [m for m in models if m.possible]
-    parts = [differences(able, w, between) for w in runs]
+    parts = [Windows(run).compare(able) for run in runs]
     rmse = np.full((len(models), 6), np.nan)
     rmse[[m.possible for m in models]] = [
         rms(np.concatenate([p[k] for p in parts])) for k in range(len(able))
     ]
-    return rmse, [normalised([w.motion for w in runs], row) for row in rmse]
+    return WindowErrors(rmse, [normalised([run.motion for run in runs], row) for row in rmse])
 
 
-def differences(
-    models: Sequence[Model],
-    run: ObservedRun,
-    between: Between = "held",
-    starts: Array | None = None,
-    pushes: Array | None = None,
-    seconds: float = SECONDS,
-) -> Array:
-    """Predicted minus measured velocity (m, n, 6) at the samples or bins of all windows.
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """Windows of one run, in which models are started anew at what was measured."""
 
-    Args:
-        models: to predict with.
-        run: the run.
-        between: how commands are held between two lines.
-        starts: states (m, w, 13) as measured to start from; None: the measured ones.
-        pushes: further wrench (m, k, 6) over the integration steps, N and N m.
-        seconds: length of the windows.
-    """
-    spans = list(find_windows(run.motion, seconds))
-    own = np.array([a for a, _ in spans], int)
-    if starts is None:
-        starts = np.tile(run.motion.state[own], (len(models), 1, 1))
-    paths = _simulate(models, run, spans, starts, between, pushes)
-    nu = [
-        [m.mocap_view.twists(p[:, 7:]) for p in of_model]
-        for m, of_model in zip(models, paths, strict=True)
-    ]
-    return np.array([_all_readings(run, spans, of_model) for of_model in nu])
+    run: ObservedRun
+    seconds: float = SECONDS
 
+    @cached_property
+    def spans(self) -> list[tuple[int, int]]:
+        """First sample or bin (a) of each window, and the last one (b)."""
+        return list(find_windows(self.run.motion, self.seconds))
 
-def _all_readings(run: ObservedRun, spans: Sequence[tuple[int, int]], nu: Sequence[Array]) -> Array:
-    parts = [_at_readings(run, span, v) for span, v in zip(spans, nu, strict=True)]
-    return np.concatenate([np.empty((0, 6)), *parts])
+    @property
+    def first(self) -> Array:
+        """First sample or bin (w,) of each."""
+        return np.array([a for a, _ in self.spans], int)
 
+    @property
+    def number(self) -> Array:
+        """Number (n,) of the window that each compared velocity lies in."""
+        lengths = [b - a for a, b in self.spans]
+        return np.repeat(np.arange(len(lengths)), lengths)
 
-def _simulate(
-    models: Sequence[Model],
-    run: ObservedRun,
-    spans: Sequence[tuple[int, int]],
-    starts: Array,
-    between: Between,
-    pushes: Array | None,
-) -> list[list[Array]]:
-    """States (steps + 1, 13) of each model and window, every integration step."""
-    driven = drives(models, run, between)
-    if pushes is not None:
-        driven = [drive.pushed(push) for drive, push in zip(driven, pushes, strict=True)]
-    first = np.array([run.ends[a] for a, _ in spans], np.int64)
-    steps = np.array([run.ends[b] - run.ends[a] for a, b in spans], np.int64)
-    begin = np.array([m.mocap_view.inverse.states(s) for m, s in zip(models, starts, strict=True)])
-    memory = remembered(models, run, first)
-    batch = observing(models, run)
-    return batch.trajectories(driven, Starts(begin, first, steps, memory), run.h)
+    @property
+    def compared(self) -> Array:
+        """Samples or bins (n,) at which velocities are compared: not the sample it starts from."""
+        return np.concatenate([np.empty(0, int), *(self._compared(span) for span in self.spans)])
 
+    def _compared(self, span: tuple[int, int]) -> Array:
+        shift = 0 if self.run.motion.binned else 1
+        return np.arange(span[0] + shift, span[1] + shift)
 
-def _at_readings(run: ObservedRun, span: tuple[int, int], nu: Array) -> Array:
-    """Predicted minus measured velocity at the samples or bins of one window."""
-    a, b = span
-    at, measured = run.ends[a : b + 1] - run.ends[a], run.motion.nu[readings(run, span)]
-    if not run.motion.binned:
-        return nu[at[1:]] - measured
-    return bin_means(np.arange(len(nu), dtype=float), nu, at) - measured
+    def compare(
+        self, models: Sequence[Model], starts: Array | None = None, pushes: Array | None = None
+    ) -> Array:
+        """Predicted minus measured velocity (m, n, 6).
 
+        Args:
+            models: to predict with.
+            starts: states (m, w, 13) as measured to start from; None: the measured ones.
+            pushes: further wrench (m, k, 6) over the integration steps, N and N m.
+        """
+        if starts is None:
+            starts = np.tile(self.run.motion.state[self.first], (len(models), 1, 1))
+        paths = self._simulate(models, starts, pushes)
+        each = zip(models, paths, strict=True)
+        nu = [[m.mocap_view.twists(path[:, 7:]) for path in of_model] for m, of_model in each]
+        return np.array([self._subtract_measured(of_model) for of_model in nu])
 
-def readings(run: ObservedRun, span: tuple[int, int]) -> slice:
-    """The samples or bins at which a window is compared: it starts from its first sample."""
-    first = 0 if run.motion.binned else 1
-    return slice(span[0] + first, span[1] + first)
+    def _simulate(
+        self, models: Sequence[Model], starts: Array, pushes: Array | None
+    ) -> list[list[Array]]:
+        """States (steps + 1, 13) of each model and window, every integration step."""
+        run = self.run
+        drives = drive_all(models, run)
+        if pushes is not None:
+            drives = [drive.pushed(push) for drive, push in zip(drives, pushes, strict=True)]
+        first = np.array([run.ends[a] for a, _ in self.spans], np.int64)
+        steps = np.array([run.ends[b] - run.ends[a] for a, b in self.spans], np.int64)
+        each = zip(models, starts, strict=True)
+        begin = np.array([m.mocap_view.inverse.states(state) for m, state in each])
+        begins = Starts(begin, first, steps, recall(models, run, first))
+        return serve_all(models, run).trajectories(drives, begins, run.h)
+
+    def _subtract_measured(self, nu: Sequence[Array]) -> Array:
+        """Differences (n, 6) of velocities (steps + 1, 6) of each window."""
+        each = zip(self.spans, nu, strict=True)
+        parts = [self._at_readings(span, v) - self._measured(span) for span, v in each]
+        return np.concatenate([np.empty((0, 6)), *parts])
+
+    def _measured(self, span: tuple[int, int]) -> Array:
+        return self.run.motion.nu[self._compared(span)]
+
+    def _at_readings(self, span: tuple[int, int], nu: Array) -> Array:
+        """Velocities at the samples, or their means over the bins, of one window."""
+        a, b = span
+        at = self.run.ends[a : b + 1] - self.run.ends[a]
+        if not self.run.motion.binned:
+            return nu[at[1:]]
+        return bin_means(np.arange(len(nu), dtype=float), nu, at)

@@ -92,8 +92,7 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
 
 def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Model]) -> Array:
     """Whether some axis' error in 2 s windows is noticeably larger with each other model (m,)."""
-    between, runs = workspace.bank.between, workspace.bank.runs
-    rmse, _ = score_windows([found.hypothesis.model, *without], runs, between)
+    rmse = score_windows([found.hypothesis.model, *without], workspace.bank.runs).rmse
     return np.max(rmse[1:] / rmse[0], axis=1) - 1.0 > workspace.settings.relevant
 
 

@@ -15,7 +15,6 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, ONE_GAIN, free_terms
-from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
@@ -25,7 +24,7 @@ GAINS = Bounds(0.5, 2.0)
 ROUNDS = 3  # the filters suit the noise of the round before
 
 
-def refit_nominal(base: Model, train: Sequence[ObservedRun], between: Between) -> Model:
+def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
     """The base with its own parameters at their most likely values on the train runs.
 
     An axis that no run moved keeps its coefficients; with too little to judge all of them stay.
@@ -35,7 +34,7 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun], between: Between) -
         return base.called("refitted")
     here, noise = _start(base, usable.moved), FIRST_NOISE
     for _ in range(ROUNDS):
-        found = fit(here, FilterBank.design(usable.runs, base, noise, between), noise)
+        found = fit(here, FilterBank.design(usable.runs, base, noise), noise)
         here, noise = _hold(found.hypothesis), found.noise
     return here.model.called("refitted")
 

@@ -13,7 +13,6 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
-from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
 
 
@@ -37,16 +36,16 @@ class Ranked:
 
 
 def rank_selected(
-    found: Fit, rivals: Sequence[Rival], runs: Sequence[ObservedRun], between: Between
+    found: Fit, rivals: Sequence[Rival], runs: Sequence[ObservedRun]
 ) -> list[Selected]:
     """Selected effects, the one that removes most error first, then the next on top of it."""
     left, order, errors = list(range(len(found.hypothesis.terms))), [], []
     model = found.hypothesis.base
-    start = _error([model], runs, between)[0]
+    start = _score([model], runs)[0]
     now = start
     while left:
         tried = [model + found.hypothesis.terms[i].effect for i in left]
-        after = _error(tried, runs, between)
+        after = _score(tried, runs)
         best = int(np.argmin(after))
         order.append(left.pop(best))
         errors.append((now - after[best]) / start)
@@ -59,8 +58,9 @@ def rank_selected(
     ]
 
 
-def _error(models: Sequence[Model], runs: Sequence[ObservedRun], between: Between) -> Array:
-    return np.array([np.nan if e is None else e for e in score_windows(models, runs, between)[1]])
+def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
+    errors = score_windows(models, runs).normalised
+    return np.array([np.nan if e is None else e for e in errors])
 
 
 def _std(found: Fit, i: int) -> dict[str, float]:
@@ -95,9 +95,9 @@ def rank_alone(
     gain = np.array([0.5 * (workspace.score(one) - workspace.score(nothing)) for one in fits])
     weight = np.exp(gain - np.max(gain, initial=0.0))
     share = weight / (weight.sum() + np.exp(-np.max(gain, initial=0.0)))
-    bank, base = workspace.bank, nothing.hypothesis.base
+    base = nothing.hypothesis.base
     models = [base, *(base + term.effect for term in terms)]
-    error = _error(models, bank.runs, bank.between)
+    error = _score(models, workspace.bank.runs)
     sure = np.append(share, np.zeros(len(terms) - len(fits)))
     return [
         Ranked(term, float(max(0.0, 1.0 - e / error[0])), float(p))

@@ -20,11 +20,9 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.windows import differences, readings
+from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, descend, judge
-from rovsim.dynamics.actuation import Between
 from rovsim.dynamics.model import Model
-from rovsim.simulation.windows import find_windows
 
 SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
 SMALLEST = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count
@@ -35,31 +33,35 @@ class Replays:
     """Errors of velocity and acceleration in windows, each in units of how much it varies."""
 
     runs: tuple[ObservedRun, ...]
-    between: Between
+
+    @cached_property
+    def windows(self) -> list[Windows]:
+        """Those of each run."""
+        return [Windows(run, SECONDS) for run in self.runs]
 
     @cached_property
     def spread(self) -> tuple[Array, Array]:
         """Standard deviations (6,) of the measured velocity and acceleration."""
-        nu = np.concatenate([w.motion.nu[w.motion.usable] for w in self.runs])
-        nu_dot = np.concatenate([w.motion.nu_dot[w.motion.usable] for w in self.runs])
+        nu = np.concatenate([run.motion.nu[run.motion.usable] for run in self.runs])
+        nu_dot = np.concatenate([run.motion.nu_dot[run.motion.usable] for run in self.runs])
         return np.maximum(np.std(nu, axis=0), SMALLEST), np.maximum(
             np.nanstd(nu_dot, axis=0), SMALLEST
         )
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Scaled errors (m, 6, n) of each run; NaN where a model cannot move at all."""
-        counts = [len(_window(run)) + int(np.sum(_follows(run))) for run in self.runs]
+        counts = [len(own.number) + int(np.sum(_follows(own))) for own in self.windows]
         return [
-            evaluate_possible(models, count, partial(self._of_run, run))
-            for run, count in zip(self.runs, counts, strict=True)
+            evaluate_possible(models, count, partial(self._compare, own))
+            for own, count in zip(self.windows, counts, strict=True)
         ]
 
-    def _of_run(self, run: ObservedRun, models: Sequence[Model]) -> Array:
+    def _compare(self, windows: Windows, models: Sequence[Model]) -> Array:
         velocity, acceleration = self.spread
-        nu = differences(models, run, self.between, seconds=SECONDS)
-        step = np.diff(nu, axis=1) / np.diff(run.motion.time[_reading(run)])[:, None]
-        both = [nu / velocity, step[:, _follows(run)] / acceleration]
-        return soft(np.concatenate(both, axis=1)).swapaxes(1, 2)
+        nu, time = windows.compare(models), windows.run.motion.time[windows.compared]
+        step = np.diff(nu, axis=1) / np.diff(time)[:, None]
+        both = [nu / velocity, step[:, _follows(windows)] / acceleration]
+        return soften(np.concatenate(both, axis=1)).swapaxes(1, 2)
 
     def linearise(self, at: Hypothesis) -> Linearised:
         """Errors of a hypothesis, and how they change with its parameters."""
@@ -69,45 +71,33 @@ class Replays:
         """Errors (..., 6, n) of all runs."""
         return np.concatenate(e, axis=-1)
 
-    def window(self) -> Array:
+    def number(self) -> Array:
         """Number (n,) of the window that each error lies in, over all runs."""
         parts, count = [], 0
-        for run in self.runs:
-            own = _window(run) + count
-            parts += [own, own[1:][_follows(run)]]
+        for windows in self.windows:
+            own = windows.number + count
+            parts += [own, own[1:][_follows(windows)]]
             count = int(own.max(initial=count - 1)) + 1
         return np.concatenate(parts)
 
 
-def _window(run: ObservedRun) -> Array:
-    """Number (n,) of the window of each velocity."""
-    lengths = [b - a for a, b in find_windows(run.motion, SECONDS)]
-    return np.repeat(np.arange(len(lengths)), lengths)
-
-
-def _reading(run: ObservedRun) -> Array:
-    """Sample or bin (n,) of each velocity."""
-    every, spans = np.arange(len(run.motion.time)), find_windows(run.motion, SECONDS)
-    return np.concatenate([np.empty(0, int), *(every[readings(run, span)] for span in spans)])
-
-
-def _follows(run: ObservedRun) -> Array:
+def _follows(windows: Windows) -> Array:
     """Whether each velocity but the first (n-1,) lies in the same window as the one before."""
-    return np.diff(_window(run)) == 0
+    return np.diff(windows.number) == 0
 
 
-def soft(x: Array) -> Array:
+def soften(x: Array) -> Array:
     """Errors whose squares grow like |x| where they are large (soft L1: Triggs et al. 2000)."""
     return np.sign(x) * np.sqrt(2.0 * (np.sqrt(1.0 + x**2) - 1.0))
 
 
 def fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
-    evidence = Replays(bank.runs, bank.between)
+    evidence = Replays(bank.runs)
     seen = descend(found.hypothesis, evidence, found.noise, REACH)
     covariance = _sandwich(
         evidence.whiten(seen.e, found.noise), evidence.whiten(seen.J, found.noise),
-        evidence.window(),
+        evidence.number(),
     )  # fmt: skip
     fresh = bank.redesign(seen.at.model, found.noise)
     again = judge(fresh.linearise(seen.at), fresh, found.noise)
