@@ -1,1 +1,11 @@
-"""Which physical effect is missing: observe, search, check, say (see diagnose.py)."""
+"""Which physical effects a model lacks, how sure that is, and what is left unexplained.
+
+observer      the model runs along the train runs, corrected by a filter: what it could not foresee
+selection     which effects explain that: candidates, search, fits, what else they could be
+checks        what is asked of the answer: structure left, imitation, what is known, noise floor
+procedure     these, in order
+advice        what to record next
+result        what is written of it
+of_campaign   a campaign in, all that is reported out; test runs are opened here, once
+apply         a model with the effects that were found
+"""

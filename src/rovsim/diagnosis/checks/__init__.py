@@ -1,1 +1,8 @@
-"""What is asked of an answer: is structure left, is a name imitation, what is known."""
+"""What is asked of an answer.
+
+imitation            does a name stand for a law that the catalogue does not have?
+residual_structure   does what is left vary with something? (residual, regressors,
+                     spectral_lines, sudden_pushes)
+identifiability      which values are known only together?
+noise_floor          what would a perfect model score?
+"""

@@ -1,1 +1,14 @@
-"""A model that runs along a measurement, corrected by a filter: what it could not foresee."""
+"""A model that runs along a measurement, corrected by a filter: what it could not foresee.
+
+observed_run    a run as read, before any filter
+usable_runs     those with something to observe, and whether that is enough
+noise           what no model predicts: noise of the readings, a disturbance with memory
+kalman          the steady filters that suit it, axis by axis
+innovations     many models on one run, in one compiled call
+filter_bank     all runs, each with its filters: innovations, whitened
+hypothesis      a base model and terms, whose parameters may be free
+evidence        errors of a hypothesis, and how they change with its parameters
+least_squares   any of many columns, from their inner products
+windows         errors in windows of 2 s: what users see of a model
+unlisted_drag   laws that the catalogue does not have, but that its drag imitates
+"""

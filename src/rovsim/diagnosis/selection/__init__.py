@@ -1,1 +1,16 @@
-"""Which effects are missing: candidates, fits, search, and what is held out from it."""
+"""Which effects explain what a model could not foresee.
+
+candidates         every effect of the catalogue, from each of its starts
+sensitivities      how each would change the innovations, to first order
+proposals          what each promises, and what chance would seem to gain
+workspace          the runs, the columns, one noise for all; what is fitted already
+gauss_newton       the most likely parameters, and their spread
+forward_selection  add, refit, swap, prune
+rivals             where that ended, and what else the effects could be
+held_out           what does not help where it was not fitted goes
+joint_fit          much is missing at once: all that could be wrong, then pruned
+nominal_terms      what the vehicle file states, as terms that may be wrong
+nominal_refit      the same, fitted alone: a step of the ladder to compare with
+replay_fit         values that replay best, where structure is left
+ranking            each effect's worth, in order
+"""
