@@ -82,7 +82,7 @@ def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
     J = bank.whiten(found.seen.J, found.noise)
     white = _split_by_run(bank.whiten(found.seen.e, found.noise), bank.runs)
     path, tunings = found.hypothesis.model.thrust_path, bank.tune(found.noise)
-    unknown = [run.vague(path) for run in bank.runs]
+    unknown = [run.find_lost_commands(path) for run in bank.runs]
     residuals = []
     for i, axis in enumerate(AXES):
         filters = tuple(tuning.filters[i] for tuning in tunings)

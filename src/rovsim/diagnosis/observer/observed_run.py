@@ -80,7 +80,7 @@ class ObservedRun:
             kept[first:last] = self.time[first:last] > self.ends[a] * self.h + SETTLING
         return kept
 
-    def vague(self, path: ThrustPath) -> Array:
+    def find_lost_commands(self, path: ThrustPath) -> Array:
         """Begins and ends (g, 2) of lost lines of the command log over which commands jumped.
 
         `path` says when a logged command takes effect.
@@ -143,7 +143,7 @@ def _read_bins(motion: Motion, grid: StepGrid) -> tuple[Array, Array]:
     return ends, np.hstack([motion.eta, means])
 
 
-def blocks(runs: Sequence[ObservedRun]) -> Array:
+def number_blocks(runs: Sequence[ObservedRun]) -> Array:
     """Number of the block of some 10 s that each settled innovation lies in, over all runs."""
     parts, count = [np.arange(0)], 0
     for one in runs:

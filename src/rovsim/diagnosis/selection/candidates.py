@@ -35,12 +35,12 @@ def list_candidates(runs: Sequence[ObservedRun], catalogue: Catalogue) -> list[C
     for cls in catalogue.values():
         for values in cls.starts_at(site):
             start = cls(**values)
-            if _possible(start, runs):
+            if _can_act(start, runs):
                 found.append(Candidate(cls, start, cls.free_at(values)))
     return found
 
 
-def _possible(start: Effect, runs: Sequence[ObservedRun]) -> bool:
+def _can_act(start: Effect, runs: Sequence[ObservedRun]) -> bool:
     """Whether all runs have what the effect needs."""
     try:
         for one in runs:

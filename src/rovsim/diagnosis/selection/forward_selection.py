@@ -22,7 +22,7 @@ CLOSE = 0.2  # of the best predicted gain: less has never turned out best after 
 def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
     """Without free parameters that are not worth their price, one at a time."""
     while len(current.hypothesis.x):
-        smaller = _weakest_dropped(workspace, current)
+        smaller = _drop_weakest(workspace, current)
         if smaller is None:
             return current
         trial = workspace.fit(smaller)
@@ -32,7 +32,7 @@ def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
     return current
 
 
-def _weakest_dropped(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
+def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     """The hypothesis without its least certain parameter that starts from absence."""
     h, k, weakest, least = current.hypothesis, 0, None, 2.0 * workspace.price
     for i, term in enumerate(h.terms):
@@ -40,17 +40,17 @@ def _weakest_dropped(workspace: SearchWorkspace, current: Fit) -> Hypothesis | N
             z = (h.x[k] - p.default / p.scale) / max(current.std[k], 1e-12)
             k += 1
             if z**2 < least:
-                smaller = _without_parameter(h, i, p.name)
+                smaller = _drop_parameter(h, i, p.name)
                 weakest, least = smaller, z**2
     return weakest
 
 
-def _without_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
+def _drop_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
     weak = [(k, n) == (i, name) for k, term in enumerate(h.terms) for n in term.free]
-    return without_parameters(h, np.array(weak))
+    return drop_parameters(h, np.array(weak))
 
 
-def without_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
+def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
     """The hypothesis without some of its free parameters (k,), and without terms that have none.
 
     An effect that is not absent at its defaults stays or goes as a whole: it goes with the last.
@@ -65,21 +65,21 @@ def without_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
     return Hypothesis(h.base, tuple(terms))
 
 
-def promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
+def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
     """The proposals that should gain something."""
     return [p for p in workspace.propose(current) if p.gain > 0.0]
 
 
-def close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
+def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
     """The first proposals, as far as they could turn out best once refitted."""
     return [p for p in ranked[:trials] if p.gain > CLOSE * ranked[0].gain]
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
     """The best single addition, refitted and pruned; None when none beats chance and matters."""
-    left = promising(workspace, current)
+    left = list_promising(workspace, current)
     for _ in range(ROUNDS):
-        trying = close(left, workspace.settings.trials)
+        trying = keep_close(left, workspace.settings.trials)
         left = [p for p in left if p not in trying]
         tried = [workspace.fit(current.hypothesis.with_term(p.term)) for p in trying]
         for best in sorted(tried, key=workspace.score, reverse=True):
@@ -101,7 +101,7 @@ def contest(workspace: SearchWorkspace, current: Fit, trials: int) -> tuple[Fit,
     rivals = []
     for i, term in enumerate(current.hypothesis.terms):
         rest = workspace.fit(current.hypothesis.without(i))
-        for p in _others(workspace, rest, term.id, trials):
+        for p in _list_others(workspace, rest, term.id, trials):
             trial = workspace.fit(rest.hypothesis.with_term(p.term))
             deficit = workspace.score(current) - workspace.score(trial)
             if deficit < -SWAP:
@@ -110,12 +110,12 @@ def contest(workspace: SearchWorkspace, current: Fit, trials: int) -> tuple[Fit,
     return current, rivals
 
 
-def _others(workspace: SearchWorkspace, rest: Fit, name: str, trials: int) -> list[Proposal]:
+def _list_others(workspace: SearchWorkspace, rest: Fit, name: str, trials: int) -> list[Proposal]:
     """Other names for what a term took: one where it could win, or several to report."""
-    ranked = promising(workspace, rest)
+    ranked = list_promising(workspace, rest)
     if trials == 1:
-        return [p for p in close(ranked, 2) if p.term.id != name][:1]
-    return close([p for p in ranked if p.term.id != name], trials)
+        return [p for p in keep_close(ranked, 2) if p.term.id != name][:1]
+    return keep_close([p for p in ranked if p.term.id != name], trials)
 
 
 def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import blocks
+from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.rivals import Selection
@@ -17,7 +17,7 @@ FOLDS = 6
 
 
 def drop_idle(selection: Selection) -> Selection:
-    """Without effects that do not help on held-out blocks, or that no user would see."""
+    """Without effects that do not help on held-out number_blocks, or that no user would see."""
     workspace, found = selection.workspace, selection.found
     while found.hypothesis.terms:
         fewer = [found.hypothesis.without(i) for i in range(len(found.hypothesis.terms))]
@@ -40,27 +40,27 @@ def cross_validate(found: Fit, smaller: Fit, bank: FilterBank) -> float:
     Both are fitted to all blocks; each fold's parameters are theirs, less what that fold made of
     them, to first order.
     """
-    fold = blocks(bank.runs) % FOLDS
-    costs = [_held_out(one, bank, found.noise, fold) for one in (smaller, found)]
+    fold = number_blocks(bank.runs) % FOLDS
+    costs = [_sum_held_out(one, bank, found.noise, fold) for one in (smaller, found)]
     return costs[0] - costs[1]
 
 
-def _held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> float:
+def _sum_held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> float:
     """Sum of the squared innovations of all blocks, each with the others' parameters."""
     rows = bank.whiten(one.seen.rows, noise)
-    parts = [_products(rows[..., fold == k]) for k in np.unique(fold)]
+    parts = [_multiply(rows[..., fold == k]) for k in np.unique(fold)]
     total = sum(parts)
-    return sum(_cost(part, _step(total - part)) for part in parts)
+    return sum(_cost_at(part, _solve_step(total - part)) for part in parts)
 
 
-def _products(rows: Array) -> Array:
+def _multiply(rows: Array) -> Array:
     return inner_products(rows.reshape(len(rows), -1))
 
 
-def _step(M: Array) -> Array:
+def _solve_step(M: Array) -> Array:
     """Best step (k,) of all parameters on these products."""
     return -solve(M[1:, 1:], M[1:, 0])
 
 
-def _cost(M: Array, x: Array) -> float:
+def _cost_at(M: Array, x: Array) -> float:
     return float(M[0, 0] + 2.0 * M[1:, 0] @ x + x @ M[1:, 1:] @ x)

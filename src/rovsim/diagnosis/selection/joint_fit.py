@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.forward_selection import without_parameters
+from rovsim.diagnosis.selection.forward_selection import drop_parameters
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, free_terms
 from rovsim.diagnosis.selection.rivals import Rival, Selection
@@ -36,10 +36,10 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
         moved: axes about which something can be said.
     """
     kind = workspace.bank.runs[0].motion.commands.kind
-    tried = [_joint(workspace, start) for start in _starts(base, moved, kind)]
+    tried = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
     tried.sort(key=lambda one: one[0].score(one[1]), reverse=True)
     best, found = tried[0]
-    found = _prune(best, found)
+    found = _prune_together(best, found)
     named = {term.id for term in found.hypothesis.terms}
     rivals = tuple(
         Rival(term.id, own.id, best.score(found) - other.score(fit))
@@ -51,7 +51,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
     return Selection(best, found, rivals, complete=False)
 
 
-def _starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
+def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
     common = free_terms(base, moved, ALWAYS)
     found = [(*common, *free_terms(base, moved, ACTUATION[:1]))]
     if kind == "demand":
@@ -60,7 +60,7 @@ def _starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
     return [Hypothesis(base, terms) for terms in found]
 
 
-def _joint(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspace, Fit]:
+def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspace, Fit]:
     """Fitted, with filters and noise that follow."""
     found = workspace.fit(start, REACH)
     for _ in range(ROUNDS):
@@ -69,20 +69,20 @@ def _joint(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspa
     return workspace, found
 
 
-def _prune(workspace: SearchWorkspace, found: Fit) -> Fit:
+def _prune_together(workspace: SearchWorkspace, found: Fit) -> Fit:
     """Without all parameters that are not worth their price, until all are."""
     while True:
         h = found.hypothesis
-        weak = _weak(found, workspace.price)
+        weak = _find_weak(found, workspace.price)
         if not weak.any():
             return found
-        smaller = workspace.fit(without_parameters(h, weak), REACH)
+        smaller = workspace.fit(drop_parameters(h, weak), REACH)
         if workspace.score(smaller) < workspace.score(found):
             return found
         found = smaller
 
 
-def _weak(found: Fit, price: float) -> Array:
+def _find_weak(found: Fit, price: float) -> Array:
     """Which free parameters (k,) are not worth their price; those of a loop only together."""
     h = found.hypothesis
     away = np.array([p.default / p.scale for t in h.terms for p in t.parameters])

@@ -39,22 +39,20 @@ def rank_selected(
     found: Fit, rivals: Sequence[Rival], runs: Sequence[ObservedRun]
 ) -> list[Selected]:
     """Selected effects, the one that removes most error first, then the next on top of it."""
-    left, order, errors = list(range(len(found.hypothesis.terms))), [], []
-    model = found.hypothesis.base
+    terms, model = found.hypothesis.terms, found.hypothesis.base
+    left, order, gains = list(range(len(terms))), [], []
     start = _score([model], runs)[0]
     now = start
     while left:
-        tried = [model + found.hypothesis.terms[i].effect for i in left]
+        tried = [model + terms[i].effect for i in left]
         after = _score(tried, runs)
         best = int(np.argmin(after))
         order.append(left.pop(best))
-        errors.append((now - after[best]) / start)
+        gains.append(float((now - after[best]) / start))
         model, now = tried[best], after[best]
     return [
-        Selected(
-            found.hypothesis.terms[i], _std(found, i), float(gain), _probability(found, i, rivals)
-        )
-        for i, gain in zip(order, errors, strict=True)
+        Selected(terms[i], _spread(found, i), gain, _share_of_odds(found, i, rivals))
+        for i, gain in zip(order, gains, strict=True)
     ]
 
 
@@ -63,7 +61,7 @@ def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
     return np.array([np.nan if e is None else e for e in errors])
 
 
-def _std(found: Fit, i: int) -> dict[str, float]:
+def _spread(found: Fit, i: int) -> dict[str, float]:
     """Standard deviations by name; within its grain a value could be anywhere (uniform: / √12)."""
     term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
     return {
@@ -72,7 +70,7 @@ def _std(found: Fit, i: int) -> dict[str, float]:
     }
 
 
-def _probability(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
+def _share_of_odds(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
     """Of this name among all that were tried in its place, from their likelihoods."""
     name = found.hypothesis.terms[i].id
     odds = sum(np.exp(-0.5 * min(r.deficit, 700.0)) for r in rivals if r.instead_of == name)
