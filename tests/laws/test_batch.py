@@ -7,9 +7,10 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
-from rovsim.diagnosis.observer.innovations import observing
+from rovsim.diagnosis.observer.innovations import drive_all, serve_all
 from rovsim.diagnosis.observer.observed_run import prepare_run
-from rovsim.diagnosis.observer.windows import differences
+from rovsim.diagnosis.observer.windows import Windows
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.tether import TetherTension
@@ -71,8 +72,7 @@ def by_heun():
 
 def by_observer():
     run = observed()
-    drives = drive_models([WORLD], RUN.commands, run.edges, "held")
-    batch = observing([WORLD], run)
+    drives, batch = drive_all([WORLD], run), serve_all([WORLD], run)
     return batch.accelerations(drives[0].at([0]), np.zeros(1), START[None], np.empty((0, 6)))[0]
 
 
@@ -80,7 +80,7 @@ def by_windows():
     """The windows of the diagnosis, whose first sample is one step of 10 ms away."""
     path = simulate(WORLD, RUN, [(0, 1, START)], ReplaySettings())[0]
     mean = (path[1, 7:] - START[7:]) / 0.01
-    error = differences([WORLD], observed(), seconds=0.5)[0, 0]
+    error = Windows(observed(), 0.5).compare([WORLD])[0, 0]
     return expected() + (error + RUN.nu[1] - START[7:]) / 0.01 - mean
 
 
@@ -94,7 +94,7 @@ def of_start(count):
 
 def observed():
     poses = Poses(RUN.run, RUN.site, RUN.time, RUN.eta, RUN.usable, RUN.commands)
-    return prepare_run(poses, RUN, 0.01)
+    return prepare_run(poses, RUN, ReplaySettings(), built_in())
 
 
 @pytest.mark.parametrize(
@@ -109,9 +109,9 @@ def test_models_side_by_side_move_as_each_would_alone():
     """In one engine for all their wrench effects, whoever else is there."""
     worlds = [model(), WORLD, model(ConstantWrench(surge=3.0)), model(QuadraticDamping(surge=5.0))]
     run, first = observed(), np.zeros(1, np.int64)
-    drives = drive_models(worlds, RUN.commands, run.edges, "held")
+    drives = drive_all(worlds, run)
     starts = Starts(np.tile(START, (len(worlds), 1, 1)), first, first + 100)
-    together = observing(worlds, run).trajectories(drives, starts, run.h)
+    together = serve_all(worlds, run).trajectories(drives, starts, run.h)
     for world, paths in zip(worlds, together, strict=True):
         alone = simulate(world, RUN, [(0, 100, START)], ReplaySettings())[0]
         np.testing.assert_allclose(paths[0], alone, rtol=0, atol=1e-12)
