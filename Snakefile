@@ -3,15 +3,16 @@
 import sys
 
 from rovsim.application.leave_one_run_out import LeaveOneRunOut
-from rovsim.core.errors import RovsimError
 from rovsim.application.study import Study
+from rovsim.core.errors import RovsimError
 
 study = Study(config)
 folds = LeaveOneRunOut(study)
 try:
-    config["effects_file"] = [str(path) for path in study.catalogue.files]
-    study.on_effects
-    folds.targets
+    study.check()
+    folds.check()
+    # What the jobs are told: also files of effects that the configuration names.
+    config["effects_file"] = [str(path) for path in study.settings.effect_files]
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)

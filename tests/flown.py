@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.application.loading import campaign_vehicle
+from rovsim.application.pipeline.recordings import load_campaign_vehicle
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.catalogue import built_in
@@ -23,4 +23,4 @@ def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[O
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
     runs = Runs({"a": motion}, {"a": stage}).prepare("train", ReplaySettings(), built_in())
-    return nominal(campaign_vehicle(campaign)), runs
+    return nominal(load_campaign_vehicle(campaign)), runs

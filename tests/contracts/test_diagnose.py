@@ -134,6 +134,6 @@ def test_a_step_without_runs_has_every_key_and_no_number():
 
 
 def test_the_workbench_finds_what_the_command_finds(campaign, diagnosed, tmp_path):
-    found = tasks.find(compose([f"campaign='{campaign}'"]), tmp_path / "diagnosis.json")
+    found = tasks.diagnose_into(compose([f"campaign='{campaign}'"]), tmp_path / "diagnosis.json")
     assert found == read_json(tmp_path / "diagnosis.json")
     assert found == read_json(diagnosed / "found" / "diagnosis.json")

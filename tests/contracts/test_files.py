@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import yaml
 
-from rovsim.application.loading import results_folder
+from rovsim.application.settings import CommandSettings
+from rovsim.apps.cli.output import choose_folder
 from rovsim.core.errors import BadInput
 from rovsim.core.files import (
     appearing,
@@ -83,8 +84,9 @@ def test_a_place_that_cannot_be_written_is_said(tmp_path):
         with pytest.raises(BadInput, match="cannot be written"):
             write_json(path, {})
     with pytest.raises(BadInput, match=r"file: is not a folder"):
-        results_folder(tmp_path / "file" / "deeper" / "out")
-    assert results_folder(tmp_path / "not" / "yet") == tmp_path / "not" / "yet"
+        choose_folder(CommandSettings(out=str(tmp_path / "file" / "deeper" / "out")), "")
+    new = CommandSettings(out=str(tmp_path / "not" / "yet"))
+    assert choose_folder(new, "") == tmp_path / "not" / "yet"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "folder"]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim.application.loading import measured
+from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import compose
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import hiding
@@ -23,7 +23,7 @@ MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 def test_a_tank_that_hides_it_gives_it_back(name, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
     settings = compose([f"campaign='{tmp_path / 'raw'}'"])
-    data = measured(settings)
+    data = measure(open_campaign(settings.campaign), settings.signals)
     base, runs = nominal(data.vehicle), data.runs.prepare("train", settings.replay, built_in())
     bank = FilterBank.design(runs, base, FIRST_NOISE)
     hidden = build_effect(flown.hidden[0], built_in()).given()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from chores import counting, dying, failing
-from rovsim.application.pipeline import compare
+from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import charts, path, tasks
@@ -78,9 +78,9 @@ def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench
     drawn = []
     monkeypatch.setattr("rovsim.reporting.html.folder.present", lambda *given: drawn.append(given))
     here = Workbench(bench.settings, built_in(), bench.data, dict(bench.models), dict(bench.paths))
-    file = tasks.learn(here.only("nominal"), here.out / "knn_6dof.yaml")
+    file = tasks.train_into(here.only("nominal"), here.out / "knn_6dof.yaml")
     here.add(read_model(file, built_in()), file)
-    page = tasks.tell(here.only(*here.models), {"ladder": here.ladder()}, here.out)
+    page = tasks.report_into(here.only(*here.models), {"ladder": here.ladder()}, here.out)
     assert page.name == "report.html"
     assert len(drawn) == 1
     comparison = read_json(here.out / "comparison.json")["models"]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim.application.loading import campaign_vehicle
+from rovsim.application.pipeline.recordings import load_campaign_vehicle
 from rovsim.dynamics.model import nominal
 from rovsim.evaluation.scores import errors, pooled, rms, score
 from rovsim.learning.pairs import sample_run
@@ -17,7 +17,7 @@ from worlds import SHARED, needed
 
 def test_the_nominal_model_explains_the_empty_practice_tank():
     campaign = load_campaign(needed(SHARED / "practice" / "null-2"))
-    model, found = nominal(campaign_vehicle(campaign)), []
+    model, found = nominal(load_campaign_vehicle(campaign)), []
     for run in campaign.runs:
         if run.split == "test":
             motion = clean(read_run(campaign, run.id)[0], SignalSettings())
@@ -34,7 +34,7 @@ def binned():
 
     campaign = load_campaign(Path(__file__).parents[2] / "campaigns" / "kth_tank_2025")
     motion = clean(read_run(campaign, "115750")[0], SignalSettings())
-    return nominal(campaign_vehicle(campaign)), motion
+    return nominal(load_campaign_vehicle(campaign)), motion
 
 
 def test_bins_are_compared_as_bins(binned):

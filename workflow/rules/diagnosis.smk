@@ -20,7 +20,7 @@ rule diagnose:
     priority: 10  # most of the study waits for it
     params:
         settings=study.section("search", "signals", "replay", "seed"),
-        code=study.code("diagnosis.of_campaign", "dynamics.effects"),
+        code=study.code("application.pipeline.diagnosis"),
     script:
         "../scripts/diagnose.py"
 
@@ -28,7 +28,7 @@ rule diagnose:
 rule add:
     "The nominal model and the effects that were found."
     input:
-        f"{R}/diagnosis.json",
+        diagnosis=f"{R}/diagnosis.json",
     output:
         f"{R}/models/effects/model.yaml",
     log:
@@ -36,7 +36,7 @@ rule add:
     benchmark:
         f"{R}/benchmarks/add.tsv"
     params:
-        code=study.code("diagnosis.apply", "dynamics.effects"),
+        code=study.code("application.pipeline.models"),
     script:
         "../scripts/add.py"
 
@@ -53,7 +53,7 @@ rule refit:
     benchmark:
         f"{R}/benchmarks/refit.tsv"
     params:
-        settings=study.section("replay"),
-        code=study.code("diagnosis.selection.nominal_refit", "diagnosis.of_campaign", "dynamics.effects"),
+        settings=study.section("replay")["replay"],
+        code=study.code("application.pipeline.refit"),
     script:
         "../scripts/refit.py"

@@ -39,7 +39,7 @@ use rule diagnose as diagnose_fold with:
 
 use rule add as add_fold with:
     input:
-        f"{F}/diagnosis.json",
+        diagnosis=f"{F}/diagnosis.json",
     output:
         f"{F}/models/effects/model.yaml",
     log:
@@ -68,7 +68,7 @@ use rule train as train_fold with:
             run=folds.train_runs(w.fold, w.control),
         ),
         campaign=lambda w: study.campaign_file,
-        base=lambda w: (
+        model=lambda w: (
             [f"{R}/folds/{w.fold}/models/effects/model.yaml"] if w.base else []
         ),
     output:
@@ -98,7 +98,7 @@ rule fold:
         f"{F}/benchmarks/fold.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("evaluation.scores", "dynamics.effects"),
+        code=study.code("application.pipeline.held_out"),
     script:
         "../scripts/fold.py"
 
@@ -121,7 +121,7 @@ if folds.published:
             f"{R}/benchmarks/against_published.tsv"
         params:
             runs=folds.runs,
-            code=study.code("evaluation.held_out.published_errors", "reporting.tables"),
+            code=study.code("application.pipeline.held_out"),
         script:
             "../scripts/against_published.py"
 
@@ -142,6 +142,6 @@ if folds.pitfalls:
         params:
             settings=study.section("replay", "signals"),
             learners={kind: study.learner(kind) for kind in ("knn", "gp")},
-            code=study.code("evaluation.held_out.pitfalls", "dynamics.effects", "learning"),
+            code=study.code("application.pipeline.held_out", "learning"),
         script:
             "../scripts/pitfalls.py"

@@ -19,7 +19,7 @@ if study.synthetic:
 rule read:
     "Read one raw export: axes to NED and FRD, quality told, nothing filtered."
     input:
-        lambda wildcards: study.raw(wildcards.run),
+        raw=lambda wildcards: study.raw(wildcards.run),
     output:
         recording=f"{R}/recordings/{{run}}.npz",
         quality=f"{R}/quality/{{run}}.json",
@@ -29,7 +29,7 @@ rule read:
         f"{R}/benchmarks/read/{{run}}.tsv"
     params:
         campaign=study.campaign_file,
-        outliers=study.signal("outliers"),
+        settings=study.signal("outliers"),
         code=study.code("measurement.recording", "measurement.campaign", "measurement.signals.outliers"),
     script:
         "../scripts/read.py"

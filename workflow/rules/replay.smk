@@ -37,7 +37,7 @@ rule search:
         f"{R}/benchmarks/search/{{model}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("evaluation.error_conditions", "dynamics.effects"),
+        code=study.code("application.pipeline.error_conditions"),
     script:
         "../scripts/search.py"
 
@@ -55,7 +55,7 @@ rule budget:
         f"{R}/benchmarks/budget/{{run}}.tsv"
     params:
         settings=study.section("replay", "signals"),
-        code=study.code("evaluation.budget", "dynamics.effects"),
+        code=study.code("application.pipeline.forces"),
     script:
         "../scripts/budget.py"
 

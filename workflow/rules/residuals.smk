@@ -5,7 +5,7 @@ rule train:
             f"{R}/motions/{{run}}.npz", run=study.control_runs(w.control)
         ),
         campaign=lambda w: study.campaign_file,
-        base=lambda w: [f"{R}/models/effects/model.yaml"] if w.base else [],
+        model=lambda w: [f"{R}/models/effects/model.yaml"] if w.base else [],
     output:
         model=f"{R}/models/{{base}}{{residual}}_{{control}}/model.yaml",
         arrays=f"{R}/models/{{base}}{{residual}}_{{control}}/residual.npz",
@@ -14,9 +14,8 @@ rule train:
     benchmark:
         f"{R}/benchmarks/train/{{base}}{{residual}}_{{control}}.tsv"
     params:
-        settings=study.section("replay", "signals", "seed"),
-        residual=lambda w: study.learner(w.residual),
-        code=study.code("learning.pairs", "dynamics.effects", "learning"),
+        settings=lambda w: study.training(w.residual, w.control),
+        code=study.code("application.pipeline.training", "learning"),
     script:
         "../scripts/train.py"
 
@@ -36,6 +35,6 @@ rule timing:
     threads: workflow.cores
     params:
         settings=study.section("replay", "signals", "timing"),
-        code=study.code("evaluation.latency", "learning.pairs", "learning"),
+        code=study.code("application.pipeline.training", "learning"),
     script:
         "../scripts/timing.py"

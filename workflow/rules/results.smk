@@ -24,8 +24,7 @@ rule compare:
     benchmark:
         f"{R}/benchmarks/compare.tsv"
     params:
-        models=study.models,
-        code=study.code("evaluation.ladder"),
+        code=study.code("application.pipeline.summary"),
     script:
         "../scripts/compare.py"
 
@@ -161,7 +160,7 @@ rule track:
         f"{R}/benchmarks/track.tsv"
     params:
         campaign=study.name,
-        tracking=study.section("tracking")["tracking"],
+        settings=study.section("tracking")["tracking"],
         diagnosis=study.section("search", "signals", "replay", "seed"),
         code=study.code("application.tracking"),
     script:

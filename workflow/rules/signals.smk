@@ -1,7 +1,7 @@
 rule resample:
     "Reject outliers and put the poses on a uniform clock; long gaps stay gaps."
     input:
-        f"{R}/recordings/{{run}}.npz",
+        recording=f"{R}/recordings/{{run}}.npz",
     output:
         f"{R}/resampled/{{run}}.npz",
     log:
@@ -9,7 +9,7 @@ rule resample:
     benchmark:
         f"{R}/benchmarks/resample/{{run}}.tsv"
     params:
-        signals=study.signal("outliers", "resample"),
+        settings=study.signal("outliers", "resample"),
         code=study.code("measurement.signals.resample"),
     script:
         "../scripts/resample.py"
@@ -18,7 +18,7 @@ rule resample:
 rule filter:
     "Smooth the poses without delay."
     input:
-        f"{R}/resampled/{{run}}.npz",
+        poses=f"{R}/resampled/{{run}}.npz",
     output:
         f"{R}/filtered/{{run}}.npz",
     log:
@@ -26,7 +26,7 @@ rule filter:
     benchmark:
         f"{R}/benchmarks/filter/{{run}}.tsv"
     params:
-        signals=study.signal("filter"),
+        settings=study.signal("filter"),
         code=study.code("measurement.signals.filter"),
     script:
         "../scripts/filter.py"
@@ -44,7 +44,7 @@ rule differentiate:
     benchmark:
         f"{R}/benchmarks/differentiate/{{run}}.tsv"
     params:
-        signals=study.signal("differentiate"),
+        settings=study.signal("differentiate"),
         code=study.code("measurement.signals.chain"),
     script:
         "../scripts/differentiate.py"

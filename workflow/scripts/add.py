@@ -1,18 +1,15 @@
 """Add the effects that were found to the nominal model."""
 
-from pathlib import Path
-
+from rovsim.application.pipeline.models import add_effects
 from rovsim.application.snakemake_job import job
-from rovsim.diagnosis.apply import added, read_diagnosis
-from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model_file import write_model
-
-
-def main(*, diagnosis: Path, out: Path, catalogue: Catalogue) -> None:
-    model, names = added(read_diagnosis(diagnosis), diagnosis, "nominal", None, catalogue)
-    write_model(model, out, provenance={"base": "nominal", "effects": names})
-
 
 if __name__ == "__main__":
-    with job(snakemake) as catalogue:
-        main(diagnosis=Path(snakemake.input[0]), out=Path(snakemake.output[0]), catalogue=catalogue)
+    with job(snakemake) as rule:
+        add_effects(
+            diagnosis=rule.path("diagnosis"),
+            base="nominal",
+            effects=None,
+            catalogue=rule.catalogue,
+            out=rule.output(),
+            story={},
+        )

@@ -1,28 +1,14 @@
 """Derive velocities and accelerations; an unusable run keeps none."""
 
-from dataclasses import replace
-from pathlib import Path
-
-import numpy as np
-
+from rovsim.application.pipeline.recordings import derive_motion
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import read_json
-from rovsim.core.schema import checked
-from rovsim.measurement.signals.chain import SignalSettings, differentiated, read_stage
-
-
-def main(*, poses: Path, quality: Path, out: Path, signals: dict) -> None:
-    motion = differentiated(read_stage(poses), checked(SignalSettings, signals, "conf"))
-    if read_json(quality)["unusable"]:
-        motion = replace(motion, usable=np.zeros_like(motion.usable))
-    motion.write(out)
-
+from rovsim.measurement.signals.chain import SignalSettings, read_stage
 
 if __name__ == "__main__":
-    with job(snakemake):
-        main(
-            poses=Path(snakemake.input.poses),
-            quality=Path(snakemake.input.quality),
-            out=Path(snakemake.output[0]),
-            signals=snakemake.params.signals,
-        )
+    with job(snakemake) as rule:
+        derive_motion(
+            poses=read_stage(rule.path("poses")),
+            quality=read_json(rule.path("quality")),
+            settings=rule.section(SignalSettings),
+        ).write(rule.output())

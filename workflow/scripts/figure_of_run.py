@@ -1,31 +1,17 @@
 """Draw one figure of one run."""
 
-from pathlib import Path
-
+from rovsim.application.pipeline.presentation import draw_run
 from rovsim.application.snakemake_job import job
 from rovsim.evaluation.budget import Budget
-from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.figures import kind
-from rovsim.reporting.figures.style import save
-from rovsim.reporting.report_data import Evidence, arguments
 from rovsim.simulation.prediction import Replay
 
-
-def main(*, figure: str, motion: Path, replays: list[Path], budgets: list[Path], out: Path) -> None:
-    measured, found = Motion.read(motion), [Replay.read(path) for path in replays]
-    run = measured.run.id
-    pushed = {found.run: found for found in map(Budget.read, budgets)}
-    evidence = Evidence({run: measured}, {r.model: {run: r} for r in found}, budgets=pushed)
-    drawn = kind(figure).draw(**arguments(figure, evidence, run, [r.model for r in found]))
-    save(drawn, out.parent, out.stem)
-
-
 if __name__ == "__main__":
-    with job(snakemake):
-        main(
-            figure=snakemake.params.figure,
-            motion=Path(snakemake.input.motion),
-            replays=[Path(path) for path in snakemake.input.replays],
-            budgets=[Path(path) for path in snakemake.input.budget],
-            out=Path(snakemake.output.png),
+    with job(snakemake) as rule:
+        (motion,) = rule.motions("motion")
+        draw_run(
+            figure=rule.params.figure,
+            motion=motion,
+            replays=[Replay.read(path) for path in rule.paths("replays")],
+            budgets=[Budget.read(path) for path in rule.paths("budget")],
+            out=rule.output("png"),
         )

@@ -1,20 +1,8 @@
 """Smooth poses."""
 
-from pathlib import Path
-
 from rovsim.application.snakemake_job import job
-from rovsim.core.schema import checked
 from rovsim.measurement.signals.chain import SignalSettings, filtered, read_stage
 
-
-def main(*, source: Path, out: Path, signals: dict) -> None:
-    filtered(read_stage(source), checked(SignalSettings, signals, "conf")).write(out)
-
-
 if __name__ == "__main__":
-    with job(snakemake):
-        main(
-            source=Path(snakemake.input[0]),
-            out=Path(snakemake.output[0]),
-            signals=snakemake.params.signals,
-        )
+    with job(snakemake) as rule:
+        filtered(read_stage(rule.path("poses")), rule.section(SignalSettings)).write(rule.output())

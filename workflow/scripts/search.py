@@ -1,37 +1,15 @@
 """Search one model's errors for what they vary with."""
 
-from pathlib import Path
-
-from rovsim.application.loading import campaign_vehicle
+from rovsim.application.pipeline.error_conditions import find_error_conditions
+from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
 from rovsim.core.files import write_json
-from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model_file import load_model
-from rovsim.evaluation.error_conditions import content, judged
-from rovsim.measurement.campaign import load_campaign
-from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.settings import rule_settings
-
-
-def main(
-    *, motions: list[Path], campaign: Path, file: str, name: str, out: Path, settings: dict,
-    catalogue: Catalogue,
-) -> None:  # fmt: skip
-    vehicle = campaign_vehicle(load_campaign(campaign))
-    model = load_model(file or name, vehicle, catalogue).called(name)
-    signals, how = rule_settings(settings)
-    runs = [Motion.read(path) for path in motions]
-    write_json(out, content([judged(model, runs, signals, how)]))
-
 
 if __name__ == "__main__":
-    with job(snakemake) as catalogue:
-        main(
-            catalogue=catalogue,
-            motions=[Path(path) for path in snakemake.input.motions],
-            campaign=Path(snakemake.input.campaign),
-            file=str(snakemake.input.get("model") or ""),
-            name=snakemake.wildcards.model,
-            out=Path(snakemake.output[0]),
-            settings=snakemake.params.settings,
+    with job(snakemake) as rule:
+        found = find_error_conditions(
+            models=[rule.model(rule.wildcards.model)],
+            motions=rule.motions(),
+            settings=rule.section(SimulationSettings),
         )
+        write_json(rule.output(), found)

@@ -19,47 +19,44 @@ class LeaveOneRunOut:
 
     study: Study
 
-    @cached_property
+    @property
     def runs(self) -> list[str]:
-        """Runs to be held out, one after the other.
+        """Runs to be held out, one after the other."""
+        return self.study.runs() if self.study.settings.folds.leave_one_run_out else []
+
+    @cached_property
+    def published(self) -> Path | None:
+        """The file of published errors, beside the recordings; None if there are none."""
+        name, campaign = self.study.settings.folds.published, self.study.campaign
+        if name is None:
+            return None
+        known = isinstance(campaign, Campaign)
+        return Path(campaign.folder if known else f"{self.study.folder}/raw") / name
+
+    def check(self) -> None:
+        """Look at all that can be wrong with what was given, before anything is planned.
 
         Raises:
-            BadInput: there is but one run, or an unknown residual.
+            BadInput: there is but one run, an unknown residual, or no file of published errors.
         """
-        settings, runs = self.study.settings.folds, self.study.runs()
-        if not settings.leave_one_run_out:
-            return []
-        for kind in settings.residuals:
+        for kind in self.study.settings.folds.residuals if self.runs else ():
             learner(kind, "folds.residuals")
-        if len(runs) < 2:
+        if len(self.runs) == 1:
             raise BadInput(
                 "only one run",
                 where=self.study.campaign_path or "conf/tank",
                 expected="two runs or more, to leave one out",
                 remedy="Add runs to the campaign, or set folds.leave_one_run_out=false.",
             )
-        return runs
-
-    @cached_property
-    def published(self) -> Path | None:
-        """The file of published numbers, beside the recordings.
-
-        Raises:
-            BadInput: it is not there.
-        """
-        name, campaign = self.study.settings.folds.published, self.study.campaign
-        if name is None:
-            return None
-        known = isinstance(campaign, Campaign)
-        path = Path(campaign.folder if known else f"{self.study.folder}/raw") / name
-        if path.is_file():
-            return path
-        raise BadInput(
-            "no such file",
-            where=path,
-            expected=f"published errors as csv, named by folds.published={name}",
-            remedy=f"Put it there, or set folds.published=null. {campaign.source}".strip(),
-        )
+        if self.published and not self.published.is_file():
+            name = self.study.settings.folds.published
+            remedy = f"Put it there, or set folds.published=null. {self.study.campaign.source}"
+            raise BadInput(
+                "no such file",
+                where=self.published,
+                expected=f"published errors as csv, named by folds.published={name}",
+                remedy=remedy.strip(),
+            )
 
     def train_runs(self, fold: str, control: str) -> list[str]:
         """Runs of a control to learn from while `fold` is held out."""

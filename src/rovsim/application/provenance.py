@@ -9,6 +9,7 @@ from typing import Any, Sequence
 
 import rovsim
 from rovsim.core.schema import Section
+from rovsim.dynamics.catalogue import Catalogue
 
 SOURCE = Path(rovsim.__file__).parent
 MODEL = "rovsim.dynamics.model"
@@ -72,10 +73,14 @@ def _version(package: str) -> str | None:
         return None
 
 
-def provenance(settings: Section) -> dict[str, Any]:
-    """Settings, code and versions behind a result; settings without influence are left out."""
+def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
+    """Code, with the user's own effects, and versions behind a result."""
     packages = {name: installed for name in PACKAGES if (installed := _version(name))}
     versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
+    return {"code": digest("rovsim", effects=catalogue.files), "versions": versions}
+
+
+def provenance(settings: Section, catalogue: Catalogue) -> dict[str, Any]:
+    """Settings, code and versions behind a result; settings without influence are left out."""
     chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
-    code = digest("rovsim", effects=getattr(settings, "effect_files", ()))
-    return {"settings": chosen, "code": code, "versions": versions}
+    return {"settings": chosen, **describe_origin(catalogue)}

@@ -5,14 +5,12 @@ from typing import Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
+from rovsim.application.sections import SimulationSettings, TimingSettings, TrainingSettings
 from rovsim.core.errors import BadInput, nearest
-from rovsim.core.schema import Section, checked
+from rovsim.core.schema import S, Section, checked
 from rovsim.core.shipped import conf_folders, conf_names
-from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
+from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.learned.residual import Control
-from rovsim.learning.learner import LearnerSettings, learner_settings
-from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 
@@ -45,14 +43,6 @@ class FoldSettings(Section):
         return self
 
 
-class TimingSettings(Section):
-    """How long inference is measured."""
-
-    calls: PositiveInt = 10000
-    warmup: PositiveInt = 200
-    seconds: PositiveFloat = 2.0
-
-
 class BenchSettings(Section):
     """The speed benchmark: calls of each own path, s for a library's, runs of `duration` s."""
 
@@ -81,25 +71,44 @@ class TrackingSettings(Section):
     artifacts: str
 
 
-class Settings(Section):
-    """conf/config.yaml, composed and checked."""
+class CommandSettings(Section):
+    """What every command takes: effects of one's own, where it writes, what it prints.
 
-    command: str | None = None
+    `out` None: a folder under results/.
+    """
+
+    effects_file: str | list[str] | None = None
+    out: str | None
+    output: Literal["text", "json", "quiet"] = "text"
+
+    @property
+    def effect_files(self) -> list[Path]:
+        """Files that declare the user's own effects."""
+        named = self.effects_file or []
+        return [Path(name) for name in ([named] if isinstance(named, str) else named)]
+
+
+class CampaignSettings(SimulationSettings, CommandSettings):
+    """What every command on a campaign takes."""
+
     campaign: str | None
     model: str | list[str]
-    out: str | None
-    effects_file: str | list[str] | None = None
-    output: Literal["text", "json", "quiet"] = "text"
-    port: int = Field(8501, ge=1, le=65535)
-    open: bool = True
-    control: Control
-    seed: int = Field(ge=0)
-    signals: SignalSettings
-    replay: ReplaySettings
-    residual: dict[str, Any]
-    tank: TankSettings
+
+
+class WorkbenchSettings(TrainingSettings, CampaignSettings):
+    """What the workbench takes: a campaign, and how it is diagnosed and learned from."""
+
     search: SearchSettings
-    diagnosis: str | None = None
+    diagnosis: str | None
+    port: int = Field(ge=1, le=65535)
+    open: bool
+
+
+class Settings(WorkbenchSettings):
+    """conf/config.yaml, composed and checked; each command and rule is given its part of it."""
+
+    command: str | None = None
+    tank: TankSettings
     effects: list[str] | None = None
     to: str = "nominal"
     study: StudySettings
@@ -109,23 +118,10 @@ class Settings(Section):
     blind: BlindSettings
     tracking: TrackingSettings
 
-    @property
-    def effect_files(self) -> list[Path]:
-        """Files that declare the user's own effects."""
-        named = self.effects_file or []
-        return [Path(name) for name in ([named] if isinstance(named, str) else named)]
 
-    @property
-    def learner(self) -> LearnerSettings:
-        """The chosen residual's own settings."""
-        return learner_settings(self.residual, "conf/residual")
-
-    @property
-    def diagnosing(self) -> DiagnosisSettings:
-        """What a diagnosis depends on."""
-        return DiagnosisSettings(
-            search=self.search, signals=self.signals, replay=self.replay, seed=self.seed
-        )
+def select(settings: Section, kind: type[S]) -> S:
+    """The part of settings that a command or a function takes."""
+    return kind(**{name: getattr(settings, name) for name in kind.model_fields})
 
 
 def compose(overrides: Sequence[str]) -> Settings:

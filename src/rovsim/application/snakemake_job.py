@@ -1,27 +1,118 @@
-"""What surrounds the script of a rule: a log file, and errors told in one message."""
+"""What surrounds the script of a rule: its files and settings, a log, errors in one message."""
 
 import logging
 import sys
 import traceback
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Iterator
 
+from rovsim.application.pipeline.recordings import load_campaign_vehicle
 from rovsim.core.errors import RovsimError
+from rovsim.core.progress import heard_by
+from rovsim.core.schema import S, checked
+from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import load_model, read_model
+from rovsim.dynamics.vehicle import Vehicle
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.prediction import Replay
+
+
+@dataclass(frozen=True)
+class Job:
+    """One job of a rule, in the library's terms; `snakemake` is what Snakemake gives a script."""
+
+    snakemake: Any
+    catalogue: Catalogue
+
+    @property
+    def params(self) -> Any:
+        """What the rule gives beside files and settings."""
+        return self.snakemake.params
+
+    @property
+    def wildcards(self) -> Any:
+        """What the rule's wildcards stand for."""
+        return self.snakemake.wildcards
+
+    def paths(self, name: str) -> list[Path]:
+        """Input files of a name, none where the rule left it empty."""
+        given = self.snakemake.input.get(name) or []
+        return [Path(path) for path in ([given] if isinstance(given, str) else given)]
+
+    def path(self, name: str) -> Path:
+        """The one input file of a name."""
+        (path,) = self.paths(name)
+        return path
+
+    def output(self, name: str | int = 0) -> Path:
+        """An output file."""
+        return Path(self.snakemake.output[name])
+
+    def outputs(self) -> dict[str, list[Path]]:
+        """Output files by name."""
+        return {
+            name: [Path(path) for path in ([given] if isinstance(given, str) else given)]
+            for name, given in self.snakemake.output.items()
+        }
+
+    def contents(self, *names: str) -> dict[str, Path]:
+        """Those of the input files of these names that the rule has."""
+        return {name: path for name in names for path in self.paths(name)}
+
+    def section(self, kind: type[S]) -> S:
+        """The rule's settings as a section of the configuration.
+
+        Raises:
+            BadInput: one of them does not fit.
+        """
+        return checked(kind, dict(self.params.settings), "conf")
+
+    def motions(self, name: str = "motions") -> list[Motion]:
+        """Runs, read."""
+        return [Motion.read(path) for path in self.paths(name)]
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """That of the input `campaign`."""
+        return load_campaign_vehicle(load_campaign(self.path("campaign")))
+
+    def model(self, name: str) -> Model:
+        """The input `model`, or a built-in model, under a name."""
+        spec = str(self.path("model")) if self.paths("model") else name
+        return load_model(spec, self.vehicle, self.catalogue).called(name)
+
+    def models(self) -> list[Model]:
+        """The input `models`, each called by its folder."""
+        files = self.paths("models")
+        return [read_model(path, self.catalogue).called(path.parent.name) for path in files]
+
+    def runs(self) -> Runs:
+        """The usable ones of the input `motions`, with their poses before the filter."""
+        return Runs.read(self.paths("motions"), self.paths("stages"))
+
+    def replays(self) -> dict[str, dict[str, Replay]]:
+        """The input `replays` by model and run, in the order of the rule."""
+        found: dict[str, dict[str, Replay]] = {}
+        for replay in map(Replay.read, self.paths("replays")):
+            found.setdefault(replay.model, {})[replay.run.id] = replay
+        return found
 
 
 @contextmanager
-def job(snakemake: Any) -> Iterator[Catalogue]:
-    """Log to the rule's log; an expected error becomes one message and exit code 2.
-
-    Gives the catalogue, with the user's effect files in it.
-    """
+def job(snakemake: Any) -> Iterator[Job]:
+    """Log to the rule's log; an expected error becomes one message and exit code 2."""
     path = snakemake.log[0]
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s")
     logging.info("rule %s %s", snakemake.rule, dict(snakemake.wildcards))
     try:
-        yield load_catalogue([Path(name) for name in snakemake.config.get("effects_file", [])])
+        files = [Path(name) for name in snakemake.config.get("effects_file", [])]
+        with heard_by():
+            yield Job(snakemake, load_catalogue(files))
     except RovsimError as error:
         logging.error("%s", error)
         print(f"rovsim: {error}", file=sys.stderr)

@@ -100,31 +100,15 @@ class Study:
 
     @cached_property
     def trained(self) -> list[str]:
-        """Names of the trained models: residuals x controls that have a train run.
-
-        Raises:
-            BadInput: no train or no test run, or an unknown residual.
-        """
-        for split in ("train", "test"):
-            if not self.runs(split):
-                raise BadInput(
-                    f"no {split} run",
-                    where=self.campaign_path or "conf/tank",
-                    expected="runs of both splits: train to learn from, test to report on",
-                    remedy="Give each run of campaign.yaml its split.",
-                )
-        controls = [c for c in self.settings.study.controls if self.control_runs(c)]
-        kinds = self.settings.study.residuals
-        for kind in kinds:
-            learner(kind, "study.residuals")
-        return [f"{kind}_{control}" for kind in kinds for control in controls]
+        """Names of the trained models: residuals x controls that have a train run."""
+        wanted = self.settings.study
+        controls = [control for control in wanted.controls if self.control_runs(control)]
+        return [f"{kind}_{control}" for kind in wanted.residuals for control in controls]
 
     @cached_property
     def on_effects(self) -> list[str]:
         """Names of the residuals trained on top of the effects that were found."""
         wanted = self.settings.study.on_effects
-        for name in wanted:
-            learner(name.rpartition("_")[0], "study.on_effects")
         return [f"{EFFECTS}+{name}" for name in self.trained if name in wanted]
 
     @property
@@ -158,6 +142,11 @@ class Study:
             kept = [word for word in kept if not word.startswith("residual.")]
         return compose([*kept, f"residual={kind}"]).residual
 
+    def training(self, residual: str, control: str) -> dict[str, Any]:
+        """What a trained residual depends on, as plain values."""
+        chosen = {"residual": self.learner(residual), "control": control}
+        return self.section("replay", "signals", "seed") | chosen
+
     def section(self, *names: str) -> dict[str, Any]:
         """Parts of the settings as plain values: only what a rule reads."""
         return {name: getattr(self.settings, name) for name in names} | {
@@ -174,7 +163,7 @@ class Study:
     def code(self, *modules: str) -> str:
         """Digest of modules and all they import: an edit re-runs what it touches."""
         names = (f"rovsim.{module}" for module in modules)
-        return digest(*names, effects=self.settings.effect_files)
+        return digest(*names, effects=self.catalogue.files)
 
     @staticmethod
     def own_code(package: str) -> str:
@@ -183,7 +172,28 @@ class Study:
 
     def provenance(self) -> dict[str, Any]:
         """Settings, code and versions behind the study."""
-        return provenance(self.settings)
+        return provenance(self.settings, self.catalogue)
+
+    def check(self) -> None:
+        """Look at all that can be wrong with what was given, before anything is planned.
+
+        Raises:
+            BadInput: a campaign or file of effects that cannot be used, no train or no test run,
+                or an unknown residual.
+        """
+        for split in ("train", "test"):
+            if not self.runs(split):
+                raise BadInput(
+                    f"no {split} run",
+                    where=self.campaign_path or "conf/tank",
+                    expected="runs of both splits: train to learn from, test to report on",
+                    remedy="Give each run of campaign.yaml its split.",
+                )
+        for kind in self.settings.study.residuals:
+            learner(kind, "study.residuals")
+        for name in self.settings.study.on_effects:
+            learner(name.rpartition("_")[0], "study.on_effects")
+        load_catalogue(self.settings.effect_files)
 
     def figures(self) -> list[str]:
         """Figures of single runs, as `figure-run`."""

@@ -1,11 +1,9 @@
 """`rovsim COMMAND key=value …`: one message and exit code 2 for input that cannot be used."""
 
-import importlib
 import pkgutil
 import sys
-from contextlib import nullcontext
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Sequence
 
 from rovsim.core.errors import BadInput, RovsimError, nearest
 
@@ -53,13 +51,9 @@ def _main(words: list[str]) -> None:
         _sweep([f"command={command}", *overrides])
     else:
         from rovsim.application.settings import compose
-        from rovsim.core.progress import heard_by
-        from rovsim.dynamics.catalogue import load_catalogue
+        from rovsim.apps.cli.dispatch import run_command
 
-        settings = compose([f"command={command}", *overrides])
-        catalogue = load_catalogue(settings.effect_files)
-        with heard_by() if settings.output == "quiet" else nullcontext():
-            _command(command).run(settings, catalogue)
+        run_command(compose([f"command={command}", *overrides]))
 
 
 def _help(names: Sequence[str]) -> str:
@@ -76,10 +70,6 @@ def _doc(name: str) -> str:
 
     source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
     return ast.get_docstring(ast.parse(source)) or ""
-
-
-def _command(name: str) -> Any:
-    return importlib.import_module(f"rovsim.apps.cli.commands.{name}")
 
 
 def override(word: str) -> str:

@@ -1,14 +1,35 @@
-"""What a command says when it is done: words, JSON, or nothing."""
+"""Where a command writes, and what it says when it is done: words, JSON, or nothing."""
 
 import json
-from typing import Any
+import os
+from pathlib import Path
 
-from rovsim.application.settings import Settings
+from rovsim.application.settings import CommandSettings
+from rovsim.core.errors import BadInput
 
 
-def say(settings: Settings, text: str, content: Any) -> None:
+def say(settings: CommandSettings, text: str, content: object) -> None:
     """Print the text, its content as JSON with `output=json`, nothing with `output=quiet`."""
     if settings.output == "json":
         print(json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False))
     elif settings.output == "text":
         print(text)
+
+
+def choose_folder(settings: CommandSettings, default: str) -> Path:
+    """The folder a command writes to, after a look whether it can; it need not exist yet.
+
+    Raises:
+        BadInput: it or something on its way is a file, or may not be written to.
+    """
+    out = Path(settings.out or default)
+    whole = out.absolute()
+    there = next(place for place in (whole, *whole.parents) if place.exists())
+    if there.is_dir() and os.access(there, os.W_OK):
+        return out
+    raise BadInput(
+        "may not be written to" if there.is_dir() else "is not a folder",
+        where=there,
+        expected="a folder that results can be written into",
+        remedy="Give another out=.",
+    )

@@ -12,7 +12,7 @@ from nicegui import app as server
 from nicegui import ui
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
-from rovsim.application.settings import Settings, compose
+from rovsim.application.settings import WorkbenchSettings, compose
 from rovsim.apps.workbench import HOST
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
@@ -30,7 +30,7 @@ LOOK = 0.25  # s between two looks at long work
 class App:
     """What all pages share: the settings, the open campaign, long work that belongs to none."""
 
-    def __init__(self, settings: Settings, catalogue: Catalogue) -> None:
+    def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue) -> None:
         self.settings, self.catalogue, self.problem = settings, catalogue, ""
         self.said = ""  # of the work that ended last
         self.bench: Any = None
@@ -52,12 +52,11 @@ class App:
         if (PRACTICE / "campaign.yaml").exists():
             self.choose(str(PRACTICE))
             return
-        given = compose(["tank=practice"])
         self.work = Work.start(
             "Making a campaign",
             lambda path: self.choose(str(path)),
             tasks.practise,
-            given,
+            compose(["tank=practice"]).tank,
             PRACTICE,
         )
 
@@ -218,7 +217,7 @@ def _module(name: str) -> ModuleType:
     return importlib.import_module(f"rovsim.apps.workbench.{name}")
 
 
-def serve(settings: Settings, catalogue: Catalogue) -> None:
+def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
     shared = App(settings, catalogue)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])

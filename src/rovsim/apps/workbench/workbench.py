@@ -7,15 +7,17 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
 
-from rovsim.application.loading import Measured, measured, models
-from rovsim.application.provenance import digest, provenance
-from rovsim.application.settings import Settings, compose
+from rovsim.application.pipeline.models import load_models
+from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
+from rovsim.application.provenance import describe_origin, digest
+from rovsim.application.settings import WorkbenchSettings, compose, select
 from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json
 from rovsim.diagnosis.apply import read_diagnosis
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
 from rovsim.dynamics.model_file import describe_model, read_model, write_model
@@ -32,7 +34,7 @@ KEPT = 200  # replays; one of a minute takes 2 MB
 class Workbench:
     """One campaign, its models (the base first, then what was loaded, saved or trained)."""
 
-    settings: Settings
+    settings: WorkbenchSettings
     catalogue: Catalogue
     data: Measured
     models: dict[str, Model]
@@ -46,14 +48,14 @@ class Workbench:
     _judged: dict[Model, Judged] = field(default_factory=dict)
 
     @staticmethod
-    def opened(settings: Settings, catalogue: Catalogue) -> "Workbench":
+    def opened(settings: WorkbenchSettings, catalogue: Catalogue) -> "Workbench":
         """Read the campaign and the models of the settings, and a diagnosis that is there.
 
         Raises:
             BadInput: one of them cannot be used.
         """
-        data = measured(settings)
-        found = {m.name: m for m in models(settings, data.vehicle, catalogue)}
+        data = measure(open_campaign(settings.campaign), settings.signals)
+        found = {m.name: m for m in load_models(settings.model, data.vehicle, catalogue)}
         specs = [settings.model] if isinstance(settings.model, str) else settings.model
         paths = dict(zip(found, dict.fromkeys(specs), strict=True))
         bench = Workbench(settings, catalogue, data, found, paths)
@@ -87,7 +89,8 @@ class Workbench:
         }
         for path in sorted(p for p in files if p.is_file()):
             content.update(path.read_bytes())
-        content.update(self.settings.diagnosing.model_dump_json().encode())
+        how = select(self.settings, DiagnosisSettings)
+        content.update(how.model_dump_json().encode())
         content.update(json.dumps(describe_model(self.base), sort_keys=True).encode())
         content.update(
             digest("rovsim.diagnosis.of_campaign", effects=self.catalogue.files).encode()
@@ -120,15 +123,18 @@ class Workbench:
             BadInput: no such model can be, or the place is taken by something else.
         """
         _check_place(path, {*BUILT_IN, self.base.name}, self.catalogue)
-        known = provenance(self.settings)
-        story = {"base": self.base.name, "effects": self.draft.ticked, "moved": self.draft.values}
-        story |= {k: known[k] for k in ("code", "versions")}
+        story: dict[str, object] = {
+            "base": self.base.name,
+            "effects": self.draft.ticked,
+            "moved": self.draft.values,
+        }
+        story |= describe_origin(self.catalogue)
         write_model(self.draft.model(), path, provenance=story)
         saved = read_model(path, self.catalogue)
         self.add(saved, path)
         return saved
 
-    def only(self, *names: str) -> Settings:
+    def only(self, *names: str) -> WorkbenchSettings:
         """The settings, with these models."""
         return self.settings.model_copy(update={"model": [self.paths[name] for name in names]})
 
@@ -140,7 +146,9 @@ class Workbench:
     def diagnose(self) -> None:
         """Begin to look for what the base lacks."""
         settings, path = self.only(self.base.name), self.diagnosis_path
-        self.work = Work.start("Finding what is missing", self.found, tasks.find, settings, path)
+        self.work = Work.start(
+            "Finding what is missing", self.found, tasks.diagnose_into, settings, path
+        )
 
     def train(self, kind: str, name: str) -> None:
         """Begin to train a residual on top of one of the models."""
@@ -153,7 +161,7 @@ class Workbench:
             self.add(read_model(path, self.catalogue), path)
 
         path = self.out / "trained" / trained / f"{trained}.yaml"
-        self.work = Work.start(f"Training {trained}", take, tasks.learn, settings, path)
+        self.work = Work.start(f"Training {trained}", take, tasks.train_into, settings, path)
 
     def report(self) -> None:
         """Begin to write the report and the JSON files behind it."""
@@ -164,7 +172,9 @@ class Workbench:
             self.choices["report"] = path
 
         settings = self.only(*self.models)
-        self.work = Work.start("Writing the report", take, tasks.tell, settings, known, self.out)
+        self.work = Work.start(
+            "Writing the report", take, tasks.report_into, settings, known, self.out
+        )
 
     def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
         """One run replayed in windows of `horizon` s, or open loop (None)."""

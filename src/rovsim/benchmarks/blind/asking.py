@@ -3,17 +3,20 @@
 from pathlib import Path
 from typing import Any
 
-from rovsim.application.loading import measured
-from rovsim.application.settings import compose
-from rovsim.diagnosis.of_campaign import diagnosed
+from rovsim.application.pipeline.diagnosis import diagnose
+from rovsim.application.pipeline.recordings import measure
+from rovsim.application.settings import compose, select
+from rovsim.core.progress import heard_by
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
+from rovsim.measurement.campaign import load_campaign
 
 
 def diagnosis(campaign: Path, out: Path) -> dict[str, Any]:
     """What `rovsim diagnose` writes, without the report."""
-    settings = compose(["command=diagnose"]).model_copy(update={"campaign": str(campaign)})
-    data = measured(settings, even_unusable=True)
-    base = nominal(data.vehicle)
-    found = diagnosed(data.runs, base, settings.diagnosing, built_in(), lambda name: None)
-    return found.content
+    settings = compose(["command=diagnose"])
+    how = select(settings, DiagnosisSettings)
+    with heard_by():
+        data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
+        return diagnose(data.runs, nominal(data.vehicle), how, built_in()).content

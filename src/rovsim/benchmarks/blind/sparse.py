@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 from scipy.linalg import LinAlgWarning
 from sklearn.exceptions import ConvergenceWarning
 
-from rovsim.application.loading import campaign_vehicle
+from rovsim.application.pipeline.recordings import load_campaign_vehicle
 from rovsim.benchmarks.blind.library import Problem, problem
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
@@ -88,7 +88,7 @@ def of_campaign(campaign: Path) -> Problem:
     found = load_campaign(campaign)
     runs = [run for run in found.runs if run.split == "train"]
     motions = [clean(read_run(found, run.id)[0], SignalSettings()) for run in runs]
-    return problem(nominal(campaign_vehicle(found)), motions, built_in())
+    return problem(nominal(load_campaign_vehicle(found)), motions, built_in())
 
 
 def answered(given: Problem, regression: Regression) -> dict[str, Any]:

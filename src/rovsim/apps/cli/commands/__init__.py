@@ -1,1 +1,4 @@
-"""The commands: one module each, its docstring for --help, and `run(settings, catalogue)`."""
+"""The commands, one module each: a docstring for --help, `Settings`, `run(settings, catalogue)`.
+
+`Settings` names the parts of the configuration that the command takes; it sees no other.
+"""

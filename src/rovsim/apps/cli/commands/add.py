@@ -8,35 +8,38 @@ and adds them to the base model `to`. NEW.yaml is plain YAML, and a model wherev
 
 from pathlib import Path
 
-from rovsim.application.provenance import provenance
-from rovsim.application.settings import Settings
+from rovsim.application.pipeline.models import add_effects
+from rovsim.application.provenance import describe_origin
+from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
-from rovsim.diagnosis.apply import added, read_diagnosis
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model_file import write_model
+
+
+class Settings(CommandSettings):
+    """What `rovsim add` takes."""
+
+    diagnosis: str | None
+    model: str | list[str]
+    to: str
+    effects: list[str] | None
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Write the new model, and say what is in it."""
-    if (
-        settings.diagnosis is None
-        or not isinstance(settings.model, str)
-        or not Path(settings.model).suffix
-    ):
+    base, model = settings.to, settings.model
+    if settings.diagnosis is None or not isinstance(model, str) or not Path(model).suffix:
         raise BadInput(
             "no diagnosis or no model file was named",
             where="command line",
             expected="diagnosis=OUT/diagnosis.json model=NEW.yaml",
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
-    source = Path(settings.diagnosis)
-    model, names = added(read_diagnosis(source), source, settings.to, settings.effects, catalogue)
-    known = provenance(settings)
-    story = {"diagnosis": str(source), "base": settings.to}
-    story |= {key: known[key] for key in ("code", "versions")}
-    write_model(model, Path(settings.model), provenance=story)
-    text = f"{settings.to} + {' + '.join(names)}"
+    story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
+    names = add_effects(
+        Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
+    )
+    text = f"{base} + {' + '.join(names)}"
     if not names:
-        text = f"{settings.to} as it is, for the diagnosis selected no effect"
-    say(settings, f"{settings.model}: {text}", {"model": settings.model, "effects": names})
+        text = f"{base} as it is, for the diagnosis selected no effect"
+    say(settings, f"{model}: {text}", {"model": model, "effects": names})

@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from rovsim.application.loading import measured
-from rovsim.application.settings import Settings
+from rovsim.application.pipeline.recordings import measure
+from rovsim.application.sections import SimulationSettings
+from rovsim.application.settings import BenchSettings, CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.speed.accuracy import accuracy
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
@@ -28,9 +29,18 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
 from rovsim.learning.pairs import sample_run
+from rovsim.measurement.campaign import load_campaign
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
+
+
+class Settings(SimulationSettings, CommandSettings):
+    """What `rovsim bench` takes."""
+
+    tank: TankSettings
+    bench: BenchSettings
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
@@ -59,7 +69,7 @@ def _samples(settings: Settings, catalogue: Catalogue) -> tuple[Model, dict[str,
     tank = settings.tank.model_copy(update={"duration": settings.bench.duration})
     with TemporaryDirectory() as folder:
         make_campaign(tank, Path(folder, "raw"), catalogue)
-        data = measured(settings.model_copy(update={"campaign": str(Path(folder, "raw"))}))
+        data = measure(load_campaign(Path(folder, "raw")), settings.signals)
     model = nominal(data.vehicle)
     found: dict[str, list] = {"train": [], "test": []}
     for motion in data.motions.values():

@@ -11,7 +11,7 @@ beside this project's own need the extra rovsim[benchmark].
 from pathlib import Path
 from typing import Any
 
-from rovsim.application.settings import Settings
+from rovsim.application.settings import BlindSettings, CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.blind.methods import chosen
 from rovsim.benchmarks.blind.page import tables
@@ -25,6 +25,12 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.marked import replace_tables
 
 SCHEMA = "rovsim.blind.summary/1"
+
+
+class Settings(CommandSettings):
+    """What `rovsim blind` takes."""
+
+    blind: BlindSettings
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:

@@ -10,16 +10,20 @@ diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 
 from pathlib import Path
 
-from rovsim.application.loading import Measured, measured, models, results_folder
-from rovsim.application.pipeline import diagnose
+from pydantic import Field
+
+from rovsim.application.pipeline.diagnosis import diagnose
+from rovsim.application.pipeline.models import load_one_model
+from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
 from rovsim.application.provenance import provenance
-from rovsim.application.settings import Settings
+from rovsim.application.settings import CampaignSettings, TrackingSettings, select
 from rovsim.application.tracking import track_diagnosis
-from rovsim.apps.cli.output import say
+from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import installed
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.of_campaign import Diagnosed
+from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html import terminal
 from rovsim.reporting.report_data import Evidence
@@ -27,12 +31,21 @@ from rovsim.reporting.report_data import Evidence
 FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
 
 
+class Settings(CampaignSettings):
+    """What `rovsim diagnose` takes."""
+
+    search: SearchSettings
+    seed: int = Field(ge=0)
+    tracking: TrackingSettings
+
+
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Diagnose one model, write what was found, and say it."""
-    data = measured(settings, even_unusable=True)
-    chosen = models(settings, data.vehicle, catalogue)
-    out = results_folder(settings.out or f"results/{data.campaign.name}/diagnosis")
-    found = diagnose(data, chosen, settings, catalogue)
+    data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
+    base = load_one_model(settings.model, data.vehicle, catalogue)
+    out = choose_folder(settings, f"results/{data.campaign.name}/diagnosis")
+    how = select(settings, DiagnosisSettings)
+    found = diagnose(data.runs, base, how, catalogue)
     shown = _present(out, data, found, settings, catalogue)
     write_json(out / "diagnosis.json", found.content)
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
@@ -40,8 +53,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     if installed("tracking"):
         with reported("logging to MLflow"):
             track_diagnosis(
-                settings.tracking, data.campaign.name, chosen[0].name, found.content,
-                settings.diagnosing.model_dump(mode="json"), [out / "diagnosis.json", *shown],
+                settings.tracking, data.campaign.name, base.name, found.content,
+                how.model_dump(mode="json"), [out / "diagnosis.json", *shown],
             )  # fmt: skip
 
 
@@ -55,4 +68,5 @@ def _present(
         diagnosis=found.content,
     )  # fmt: skip
     wanted = [(figure, "") for figure in FIGURES]
-    return present(out, data.campaign.name, evidence, wanted, provenance(settings), catalogue)
+    origin = provenance(settings, catalogue)
+    return present(out, data.campaign.name, evidence, wanted, origin, catalogue)

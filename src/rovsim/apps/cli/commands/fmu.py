@@ -8,7 +8,8 @@ in the Python that its FMI tool loads (docs/elsewhere.md). Needs the extra rovsi
 
 from pathlib import Path
 
-from rovsim.application.settings import Settings
+from rovsim.application.settings import CommandSettings
+from rovsim.apps.cli.output import say
 from rovsim.apps.fmi.unit import write_unit
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
@@ -16,6 +17,12 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import BUILT_IN
 from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import load_vehicle
+
+
+class Settings(CommandSettings):
+    """What `rovsim fmu` takes."""
+
+    model: str | list[str]
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
@@ -32,4 +39,4 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     out = Path(settings.out or "results/vehicle.fmu")
     model = load_model(spec, load_vehicle("bluerov2_heavy"), catalogue)
     write_unit(model, None if spec in BUILT_IN else Path(spec), out)
-    print(out)
+    say(settings, str(out), {"unit": str(out)})

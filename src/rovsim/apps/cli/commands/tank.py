@@ -8,11 +8,18 @@ DIR gets campaign.yaml, a QTM export and a command log per run, and truth.yaml.
 
 from pathlib import Path
 
-from rovsim.application.settings import Settings
+from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.settings import TankSettings
+
+
+class Settings(CommandSettings):
+    """What `rovsim tank` takes."""
+
+    tank: TankSettings
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:

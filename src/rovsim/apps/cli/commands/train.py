@@ -7,50 +7,50 @@ an MLflow run where rovsim[tracking] is installed. With -m, comma-separated valu
 residual.k=1,3,5 control=3dof,6dof. Needs the extra rovsim[learn].
 """
 
-from rovsim.application.loading import measured, models, results_folder
-from rovsim.application.pipeline import replayed, scored, train
-from rovsim.application.settings import Settings
+from rovsim.application.pipeline.models import load_one_model
+from rovsim.application.pipeline.recordings import measure, open_campaign
+from rovsim.application.pipeline.replays import replay_models, score_replays
+from rovsim.application.pipeline.training import train
+from rovsim.application.provenance import provenance
+from rovsim.application.sections import TrainingSettings
+from rovsim.application.settings import CampaignSettings, TrackingSettings
 from rovsim.application.tracking import track
-from rovsim.apps.cli.output import say
-from rovsim.core.errors import BadInput
-from rovsim.core.extras import installed, require
+from rovsim.apps.cli.output import choose_folder, say
+from rovsim.core.extras import require
 from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 
 
+class Settings(TrainingSettings, CampaignSettings):
+    """What `rovsim train` takes."""
+
+    tracking: TrackingSettings
+
+
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Train, write, score, and log."""
-    require("learn", by="rovsim train")
-    data = measured(settings)
-    chosen = models(settings, data.vehicle, catalogue)
-    if len(chosen) != 1:
-        raise BadInput(
-            f"{len(chosen)} models",
-            where="model",
-            expected="one model to train on",
-            remedy="Name one, or sweep over them with -m.",
-        )
-    base = chosen[0]
-    name = f"{settings.learner.kind}_{settings.control}"
-    out = results_folder(settings.out or f"results/{data.campaign.name}/trained/{name}")
-    corrected = train(data, base, settings, catalogue, out)
-    replays = replayed(data, [base, corrected], settings)
-    found = scored(list(data.motions.values()), replays)
+    require("learn", "tracking", by="rovsim train")
+    data = measure(open_campaign(settings.campaign), settings.signals)
+    base, motions = (
+        load_one_model(settings.model, data.vehicle, catalogue),
+        [*data.motions.values()],
+    )
+    kind = settings.learner.kind
+    name = f"{kind}_{settings.control}"
+    out = choose_folder(settings, f"results/{data.campaign.name}/trained/{name}")
+    file, story = out / "model.yaml", provenance(settings, catalogue)
+    corrected = train(motions, base, settings, catalogue, file, story)
+    found = score_replays(motions, replay_models([base, corrected], motions, settings))
     write_json(out / "comparison.json", found)
-    if installed("tracking"):
-        with reported("logging to MLflow"):
-            track(
-                settings.tracking,
-                experiment=data.campaign.name,
-                name=name,
-                tags={
-                    "model": base.name,
-                    "residual": settings.learner.kind,
-                    "control": settings.control,
-                },
-                params=settings.residual | {"seed": settings.seed},
-                scores=found["models"]["model"]["runs"],
-                files=sorted(p for p in out.iterdir() if p.is_file()),
-            )
-    say(settings, str(out / "model.yaml"), {"model": str(out / "model.yaml")})
+    with reported("logging to MLflow"):
+        track(
+            settings.tracking,
+            experiment=data.campaign.name,
+            name=name,
+            tags={"model": base.name, "residual": kind, "control": settings.control},
+            params=settings.residual | {"seed": settings.seed},
+            scores=found["models"]["model"]["runs"],
+            files=sorted(p for p in out.iterdir() if p.is_file()),
+        )
+    say(settings, str(file), {"model": str(file)})

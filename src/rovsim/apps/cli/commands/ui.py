@@ -10,12 +10,16 @@ extra rovsim[workbench].
 
 import socket
 
-from rovsim.application.settings import Settings
+from rovsim.application.settings import WorkbenchSettings
 from rovsim.apps.cli.output import say
 from rovsim.apps.workbench import HOST
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.dynamics.catalogue import Catalogue
+
+
+class Settings(WorkbenchSettings):
+    """What `rovsim ui` takes."""
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:

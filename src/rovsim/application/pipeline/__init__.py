@@ -1,0 +1,14 @@
+"""The way of the data, one step a file: commands, workbench and workflow call the same functions.
+
+recordings        raw exports -> recordings, quality, motions
+models            names and files -> models; effects added to one
+replays           models x motions -> replays -> scores, growth of errors, steps of the ladder
+error_conditions  under which conditions a model fails
+forces            who pushes how much
+diagnosis         which effects a model lacks
+refit             the nominal model's own parameters, fitted
+training          a learned residual on top of a model; how long its predictions take
+comparison        replays, scores, conditions and forces of some models, together
+summary           the study's scores, ladder and growth in one place
+held_out          a held-out run: scored, beside published errors, with pitfalls
+"""

@@ -1,0 +1,28 @@
+"""Replays, scores, conditions of the error and forces of some models, together."""
+
+from typing import Sequence
+
+from rovsim.application.pipeline.error_conditions import find_error_conditions
+from rovsim.application.pipeline.forces import balance_run
+from rovsim.application.pipeline.recordings import Measured
+from rovsim.application.pipeline.replays import measure_growth, replay_models, score_replays
+from rovsim.application.sections import SimulationSettings
+from rovsim.core.progress import counted
+from rovsim.dynamics.model import Model
+from rovsim.reporting.report_data import Evidence
+
+
+def compare(data: Measured, models: Sequence[Model], settings: SimulationSettings) -> Evidence:
+    """Replays, scores and findings of all models, forces of the last."""
+    motions = list(data.motions.values())
+    replays = replay_models(models, motions, settings)
+    grown = measure_growth(motions, replays)
+    where = find_error_conditions([m for m in models if not m.inert], motions, settings)
+    return Evidence(
+        data.motions, replays, score_replays(motions, replays), grown, quality=data.quality,
+        where=where,
+        budgets={
+            m.run.id: balance_run(models[-1], m, settings)
+            for m in counted(motions, "balancing forces")
+        },
+    )  # fmt: skip

@@ -1,0 +1,76 @@
+"""Models by name or file, and effects added to one of them."""
+
+from pathlib import Path
+from typing import Mapping, Sequence
+
+from rovsim.core.errors import BadInput
+from rovsim.diagnosis.apply import added, read_diagnosis
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import load_model, write_model
+from rovsim.dynamics.vehicle import Vehicle
+
+
+def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> list[Model]:
+    """The models that names and files stand for, each once.
+
+    Raises:
+        BadInput: one cannot be loaded, or two files have the same stem.
+    """
+    given = [specs] if isinstance(specs, str) else specs
+    loaded = [load_model(spec, vehicle, catalogue) for spec in dict.fromkeys(given)]
+    names = [model.name for model in loaded]
+    twice = {name for name in names if names.count(name) > 1}
+    if twice:
+        raise BadInput(
+            f"two models are called '{twice.pop()}'",
+            where="model",
+            expected="different names (a model is called by its file's stem)",
+            remedy="Rename one of the files.",
+        )
+    return loaded
+
+
+def load_one_model(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> Model:
+    """The one model that was named.
+
+    Raises:
+        BadInput: there are several, or it cannot be loaded.
+    """
+    loaded = load_models(specs, vehicle, catalogue)
+    if len(loaded) == 1:
+        return loaded[0]
+    raise BadInput(
+        f"{len(loaded)} models ({', '.join(model.name for model in loaded)})",
+        where="model",
+        expected="one model",
+        remedy="Name one, or sweep over them with -m.",
+    )
+
+
+def add_effects(
+    diagnosis: Path,
+    base: str,
+    effects: Sequence[str] | None,
+    catalogue: Catalogue,
+    out: Path,
+    story: Mapping[str, object],
+) -> list[str]:
+    """Write `base` with effects that a diagnosis fitted as a model file; returns their ids.
+
+    Args:
+        diagnosis: its file.
+        base: a built-in model, or a model file.
+        effects: ids; None: those that the diagnosis selected.
+        catalogue: all effects.
+        out: the model file.
+        story: what else its provenance tells.
+
+    Raises:
+        BadInput: no such diagnosis, effect or model.
+    """
+    model, names = added(
+        read_diagnosis(diagnosis), diagnosis, base, list(effects) if effects else None, catalogue
+    )
+    write_model(model, out, provenance={"base": base, "effects": names, **story})
+    return names

@@ -1,0 +1,106 @@
+"""Raw exports in; motions, the poses before the filter and quality reports out."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Mapping
+
+import numpy as np
+
+from rovsim.core.errors import BadInput
+from rovsim.core.progress import counted
+from rovsim.diagnosis.of_campaign import Runs
+from rovsim.dynamics.vehicle import Vehicle, load_vehicle
+from rovsim.measurement.campaign import Campaign, load_campaign
+from rovsim.measurement.quality_report import quality_of
+from rovsim.measurement.recording import read_run, usable_reason
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.chain import (
+    SignalSettings,
+    Stage,
+    differentiated,
+    filtered,
+    resampled,
+)
+from rovsim.measurement.signals.motion import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A campaign as measured: motions by run, their poses before the filter, quality reports."""
+
+    campaign: Campaign
+    vehicle: Vehicle
+    motions: dict[str, Motion]
+    quality: dict[str, dict[str, Any]]
+    stages: dict[str, Stage]
+
+    @property
+    def runs(self) -> Runs:
+        """The usable runs, as a diagnosis takes them."""
+        return Runs(self.motions, self.stages)
+
+
+def open_campaign(folder: str | None) -> Campaign:
+    """The campaign in a folder.
+
+    Raises:
+        BadInput: none was given, or it cannot be read.
+    """
+    if folder is None:
+        raise BadInput(
+            "no campaign was given",
+            where="command line",
+            expected="campaign=DIR, a folder that holds campaign.yaml",
+            remedy="`rovsim tank out=DIR` makes a synthetic one to try.",
+        )
+    return load_campaign(Path(folder))
+
+
+def load_campaign_vehicle(campaign: Campaign) -> Vehicle:
+    """The vehicle a campaign was recorded with."""
+    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
+
+
+def read_recording(
+    campaign: Campaign, run: str, settings: SignalSettings
+) -> tuple[Recording, dict[str, Any]]:
+    """One raw export in NED and FRD, nothing filtered, and its quality report.
+
+    Raises:
+        BadInput: it cannot be read.
+    """
+    recording, anomalies = read_run(campaign, run)
+    return recording, quality_of(recording, anomalies, settings.outliers)
+
+
+def derive_motion(poses: Stage, quality: Mapping[str, Any], settings: SignalSettings) -> Motion:
+    """Velocities and accelerations of filtered poses; an unusable run keeps none."""
+    motion = differentiated(poses, settings)
+    if quality["unusable"]:
+        return replace(motion, usable=np.zeros_like(motion.usable))
+    return motion
+
+
+def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = False) -> Measured:
+    """Read, check and clean all usable runs of a campaign.
+
+    Raises:
+        BadInput: it cannot be read, or no run can be used, unless that is a result.
+    """
+    motions, quality, stages = {}, {}, {}
+    for run in counted(campaign.runs, "reading"):
+        recording, quality[run.id] = read_recording(campaign, run.id, settings)
+        if usable_reason(recording) is None:
+            stages[run.id] = resampled(recording, settings)
+            motions[run.id] = derive_motion(
+                filtered(stages[run.id], settings), quality[run.id], settings
+            )
+    if not motions and not even_unusable:
+        reasons = "; ".join(f"{run}: {q['unusable']}" for run, q in quality.items())
+        raise BadInput(
+            f"no run can be used ({reasons})",
+            where=campaign.file,
+            expected="at least one run that moves and is long enough",
+            remedy="Record longer runs in which the vehicle moves.",
+        )
+    return Measured(campaign, load_campaign_vehicle(campaign), motions, quality, stages)

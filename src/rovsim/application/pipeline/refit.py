@@ -1,0 +1,21 @@
+"""The nominal model with its own parameters fitted to the train runs."""
+
+from pathlib import Path
+
+from rovsim.diagnosis.of_campaign import Runs
+from rovsim.diagnosis.selection.nominal_refit import refit_nominal
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import write_model
+from rovsim.simulation.settings import ReplaySettings
+
+
+def refit(
+    runs: Runs, base: Model, settings: ReplaySettings, catalogue: Catalogue, out: Path
+) -> Model:
+    """Refit a model's own parameters on the train runs, and write it as a model file."""
+    train = runs.prepare("train", settings, catalogue)
+    model = refit_nominal(base, train)
+    story = {"base": base.name, "train_runs": [one.motion.run.id for one in train]}
+    write_model(model, out, provenance=story)
+    return model

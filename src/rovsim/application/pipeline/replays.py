@@ -1,0 +1,43 @@
+"""Models beside the measurement: replayed with the logged commands, and scored."""
+
+from typing import Any, Mapping, Sequence
+
+from rovsim.application.sections import SimulationSettings
+from rovsim.core.progress import counted
+from rovsim.dynamics.model import Model
+from rovsim.evaluation.ladder import step
+from rovsim.evaluation.scores import comparison, growth, score
+from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.prediction import Replay
+from rovsim.simulation.replay import replay
+
+Replays = Mapping[str, Mapping[str, Replay]]  # by model and run
+
+
+def replay_models(
+    models: Sequence[Model], motions: Sequence[Motion], settings: SimulationSettings
+) -> dict[str, dict[str, Replay]]:
+    """Every run replayed with every model."""
+    replays: dict[str, dict[str, Replay]] = {model.name: {} for model in models}
+    pairs = [(model, motion) for model in models for motion in motions]
+    for model, motion in counted(pairs, "replaying"):
+        replays[model.name][motion.run.id] = replay(
+            model, motion, settings.signals, settings.replay
+        )
+    return replays
+
+
+def score_replays(motions: Sequence[Motion], replays: Replays) -> dict[str, Any]:
+    """`comparison.json`."""
+    return comparison(score(m, runs[m.run.id]) for runs in replays.values() for m in motions)
+
+
+def measure_growth(motions: Sequence[Motion], replays: Replays) -> dict[str, Any]:
+    """`growth.json`."""
+    curves = {name: growth(motions, list(runs.values())) for name, runs in replays.items()}
+    return {"models": curves}
+
+
+def climb(motions: Sequence[Motion], replays: Replays) -> list[dict[str, Any]]:
+    """A step of the ladder for each model, on the test runs."""
+    return [step(name, motions, list(runs.values())) for name, runs in replays.items()]

@@ -1,0 +1,63 @@
+"""A learned residual on top of a model, and how long its predictions take."""
+
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from rovsim.application.sections import PredictorSettings, TrainingSettings
+from rovsim.core.progress import reported
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.learned.residual import write_residual
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import read_model, write_model
+from rovsim.evaluation.latency import both_ways
+from rovsim.learning.pairs import choose_training_runs, sample_run, train_residual
+from rovsim.measurement.signals.motion import Motion
+
+
+def train(
+    motions: Sequence[Motion],
+    base: Model,
+    settings: TrainingSettings,
+    catalogue: Catalogue,
+    out: Path,
+    story: Mapping[str, object],
+) -> Model:
+    """Train a residual on the train runs of one control; returns the model as read back.
+
+    Args:
+        motions: runs; those of the control and of split `train` are learned from.
+        base: the model whose acceleration is corrected.
+        settings: the learner, and how runs were cleaned and are replayed.
+        catalogue: all effects.
+        out: the model file; the residual's arrays are written beside it.
+        story: what else the model's provenance tells.
+
+    Raises:
+        BadInput: the model has a residual already, or no run is left to learn from.
+    """
+    used, learner = choose_training_runs(motions, settings.control), settings.learner
+    with reported(f"training {learner.kind}") as progress:
+        trained = train_residual(
+            base, used, settings.control, learner, settings.signals, settings.replay,
+            settings.seed, progress,
+        )  # fmt: skip
+    residual = write_residual(out.parent, trained.residual(settings.control))
+    known = {"base": base.name, "train_runs": [m.run.id for m in used], "seed": settings.seed}
+    write_model(base, out, residual, {**known, **story})
+    return read_model(out, catalogue)
+
+
+def time_predictors(
+    models: Sequence[Model], base: Model, motion: Motion, settings: PredictorSettings
+) -> dict[str, Any]:
+    """`timing.json`: each residual's library call and its exported predictor, on one run."""
+    pairs, how = sample_run(base, motion, settings.signals, settings.replay), settings.timing
+    return {
+        "inference": {
+            model.name: both_ways(
+                residual, pairs.features(residual.features), how.calls, how.warmup, how.seconds
+            )
+            for model in models
+            if (residual := model.residual) is not None
+        }
+    }

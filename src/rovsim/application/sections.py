@@ -1,0 +1,45 @@
+"""Sections of the configuration that several steps of the pipeline take."""
+
+from typing import Any
+
+from pydantic import Field, PositiveFloat, PositiveInt
+
+from rovsim.core.schema import Section
+from rovsim.dynamics.learned.residual import Control
+from rovsim.learning.learner import LearnerSettings, learner_settings
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.simulation.settings import ReplaySettings
+
+
+class SimulationSettings(Section):
+    """How measurements are cleaned, and how models are replayed beside them."""
+
+    signals: SignalSettings
+    replay: ReplaySettings
+
+
+class TimingSettings(Section):
+    """How long inference is measured."""
+
+    calls: PositiveInt = 10000
+    warmup: PositiveInt = 200
+    seconds: PositiveFloat = 2.0
+
+
+class PredictorSettings(SimulationSettings):
+    """How the predictions of trained residuals are timed."""
+
+    timing: TimingSettings
+
+
+class TrainingSettings(SimulationSettings):
+    """What a trained residual depends on: which learner, on the runs of which control."""
+
+    residual: dict[str, Any]
+    control: Control
+    seed: int = Field(ge=0)
+
+    @property
+    def learner(self) -> LearnerSettings:
+        """The residual's own settings."""
+        return learner_settings(self.residual, "conf/residual")

@@ -1,0 +1,66 @@
+"""A study as MLflow runs: one of its own, and in it one for every model, and the diagnosis."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from rovsim.application.settings import TrackingSettings
+from rovsim.application.tracking.diagnosis import track_diagnosis
+from rovsim.application.tracking.runs import track
+from rovsim.core.files import read_json, read_yaml
+
+
+@dataclass(frozen=True)
+class StudyFiles:
+    """What a study wrote; `models` the files of those that have one, `kept` as artifacts."""
+
+    comparison: Path
+    ladder: Path
+    diagnosis: Path
+    models: Sequence[Path]
+    kept: Sequence[Path]
+
+
+def track_study(
+    settings: TrackingSettings, campaign: str, files: StudyFiles, diagnosing: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Log a study; returns the ids of the runs by name, those of the diagnosis by step.
+
+    Args:
+        settings: where.
+        campaign: its name, that of the experiment.
+        files: what is logged.
+        diagnosing: settings of the diagnosis, nested plain values.
+    """
+    steps = {step["model"]: step["windows_2s"] for step in read_json(files.ladder)["steps"]}
+    written = {path.parent.name: path for path in files.models}
+    parent = track(
+        settings, experiment=campaign, name="study", tags={"model": "study"}, params={},
+        scores={}, files=files.kept,
+    )  # fmt: skip
+    diagnosed = track_diagnosis(
+        settings, campaign, "nominal", read_json(files.diagnosis), diagnosing, [files.diagnosis],
+        parent,
+    )  # fmt: skip
+    runs: dict[str, Any] = {"study": parent, "diagnosis": diagnosed}
+    for name, entry in read_json(files.comparison)["models"].items():
+        runs[name] = track(
+            settings, experiment=campaign, name=name, parent=parent, scores=entry["runs"],
+            metrics={"windows_2s": steps[name]} if steps.get(name) is not None else {},
+            **_described(name, written.get(name)),
+        )  # fmt: skip
+    return runs
+
+
+def _described(name: str, path: Path | None) -> dict[str, Any]:
+    """Tags, hyperparameters and files of one model."""
+    content = read_yaml(path) if path else {}
+    residual = content.get("residual") or {}
+    base = content["provenance"]["base"] if residual else name
+    tags = {"model": base, "residual": residual.get("kind", "none")}
+    arrays = [path.with_name("residual.npz")] if path and residual else []
+    return {
+        "tags": tags | {"control": residual.get("control", "none")},
+        "params": residual.get("settings", {}),
+        "files": [*([path] if path else []), *arrays],
+    }
