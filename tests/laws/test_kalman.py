@@ -18,7 +18,8 @@ from rovsim.diagnosis.observer.kalman import (
     filter_kept,
     sum_of_squares,
 )
-from rovsim.diagnosis.observer.noise import Noise, Tuning, fit_noise
+from rovsim.diagnosis.observer.noise import Noise, Tuning
+from rovsim.diagnosis.observer.noise_fit import fit_noise
 
 H = 0.01
 noises = st.tuples(

@@ -10,7 +10,8 @@ from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, li
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.innovations import estimate_damping, observe
 from rovsim.diagnosis.observer.least_squares import coarsen
-from rovsim.diagnosis.observer.noise import Noise, NoiseFit, Tuning, fit_noise, tune, whiten
+from rovsim.diagnosis.observer.noise import Noise, Tuning, tune, whiten
+from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 
