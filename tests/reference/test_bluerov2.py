@@ -15,9 +15,12 @@ from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
 from rovsim.core.rotations import from_euler, matrix
+from rovsim.core.run import Site
 from rovsim.core.shipped import shipped
-from rovsim.dynamics.engine.compiled import engine
-from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
+from rovsim.dynamics.actuation import Thrust
+from rovsim.dynamics.engine.types import NO_MEMORY
+from rovsim.simulation.batch import Batch
+from rovsim.simulation.drive import Drive
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion
@@ -93,15 +96,10 @@ def slope(x, tau):
 def engine_acceleration(state, command, world=None):
     """nu_dot (6,) of the compiled engine at one state under one thruster command."""
     world = world or model()
-    force = world.thrust_path.thrusters.static_force(np.asarray(command, float))
-    thrust = (world.body.B @ force)[None, None], force[None, None]
-    given = Inputs(*thrust, np.full((1, 6), np.nan), np.zeros(1, np.int64), np.ones(1))
-    site, out = Place(np.full((3, 2), np.nan), np.ones(3)), np.empty((1, 6))
-    engine([]).accelerations(
-        np.zeros(1), state[None], NO_MEMORY, world.constants, given, np.empty((1, 0)), np.empty(0),
-        site, out,
-    )  # fmt: skip
-    return out[0]
+    force = world.thrust_path.thrusters.static_force(np.asarray(command, float))[None]
+    drive = Drive.by(world, Thrust(force, np.zeros((1, 6)), np.full((1, 6), np.nan)), 1.0)
+    batch = Batch([world], Site.unknown())
+    return batch.accelerations(drive, np.zeros(1), state[None], NO_MEMORY)[0]
 
 
 angles, speeds = st.floats(-1.4, 1.4), arrays(float, 6, elements=st.floats(-1.5, 1.5))

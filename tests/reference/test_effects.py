@@ -5,6 +5,8 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, matrix
+from rovsim.core.run import Site
+from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.added_mass import AddedMassCoupling
 from rovsim.dynamics.effects.coupled_damping import CoupledDamping
@@ -17,7 +19,9 @@ from rovsim.dynamics.effects.proximity import SurfaceProximity, WallProximity
 from rovsim.dynamics.effects.rigid_body import Payload
 from rovsim.dynamics.effects.tether import TetherDrag, TetherTension
 from rovsim.dynamics.effects.thrusters import AdvanceLoss, PropellerTorque
-from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Place
+from rovsim.dynamics.engine.types import NO_MEMORY
+from rovsim.simulation.batch import Batch
+from rovsim.simulation.drive import Drive
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion
@@ -72,18 +76,11 @@ def test_parameters_are_the_public_ones(name):
 def push(world, state, force=None, walls=None, demand=None, memory=NO_MEMORY):
     """Wrench (6,) that a model feels at a state: M nu_dot, with thruster forces (8,) in N."""
     walls = np.full((3, 2), np.nan) if walls is None else walls
-    demand = np.full((1, 6), np.nan) if demand is None else demand[None]
+    demand = np.full(6, np.nan) if demand is None else demand
     force = np.zeros(8) if force is None else force
-    given = Inputs(
-        world.actuated(force[None], demand)[None], force[None, None], demand,
-        np.zeros(1, np.int64), np.ones(1),
-    )  # fmt: skip
-    site, out = Place(walls, np.array([1.0, -1.0, -1.0])), np.empty((1, 6))
-    world.engine.accelerations(
-        np.zeros(1), state[None], memory, world.constants, given, world.wrench_parameters()[None],
-        np.empty(0), site, out,
-    )  # fmt: skip
-    return world.body.M @ out[0]
+    drive = Drive.by(world, Thrust(force[None], np.zeros((1, 6)), demand[None]), 1.0)
+    batch = Batch([world], Site(walls, np.array([1.0, -1.0, -1.0])))
+    return world.body.M @ batch.accelerations(drive, np.zeros(1), state[None], memory)[0]
 
 
 @pytest.fixture
