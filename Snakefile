@@ -17,8 +17,6 @@ except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)
 
-R = study.folder
-
 
 wildcard_constraints:
     run="[^/]+",
@@ -29,6 +27,9 @@ wildcard_constraints:
 
 localrules:
     all,
+
+
+include: "workflow/rules/common.smk"
 
 
 rule all:

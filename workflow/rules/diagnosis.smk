@@ -1,11 +1,3 @@
-def clean_runs():
-    """Every run as a motion, and as poses before the filter."""
-    return {
-        "motions": expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
-        "stages": expand(f"{R}/resampled/{{run}}.npz", run=study.runs()),
-    }
-
-
 rule diagnose:
     "Which effects the nominal model lacks on the train runs; their worth on the test runs."
     input:

@@ -1,14 +1,3 @@
-F = f"{R}/folds/{{fold}}"
-
-
-def fold_runs():
-    """Every run of a fold, as motion and as poses before the filter, its split changed."""
-    return {
-        kind: expand(f"{F}/{kind}/{{run}}.npz", run=study.runs(), allow_missing=True)
-        for kind in ("motions", "stages")
-    }
-
-
 rule split:
     "All runs once more, one of them held out: the only test run of its fold."
     input:

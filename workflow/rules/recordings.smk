@@ -10,7 +10,6 @@ if study.synthetic:
             f"{R}/benchmarks/tank.tsv"
         params:
             settings=study.section("tank")["tank"],
-            folder=f"{R}/raw",
             code=study.own_code("simulation.synthetic_tank"),
         script:
             "../scripts/tank.py"
@@ -30,6 +29,10 @@ rule read:
     params:
         campaign=study.campaign_file,
         settings=study.signal("outliers"),
-        code=study.code("measurement.recording", "measurement.campaign", "measurement.signals.outliers"),
+        code=study.code(
+            "measurement.recording",
+            "measurement.campaign",
+            "measurement.signals.outliers",
+        ),
     script:
         "../scripts/read.py"

@@ -1,9 +1,3 @@
-def model_files(wildcards):
-    """A model's file; the baselines have none."""
-    written = wildcards.model in study.files
-    return [f"{R}/models/{wildcards.model}/model.yaml"] if written else []
-
-
 rule replay:
     "Drive one model with the logged commands of one run: open loop and windows."
     input:

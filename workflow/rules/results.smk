@@ -42,7 +42,9 @@ for figure in folds.once:
             timing=f"{R}/timing.json",
             where=f"{R}/where.json",
             diagnosis=f"{R}/diagnosis.json",
-            published_errors=PUBLISHED_ERRORS if ONCE[figure] == "published_errors" else [],
+            published_errors=(
+                PUBLISHED_ERRORS if ONCE[figure] == "published_errors" else []
+            ),
             quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         output:
             png=report(
@@ -59,7 +61,11 @@ for figure in folds.once:
         params:
             figure=figure,
             runs=study.runs(),
-            code=study.code(f"reporting.figures.{figure}", "reporting.figures.style", "reporting.report_data"),
+            code=study.code(
+                f"reporting.figures.{figure}",
+                "reporting.figures.style",
+                "reporting.report_data",
+            ),
         script:
             "../scripts/figure_of_study.py"
 
@@ -87,7 +93,11 @@ for figure in PER_RUN:
             f"{R}/benchmarks/figures/{figure}-{{run}}.tsv"
         params:
             figure=figure,
-            code=study.code(f"reporting.figures.{figure}", "reporting.figures.style", "reporting.report_data"),
+            code=study.code(
+                f"reporting.figures.{figure}",
+                "reporting.figures.style",
+                "reporting.report_data",
+            ),
         script:
             "../scripts/figure_of_run.py"
 
@@ -108,7 +118,6 @@ rule tables:
     benchmark:
         f"{R}/benchmarks/tables.tsv"
     params:
-        folder=f"{R}/tables",
         code=study.code("reporting.tables"),
     script:
         "../scripts/tables.py"

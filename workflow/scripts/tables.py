@@ -1,7 +1,5 @@
 """Write the tables."""
 
-from pathlib import Path
-
 from rovsim.application.pipeline.presentation import write_tables
 from rovsim.application.snakemake_job import job
 
@@ -10,5 +8,5 @@ if __name__ == "__main__":
         write_tables(
             comparison=rule.path("comparison"),
             ladder=rule.path("ladder"),
-            folder=Path(rule.params.folder),
+            folder=rule.output().parent,
         )
