@@ -7,9 +7,18 @@ import numpy as np
 from scipy.signal import lfilter
 
 from rovsim import AXES
-from rovsim.evaluation.error_conditions import Blocks, Judged, content, explain
-from rovsim.evaluation.error_conditions.conditions import BLOCK, SPEEDS, THROUGHOUT, Condition
-from rovsim.evaluation.held_out.published_errors import METRICS, Published, against
+from rovsim.evaluation.error_conditions.conditions import SPEEDS, THROUGHOUT, Blocks, Condition
+from rovsim.evaluation.error_conditions.entries import list_conditions
+from rovsim.evaluation.error_conditions.findings import explain
+from rovsim.evaluation.error_conditions.search import SearchedModel
+from rovsim.evaluation.held_out.published_errors import METRICS, Published, compare_published
+from rovsim.results.comparison import Comparison
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.error_conditions import BLOCK, ErrorConditions
+from rovsim.results.growth import Growth
+from rovsim.results.ladder import Ladder
+from rovsim.results.quality import Quality
+from rovsim.results.timing import Timing
 
 MODELS = (
     "nominal", "knn_3dof", "knn_6dof", "gp_3dof", "gp_6dof", "svgp_3dof", "svgp_6dof",
@@ -32,12 +41,14 @@ def study(
         "predicted_nu_dot": {m: motion["nu_dot"] + 2 * _drift(m, motion, rng) for m in models},
         "predicted_eta": {m: _path(m, motion, rng) for m in models[:3]},
         "tank": np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]]),
-        "comparison": _comparison(models, runs, rng),
-        "growth": _growth(models, rng),
-        "timing": _timing(models, rng),
-        "ladder": ladder,
-        "diagnosis": diagnosis(ladder),
-        "quality": {run: _quality(run, split, rng) for run, split in runs.items()},
+        "comparison": Comparison.model_validate(_comparison(models, runs, rng)),
+        "growth": Growth.model_validate(_growth(models, rng)),
+        "timing": Timing.model_validate(_timing(models, rng)),
+        "ladder": Ladder.model_validate(ladder),
+        "diagnosis": Diagnosis.model_validate(diagnosis(ladder)),
+        "quality": {
+            run: Quality.model_validate(_quality(run, split, rng)) for run, split in runs.items()
+        },
         "where": where(models, duration, seed),
         **_forces(motion, rng),
     }
@@ -57,7 +68,7 @@ def published_errors(comparison: dict[str, Any], runs: list[str], seed: int) -> 
         for run in runs for model in ("knn", "svgp") for axis in AXES
     ]  # fmt: skip
     moved = {run: dict.fromkeys(AXES, True) | {"roll": False} for run in runs}
-    return against(theirs, dict.fromkeys(runs, comparison), moved)
+    return compare_published(theirs, dict.fromkeys(runs, comparison), moved)
 
 
 def driven(seconds: float, error: np.ndarray, seed: int = 0) -> Blocks:
@@ -74,16 +85,18 @@ def driven(seconds: float, error: np.ndarray, seed: int = 0) -> Blocks:
     return Blocks(error, rng.standard_normal((2 * count, 6)), values, time, run)
 
 
-def where(models: tuple[str, ...], seconds: float, seed: int) -> dict[str, Any]:
-    """`where.json` of models whose surge error grows with the speed."""
+def where(models: tuple[str, ...], seconds: float, seed: int) -> ErrorConditions:
+    """Conditions of models whose surge error grows with the speed."""
     found = []
     for k, name in enumerate(models):
         empty = driven(seconds, np.zeros((2 * int(seconds / BLOCK), 6)), seed)
         speed = next(x for c, x in empty.values.items() if c.name == "surge speed")
         noise = np.random.default_rng(k).standard_normal(empty.error.shape)
         error = _level(name) * (0.1 * noise + np.outer(speed * np.abs(speed), [1, 0, 0, 0, 0, 0]))
-        found.append(Judged(name, "train", ("3dof-1",), explain(replace(empty, error=error))))
-    return content(found)
+        found.append(
+            SearchedModel(name, "train", ("3dof-1",), explain(replace(empty, error=error)))
+        )
+    return list_conditions(found)
 
 
 def _forces(motion: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
@@ -177,8 +190,8 @@ def stats(median: float) -> dict[str, Any]:
     """STATS of one predictor."""
     worst = 9 * median
     return {
-        "points": 2000, "features": 14, "outputs": 6, "median_us": median, "p99_us": 2 * median,
-        "p999_us": 4 * median, "max_us": worst,
+        "points": 2000, "features": 14, "outputs": 6, "calls": 99,
+        "median_us": median, "p99_us": 2 * median, "p999_us": 4 * median, "max_us": worst,
         "misses": {str(r): int(4 * median > 1e6 / r) * 12 for r in (50, 100, 250, 1000)},
     }  # fmt: skip
 
@@ -246,7 +259,10 @@ def _quality(run: str, split: str, rng: Any) -> dict[str, Any]:
         "rate_hz": {"nominal": 100.0, "median": 99.98}, "duration_s": 59.99, "frames": 6000,
         "not_found": 281, "longest_gap_s": 2.5, "gaps": gaps, "outliers": 7,
         "repairs": {"duplicates": 3, "unsorted": 2, "command_duplicates": 1},
-        "commands": {"kind": "thruster", "lines": 3000},
+        "commands": {
+            "kind": "thruster", "lines": 3000, "start_s": 0.0, "end_s": 59.98,
+            "median_step_s": 0.02, "longest_step_s": 0.04, "varies": True,
+        },
         "excitation": {
             a: {"std": float(s), "unit": "m/s" if k < 3 else "rad/s", "excited": bool(s > 0.1)}
             for k, (a, s) in enumerate(zip(AXES, std, strict=True))

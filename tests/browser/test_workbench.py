@@ -9,7 +9,6 @@ from chromium import DESK, started
 from rovsim import AXES
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench.traces import HORIZONS
-from rovsim.diagnosis.apply import read_diagnosis
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import describe_effect, read_model
 
@@ -42,7 +41,7 @@ def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbenc
 
     found(tab)
     (path,) = folder.glob("results/*/ui/*/diagnosis.json")
-    diagnosis = read_diagnosis(path)
+    diagnosis = json.loads(path.read_text())
     assert "lacks physics" in tab.page.locator(".verdict").inner_text()
     assert tab.page.locator(".effect h3").all_inner_texts() == ["thruster_lag"]
     shown = tab.numbers()

@@ -6,8 +6,9 @@ import pytest
 from rovsim.benchmarks.speed.accuracy import _left
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import Effort, Stopwatch, _neighbours, _processes
-from rovsim.benchmarks.speed.page import text, write_page
+from rovsim.benchmarks.speed.tables import write_markdown, write_page
 from rovsim.reporting.html.marked import BEGIN, END
+from rovsim.results.timing import Bench
 
 FEW = Effort(calls=5, warmup=1, seconds=0.05)
 
@@ -24,19 +25,19 @@ def pairs(rows=150, asked=20):
 
 @pytest.fixture(scope="module")
 def found():
-    watch = Stopwatch(pairs(), FEW)
+    stopwatch = Stopwatch(pairs(), FEW)
     with pytest.MonkeyPatch.context() as patch:
         patch.delattr("os.setpriority")  # tests do not push other programs aside
-        _neighbours(watch, 150, 0.05)
-        _processes(watch, 150, 0.05)
-    return watch.found
+        _neighbours(stopwatch, 150, 0.05)
+        _processes(stopwatch, 150, 0.05)
+    return stopwatch.found
 
 
 def test_all_ways_predict_the_same(found):
     gaps = {
         f"{name} {other}": gap
         for name, stats in found.items()
-        for other, gap in stats.get("largest_difference", {}).items()
+        for other, gap in stats.largest_difference.items()
         if other != "gpytorch_love"  # an approximation
     }
     assert len(gaps) == 7
@@ -46,17 +47,16 @@ def test_all_ways_predict_the_same(found):
 def test_the_page_shows_the_results(found, tmp_path):
     row = {"points": 5, "median_us": 2.0, "seen": {"mean": 0.5, "worst": 0.6}}
     row |= {"unseen": {"mean": 0.9, "worst": 1.1}}
-    content = {
-        "machine": "M", "scheduling": "S", "replay": {"single_steps_per_s": 2e6},
-        "inference": found,
-        "accuracy": [row | {"name": "gp", "fades": fades} for fades in (False, True)],
-    }  # fmt: skip
+    bench = Bench(
+        machine="M", scheduling="S", replay={"single_steps_per_s": 2e6}, inference=found,
+        accuracy=[row | {"name": "gp", "fades": fades} for fades in (False, True)],
+    )  # fmt: skip
     page = tmp_path / "page.md"
     page.write_text(f"before\n{BEGIN}\n{END}\nafter\n", encoding="utf-8")
-    write_page(page, content)
+    write_page(page, bench)
     assert page.read_text(encoding="utf-8").startswith("before")
-    assert "| single | 2,000,000 |" in text(content)
-    assert "| sklearn_knn | 150 |" in text(content)
+    assert "| single | 2,000,000 |" in write_markdown(bench)
+    assert "| sklearn_knn | 150 |" in write_markdown(bench)
     names = sorted(path.name for path in (tmp_path / "images").iterdir())
     assert names == ["bench_accuracy.png", "bench_sizes.png"]
 
@@ -64,7 +64,7 @@ def test_the_page_shows_the_results(found, tmp_path):
 def test_what_is_left_is_measured_where_it_was_asked():
     knn = fitted("knn", pairs().of("3dof"))
     left = _left(knn, pairs(), "6dof")
-    assert 0.0 < left["mean"] <= left["worst"]
+    assert 0.0 < left.mean <= left.worst
 
 
 def test_a_process_can_be_asked_not_to_fade():

@@ -3,16 +3,17 @@
 import numpy as np
 import pytest
 
+from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import SEEDS, Case, Unlisted, seed_of
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.methods import Method
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
-from rovsim.benchmarks.blind.page import tables
 from rovsim.benchmarks.blind.recipes import RECIPES
-from rovsim.benchmarks.blind.run import answers, place, run
+from rovsim.benchmarks.blind.run import place, read_answers, run
 from rovsim.benchmarks.blind.score import matching, score
 from rovsim.benchmarks.blind.suites import FAMILIES, suite
-from rovsim.benchmarks.blind.summary import detection_limit, judged, summary
+from rovsim.benchmarks.blind.summary import detection_limit, judge, summarize
+from rovsim.benchmarks.blind.tables import write_markdown
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
 from rovsim.core.rotations import from_euler, matrix
@@ -22,6 +23,8 @@ from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.dynamics.model_file import EffectEntry, build_effect
 from rovsim.reporting.html.marked import BEGIN, END, replace_tables
+from rovsim.results.blind_benchmark import BlindSummary
+from rovsim.results.diagnosis import Answer
 
 SHORT = {
     "duration": 2.0,
@@ -39,7 +42,7 @@ def diagnosis(*named, verdict=None, groups=(), **parameters):
     """A diagnosis that selects these effects, the parameters given by effect."""
     selected = [{"effect": n, "parameters": parameters.get(n, {})} for n in named]
     verdict = verdict or ("missing_effects" if named else "adequate")
-    return {"verdict": verdict, "selected": selected, "indistinguishable": list(groups)}
+    return Answer(verdict=verdict, selected=selected, indistinguishable=groups)
 
 
 # the suites
@@ -265,8 +268,8 @@ def test_what_was_answered_is_not_asked_again(tmp_path, asked):
     changed = Method("stub", stub, ("rovsim.core.errors", "rovsim.evaluation.latency"))
     run(cases[:1], [changed], tmp_path / "r", 1)
     assert asked() == 3
-    found = summary(judged(answers(cases, method, tmp_path / "r")))
-    assert found["kinds"]["single"]["exact"] == 1.0
+    found = summarize(judge(read_answers(cases, method, tmp_path / "r")))
+    assert found.kinds["single"].exact == 1.0
 
 
 def test_a_crash_is_a_wrong_answer_and_is_told(tmp_path, asked):
@@ -274,22 +277,22 @@ def test_a_crash_is_a_wrong_answer_and_is_told(tmp_path, asked):
     one, method = case(LAG, tank=SHORT), Method("stub", stub, ("rovsim.core.errors",))
     run([one], [method], tmp_path, 1)
     assert "no idea" in read_json(place(tmp_path, method, one))["error"]
-    found = summary(judged(answers([one], method, tmp_path)))
-    assert found["failed"] == [one.id]
-    assert found["kinds"]["single"]["exact"] == 0.0
+    found = summarize(judge(read_answers([one], method, tmp_path)))
+    assert found.failed == (one.id,)
+    assert found.kinds["single"].exact == 0.0
 
 
 def test_the_page_gets_its_tables_between_the_marks(tmp_path):
     page = tmp_path / "page.md"
     page.write_text(f"before\n{BEGIN}\nlast year's\n{END}\nafter\n")
-    answer = {
-        "case": case(LAG).model_dump(mode="json"), "redrawn": False, "seconds": 1.5,
-        "diagnosis": diagnosis("thruster_lag"),
-    }  # fmt: skip
-    results = {"suite": "quick", "seeds": "reporting", "methods": {}}
-    results["methods"] = {"diagnosis": summary(judged([answer]))}
+    answer = KeptAnswer(
+        digest="", method="diagnosis", case=case(LAG), redrawn=False, seconds=1.5,
+        diagnosis=diagnosis("thruster_lag"),
+    )  # fmt: skip
+    methods = {"diagnosis": summarize(judge([answer]))}
+    results = BlindSummary(suite="quick", seeds="reporting", methods=methods)
     for _ in range(2):
-        replace_tables(page, tables(results))
+        replace_tables(page, write_markdown(results))
     text = page.read_text()
     assert text.startswith("before")
     assert text.endswith("after\n")

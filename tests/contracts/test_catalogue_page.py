@@ -9,10 +9,11 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.evaluation.error_conditions.conditions import average_blocks
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.reporting.catalogue.flight import blocks, fly, found, seen, settings
-from rovsim.reporting.catalogue.page import PAGE, PICTURES, entry, page
+from rovsim.reporting.catalogue.entries import PAGE, PICTURES, entry, page
+from rovsim.reporting.catalogue.flight import fly, found, seen, settings
 from rovsim.reporting.figures.signature import signature, write
 from rovsim.simulation.settings import ReplaySettings
 
@@ -29,7 +30,7 @@ def short(cls):
 def conditions():
     motion = fly(short(built_in()["thruster_gain"]))
     model = nominal(load_vehicle("bluerov2_heavy"))
-    return blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
+    return average_blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
 
 
 @EVERY

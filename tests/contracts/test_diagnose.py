@@ -6,9 +6,11 @@ from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json, read_yaml
-from rovsim.diagnosis.apply import added
+from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import built_in
-from rovsim.evaluation.ladder import floor_step, step, with_diagnosis
+from rovsim.evaluation.ladder import score_step
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.ladder import Ladder, Step
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +70,7 @@ def test_a_diagnosis_is_a_run_and_every_step_a_run_in_it(diagnosed):
 
 def test_nothing_selected_adds_nothing(diagnosed, capsys):
     source = diagnosed / "found" / "diagnosis.json"
-    model, names = added(read_json(source), source, "nominal", None, built_in())
+    model, names = add_effects(Diagnosis.read(source), source, "nominal", None, built_in())
     assert names == []
     assert model.added == ()
     main(["add", f"diagnosis={source}", f"model={diagnosed / 'new.yaml'}"])
@@ -118,22 +120,21 @@ def corrected(campaign, tmp_path_factory):
 
 
 def test_the_ladder_of_a_study_puts_the_effects_where_their_model_stands():
-    models = [{"model": m} for m in ("nominal", "refitted", "effects", "knn_6dof")]
-    found = [{"model": m} for m in ("nominal", "+lift", "+payload", "noise_floor")]
-    steps = [s["model"] for s in with_diagnosis(models, found)["steps"]]
+    models = [Step(model=m) for m in ("nominal", "refitted", "effects", "knn_6dof")]
+    found = [Step(model=m) for m in ("nominal", "+lift", "+payload", "noise_floor")]
+    steps = [s.model for s in Ladder.with_diagnosis(models, found).steps]
     assert steps == ["nominal", "refitted", "+lift", "+payload", "knn_6dof", "noise_floor"]
-    steps = [s["model"] for s in with_diagnosis(models, [found[0], found[-1]])["steps"]]
+    steps = [s.model for s in Ladder.with_diagnosis(models, [found[0], found[-1]]).steps]
     assert steps == ["nominal", "refitted", "knn_6dof", "noise_floor"]
 
 
 def test_a_step_without_runs_has_every_key_and_no_number():
-    empty = step("nominal", [], [])
+    empty = Ladder(steps=(score_step("nominal", [], []),)).to_json()["steps"][0]
     assert empty["windows_2s"] is None
-    assert set(empty) == set(floor_step(0.1))
     assert set(empty["velocity_mae"].values()) == {None}
 
 
 def test_the_workbench_finds_what_the_command_finds(campaign, diagnosed, tmp_path):
     found = tasks.diagnose_into(compose([f"campaign='{campaign}'"]), tmp_path / "diagnosis.json")
-    assert found == read_json(tmp_path / "diagnosis.json")
-    assert found == read_json(diagnosed / "found" / "diagnosis.json")
+    assert found.to_json() == read_json(tmp_path / "diagnosis.json")
+    assert found.to_json() == read_json(diagnosed / "found" / "diagnosis.json")

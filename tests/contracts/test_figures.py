@@ -11,6 +11,12 @@ from rovsim.core.errors import BadInput
 from rovsim.reporting.figures import SECTIONS, kind, kinds
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.report_data import ONCE, PER_RUN
+from rovsim.results.comparison import Comparison
+from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.growth import Growth
+from rovsim.results.ladder import Ladder
+from rovsim.results.published_errors import PublishedErrors
+from rovsim.results.timing import Timing
 from synthetic_study import MODELS, study
 
 EVERY = pytest.mark.parametrize("name", sorted(kinds()))
@@ -50,14 +56,18 @@ def test_it_takes_any_models(name, models, tmp_path):
     save(drawn(name, study(models=models)), tmp_path, name)
 
 
+EMPTY = {
+    "comparison": Comparison(models={}), "growth": Growth(models={}), "ladder": Ladder(steps=()),
+    "timing": Timing(inference={}), "quality": {}, "where": ErrorConditions(models={}), "parts": {},
+    "published_errors": PublishedErrors(runs=(), without_published=(), models={}, cells=()),
+    "diagnosis": study()["diagnosis"].model_copy(update={"selected": (), "ranking": ()}),
+}  # fmt: skip
+
+
 @EVERY
 def test_nothing_measured_is_said_not_crashed(name, tmp_path):
     content = study()
-    for key in (
-        "comparison", "growth", "ladder", "timing", "quality", "where", "diagnosis",
-        "published_errors", "parts",
-    ):  # fmt: skip
-        content[key] = {}
+    content |= EMPTY
     for key in ("nu", "nu_dot", "eta", "missing"):
         content[key] = np.full_like(content[key], np.nan)
     save(drawn(name, content), tmp_path, name)
@@ -65,8 +75,7 @@ def test_nothing_measured_is_said_not_crashed(name, tmp_path):
 
 def test_the_bars_of_the_ladder_are_its_numbers():
     content = study()
-    steps = {s["model"]: s["windows_2s"] for s in content["ladder"]["steps"]}
-    steps.pop("noise_floor", None)
+    steps = {s.model: s.windows_2s for s in content["ladder"].models}
     bars = [p for p in drawn("ladder", content).axes[0].patches if isinstance(p, Rectangle)]
     assert [bar.get_width() for bar in bars] == pytest.approx(list(steps.values()))
     assert all(bar.get_x() == 0 for bar in bars)
@@ -74,9 +83,9 @@ def test_the_bars_of_the_ladder_are_its_numbers():
 
 def test_a_baseline_far_above_all_models_is_cut_so_that_they_can_be_told_apart():
     content = study()
-    steps = {s["model"]: s for s in content["ladder"]["steps"]}
-    steps["zero_acceleration"]["windows_2s"] = 50.0
-    axes = drawn("ladder", content).axes[0]
+    far = {"zero_acceleration": {"windows_2s": 50.0}}
+    steps = [s.model_copy(update=far.get(s.model, {})) for s in content["ladder"].steps]
+    axes = drawn("ladder", {"ladder": Ladder(steps=steps)}).axes[0]
     assert axes.get_xlim()[1] < 2.0
     assert "50.0 →" in [text.get_text() for text in axes.texts]
 
@@ -103,27 +112,27 @@ def test_the_measured_line_is_the_measurement():
 
 def test_curves_of_the_error_by_condition_are_the_bin_means():
     content = study(models=("nominal",))
-    table = content["where"]["models"]["nominal"]["axes"]["surge"]["surge speed"]
+    table = content["where"].models["nominal"].axes["surge"]["surge speed"]
     panel = drawn("where", content).axes[0]
     assert panel.get_title().startswith("surge speed")
-    judged = np.array(table["judged"])
+    judged = np.array(table.judged)
     curve = max(panel.lines, key=lambda line: len(line.get_ydata()))
-    assert list(curve.get_ydata()) == pytest.approx(np.array(table["mean"])[judged].tolist())
+    assert list(curve.get_ydata()) == pytest.approx(np.array(table.mean)[judged].tolist())
 
 
 def test_the_map_frames_the_findings():
     content = study(duration=120.0)
-    model = list(content["where"]["models"].values())[-1]
+    model = list(content["where"].models.values())[-1]
     framed = [p for p in drawn("where_map", content).axes[0].patches if isinstance(p, Rectangle)]
-    assert len(framed) == len(model["findings"]) > 0
+    assert len(framed) == len(model.findings) > 0
 
 
 def test_each_cell_of_the_published_figure_is_error_over_mark():
     found = study()["published_errors"]
-    cells = [cell for cell in found["cells"] if cell["metric"] == "velocity_mae"]
+    cells = [cell for cell in found.cells if cell.metric == "velocity_mae"]
     axes = drawn("against_published", {"published_errors": found}).axes[1]
-    name = next(iter(found["models"]))
-    expected = [min(cell["errors"][name] / cell["mark"], 4.0) for cell in cells]
+    name = next(iter(found.models))
+    expected = [min(cell.errors[name] / cell.mark, 4.0) for cell in cells]
     assert list(axes.lines[0].get_ydata()) == pytest.approx(expected)
     labels = [label.get_text() for label in axes.get_xticklabels()]
     assert labels[:6] == ["surge", "sway", "heave", "(roll)", "pitch", "yaw"]
@@ -131,12 +140,17 @@ def test_each_cell_of_the_published_figure_is_error_over_mark():
 
 def test_the_published_figure_shows_what_is_in_every_fold_and_stands_on_effects():
     names = ["nominal", "effects", "knn_6dof", "gp_3dof", "effects+knn_6dof", "effects+gp_3dof"]
+    known = study()["published_errors"]
     cells = [
-        {"run": run, "axis": "surge", "metric": metric, "demanded": True,
-         "ratios": {n: 1.0 for n in names if "3dof" not in n or run == "b"}}
+        known.cells[0].model_copy(update={
+            "run": run, "metric": metric,
+            "ratios": {n: 1.0 for n in names if "3dof" not in n or run == "b"},
+        })
         for run in "ab" for metric in ("acceleration_rmse", "velocity_mae")
     ]  # fmt: skip
-    figure = drawn("against_published", {"published_errors": {"models": names, "cells": cells}})
+    models = dict.fromkeys(names, known.models["nominal"])
+    found = known.model_copy(update={"models": models, "cells": tuple(cells)})
+    figure = drawn("against_published", {"published_errors": found})
     (legend,) = figure.legends
     shown = [text.get_text() for text in legend.get_texts()]
     assert shown == ["nominal", "effects", "effects+knn_6dof"]

@@ -17,7 +17,7 @@ from recordings import (
 )
 from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign import load_campaign
-from rovsim.measurement.recording import Recording, quality_report, read_run, usable_reason
+from rovsim.measurement.recording import Recording, assess, read_run, usable_reason
 from rovsim.measurement.recording.readers import command_readers, mocap_readers
 
 every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
@@ -80,7 +80,7 @@ def test_a_cut_last_line_is_counted_not_fatal(tmp_path, name):
     recording, anomalies = read_run(load_campaign(folder), "one")
     assert len(recording.time) == len(Swim.ned().time) - 1
     assert anomalies.cut_lines == 1
-    assert any("cut short" in r for r in quality_report(recording, anomalies)["remarks"])
+    assert any("cut short" in r for r in assess(recording, anomalies)["remarks"])
 
 
 @every_format
@@ -109,14 +109,14 @@ def test_a_short_run_and_a_still_one_are_flagged_not_fatal(tmp_path):
     short, anomalies = read_run(
         load_campaign(write_run(tmp_path / "short", swim=Swim.ned(frames=150))), "one"
     )
-    report = quality_report(short, anomalies)
-    assert usable_reason(short) == report["unusable"]
-    assert "too short" in report["unusable"]
-    assert "Record it again" in report["remarks"][0]
+    report = assess(short, anomalies)
+    assert usable_reason(short) == report.unusable
+    assert "too short" in report.unusable
+    assert "Record it again" in report.remarks[0]
     tiny, anomalies = read_run(
         load_campaign(write_run(tmp_path / "tiny", swim=Swim.ned(frames=3))), "one"
     )
-    assert quality_report(tiny, anomalies)["noise"]["position_m"] is None
+    assert assess(tiny, anomalies).noise.position_m is None
     swim = Swim.ned()
     still = Swim(swim.time, np.ones_like(swim.position), np.tile(np.eye(3), (400, 1, 1)))
     recording, _ = read_run(load_campaign(write_run(tmp_path / "still", swim=still)), "one")
@@ -133,13 +133,13 @@ def test_the_quality_report_knows_gaps_noise_and_quiet_axes(tmp_path):
     lines = (folder / FORMATS["qtm_tsv"]).read_text().splitlines()
     first = len(lines) - 6000
     write_lines(folder / FORMATS["qtm_tsv"], lines[: first + 1000] + lines[first + 1030 :])
-    report = quality_report(*read_run(load_campaign(folder), "one"), outliers=7)
-    assert [g["start_s"] for g in report["gaps"]] == pytest.approx([9.99])
-    assert report["longest_gap_s"] == pytest.approx(0.31)
-    assert report["noise"]["position_m"] == pytest.approx(1e-3, rel=0.05)
-    assert report["noise"]["attitude_rad"] == pytest.approx(0.0, abs=1e-5)
-    surge = report["excitation"]["surge"]
-    assert surge["std"] == pytest.approx(np.sqrt(0.5), rel=0.03)
-    assert [axis for axis, e in report["excitation"].items() if e["excited"]] == ["surge"]
-    assert report["outliers"] == 7
-    assert any("sway, heave, roll" in remark for remark in report["remarks"])
+    report = assess(*read_run(load_campaign(folder), "one"), outliers=7)
+    assert [gap.start_s for gap in report.gaps] == pytest.approx([9.99])
+    assert report.longest_gap_s == pytest.approx(0.31)
+    assert report.noise.position_m == pytest.approx(1e-3, rel=0.05)
+    assert report.noise.attitude_rad == pytest.approx(0.0, abs=1e-5)
+    surge = report.excitation["surge"]
+    assert surge.std == pytest.approx(np.sqrt(0.5), rel=0.03)
+    assert [axis for axis, e in report.excitation.items() if e.excited] == ["surge"]
+    assert report.outliers == 7
+    assert any("sway, heave, roll" in remark for remark in report.remarks)

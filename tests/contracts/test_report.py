@@ -9,18 +9,22 @@ from html.parser import HTMLParser
 import pytest
 
 from rovsim import AXES
-from rovsim.core.files import write_json
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
-from rovsim.reporting.html import leave_one_run_out, page, published_errors, terminal
+from rovsim.reporting.html import leave_one_run_out, published_errors, report, terminal
 from rovsim.reporting.html.marked import BEGIN, END
 from rovsim.reporting.html.speed import timing_sentences
-from rovsim.reporting.html.verdict import verdict
-from rovsim.reporting.tables import errors_table, escaped, ladder_table
+from rovsim.reporting.html.verdict import explain
+from rovsim.reporting.report_data import ReportData
+from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
+from rovsim.results.comparison import Comparison
+from rovsim.results.diagnosis import DiagnosisErrors, Unexplained
+from rovsim.results.pitfalls import Pitfalls
+from rovsim.results.published_errors import MissedCell
 from synthetic_study import study
 
-JOINT = ["linear_damping.surge", "added_mass.surge"]
+JOINT = ("linear_damping.surge", "added_mass.surge")
 
 
 @pytest.fixture(scope="module")
@@ -32,19 +36,22 @@ def content():
 def html(content, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     save(kind("ladder").draw(ladder=content["ladder"]), folder, "ladder")
-    picture = page.Picture.read(folder / "ladder.png", "ladder")
-    inputs = page.ReportInputs(
-        "tank <b>&", content["comparison"], content["ladder"], content["timing"],
-        content["quality"], [picture], {"settings": {"seed": 0}},
-        where=content["where"], diagnosis=_rude(content["diagnosis"]),
-    )  # fmt: skip
-    return page.render(inputs)
+    picture = report.Picture.read(folder / "ladder.png", "ladder")
+    known = {k: content[k] for k in ("comparison", "ladder", "timing", "quality", "where")}
+    data = ReportData(**known, diagnosis=_rude(content["diagnosis"]))
+    return report.render(report.Report("tank <b>&", data, [picture], {"settings": {"seed": 0}}))
+
+
+def rendered(**results):
+    """The page of these results alone."""
+    return report.render(report.Report("x", ReportData(**results)))
 
 
 def _rude(found):
     """A diagnosis whose texts would be markup, were they not escaped."""
-    unexplained = found["unexplained"] | {"hint": "<script>alert(1)</script>"}
-    return found | {"unexplained": unexplained, "next_experiment": "Run <i>6dof & co</i>"}
+    unexplained = found.unexplained.model_copy(update={"hint": "<script>alert(1)</script>"})
+    rude = {"unexplained": unexplained, "next_experiment": "Run <i>6dof & co</i>"}
+    return found.model_copy(update=rude)
 
 
 class Tags(HTMLParser):
@@ -90,13 +97,13 @@ def test_names_are_escaped_and_every_section_is_there(html):
 
 
 def test_the_page_shows_the_numbers_of_the_ladder(html, content):
-    for step in content["ladder"]["steps"]:
-        assert f"{step['windows_2s']:.3g}"[:4] in html
+    for step in content["ladder"].steps:
+        assert f"{step.windows_2s:.3g}"[:4] in html
 
 
 def test_the_findings_of_every_model_are_sentences_on_the_page(html, content):
-    for model in content["where"]["models"].values():
-        for sentence in model["sentences"]:
+    for model in content["where"].models.values():
+        for sentence in model.sentences:
             assert sentence in html
 
 
@@ -116,52 +123,51 @@ def test_the_verdict_says_what_how_much_how_sure_and_what_is_open(html):
 
 def test_terminal_and_page_say_the_same(content):
     found = content["diagnosis"]
-    text = " ".join(terminal.diagnosed(found, built_in()).split())
-    for remark in verdict(found, built_in()).remarks:
+    text = " ".join(terminal.tell_diagnosis(found, built_in()).split())
+    for remark in explain(found, built_in()).remarks:
         assert " ".join(remark.split()) in text
 
 
 def test_sections_without_content_are_left_out(content):
-    inputs = page.ReportInputs("x", diagnosis=content["diagnosis"], ladder=content["ladder"])
-    found = page.render(inputs)
+    found = rendered(diagnosis=content["diagnosis"], ladder=content["ladder"])
     assert re.findall(r"<h2>(.*?)</h2>", found) == ["Verdict", "Ladder"]
     assert re.findall(r"<a href=\"#(\w+)\"", found) == ["verdict", "ladder"]
 
 
-def test_too_little_data_is_a_verdict_without_an_error():
-    error = {"nominal": None, "with_effects": None, "noise_floor": None}
+def test_too_little_data_is_a_verdict_without_an_error(content):
     nothing = {"fraction": 0.0, "significant": False, "hint": "Nothing is left but noise."}
     found = {
-        "verdict": "insufficient_data", "selected": [], "ranking": [], "indistinguishable": [],
-        "unexplained": nothing, "next_experiment": "Record more.", "error": error,
+        "verdict": "insufficient_data", "selected": (), "ranking": (), "indistinguishable": (),
+        "unexplained": Unexplained(**nothing), "next_experiment": "Record more.",
+        "error": DiagnosisErrors(nominal=None, with_effects=None, noise_floor=None),
     }  # fmt: skip
-    said = verdict(found, built_in())
+    said = explain(content["diagnosis"].model_copy(update=found), built_in())
     assert said.remarks[0].startswith("No test run could be used")
     assert not any("noise" in remark for remark in said.remarks)
 
 
 def _write_folds(folder, content):
     """What a study of folds leaves in its results; one fold knows two values only together."""
-    write_json(folder / "published_errors.json", content["published_errors"])
-    write_json(folder / "timing.json", content["timing"])
-    for run, group in zip(content["published_errors"]["runs"], ([], JOINT), strict=True):
-        diagnosis = content["diagnosis"] | {"known_together": [group] if group else []}
-        write_json(folder / "folds" / run / "diagnosis.json", diagnosis)
+    content["published_errors"].write(folder / "published_errors.json")
+    content["timing"].write(folder / "timing.json")
+    for run, groups in zip(content["published_errors"].runs, ((), (JOINT,)), strict=True):
+        diagnosis = content["diagnosis"].model_copy(update={"known_together": groups})
+        diagnosis.write(folder / "folds" / run / "diagnosis.json")
 
 
 def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
     found = content["published_errors"]
-    html = page.render(page.ReportInputs("x", published_errors=found))
+    html = rendered(published_errors=found)
     assert re.findall(r"<h2>(.*?)</h2>", html) == ["Against the published numbers"]
-    one = found["models"]["gp_6dof"]
-    assert f'data-value="{one["geometric_mean"]}"' in html
+    one = found.models["gp_6dof"]
+    assert f'data-value="{one.geometric_mean}"' in html
     path = tmp_path / "page.md"
     _write_folds(tmp_path, content)
     path.write_text(f"# Words\n\n{BEGIN}\nbefore\n{END}\nmore words\n")
     leave_one_run_out.main([str(tmp_path), str(path)])
     text = path.read_text()
     assert "pitfalls" not in text
-    runs = " | ".join(f"without {run}" for run in found["runs"])
+    runs = " | ".join(f"without {run}" for run in found.runs)
     assert f"| parameter | {runs} |" in text
     assert "| thruster_lag time_constant | 0.1500 ± 0.0078 s | 0.1500 ± 0.0078 s |" in text
     assert "| linear_damping.surge, added_mass.surge | 1 of 2 |" in text
@@ -169,16 +175,21 @@ def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
     assert "before" not in text
     assert "more words" in text
     row = next(line for line in text.splitlines() if line.startswith("| gp_6dof |"))
-    assert f"{one['below']} of {one['cells']}" in row
-    cells = [c for c in found["cells"] if c["metric"] == "velocity_mae"]
+    assert f"{one.below} of {one.cells}" in row
+    cells = [c for c in found.cells if c.metric == "velocity_mae"]
     assert text.split("### Velocity MAE")[1].split("###")[0].count("| 3dof-2 |") == len(cells) / 2
 
 
-def test_effects_and_residual_are_said_cell_by_cell():
-    missed = [{"run": "a", "axis": "yaw", "metric": "velocity_mae", "ratio": 1.25}]
-    missed += [{"run": "b", "axis": "yaw", "metric": "acceleration_rmse", "ratio": None}]
-    one = {"cells": 24, "below": 22, "geometric_mean": None, "not_below": missed}
-    (sentence,) = published_errors.said({"models": {"effects+knn_6dof": one, "nominal": one}})
+def test_effects_and_residual_are_said_cell_by_cell(content):
+    known = content["published_errors"]
+    missed = (
+        MissedCell(run="a", axis="yaw", metric="velocity_mae", ratio=1.25),
+        MissedCell(run="b", axis="yaw", metric="acceleration_rmse", ratio=None),
+    )
+    two = {"cells": 24, "below": 22, "geometric_mean": None, "not_below": missed}
+    one = known.models["nominal"].model_copy(update=two)
+    models = {"effects+knn_6dof": one, "nominal": one}
+    (sentence,) = published_errors.tell_standings(known.model_copy(update={"models": models}))
     assert sentence == (
         "effects+knn_6dof: 22 of 24 cells below the mark, geometric mean of the ratios –. "
         "Not below: a yaw velocity MAE (1.25), b yaw acceleration RMSE (–)."
@@ -187,34 +198,33 @@ def test_effects_and_residual_are_said_cell_by_cell():
 
 def test_mistakes_are_said_run_by_run(content, tmp_path):
     cost = {"right": 0.5, "wrong": 1.25}
-    pitfalls = {"runs": {"a": {"wrong clock": cost}, "b": {"wrong clock": cost | {"wrong": None}}}}
-    (sentence,) = published_errors.repeated(pitfalls)
+    runs = {"a": {"wrong clock": cost}, "b": {"wrong clock": cost | {"wrong": None}}}
+    pitfalls = Pitfalls(runs=runs)
+    (sentence,) = published_errors.tell_pitfalls(pitfalls)
     assert sentence == (
         "Wrong clock: bins of about 0.157 s replayed as if each lasted 0.1 s. Velocity RMSE of the "
         "open loop / spread: 0.500 becomes 1.25 (a), 0.500 becomes – (b)."
     )
-    html = page.render(
-        page.ReportInputs("x", published_errors=content["published_errors"], pitfalls=pitfalls)
-    )
+    html = rendered(published_errors=content["published_errors"], pitfalls=pitfalls)
     assert sentence in unescape(html)
     (tmp_path / "page.md").write_text(f"{BEGIN}\n{END}\n")
     _write_folds(tmp_path, content)
-    write_json(tmp_path / "pitfalls.json", pitfalls)
+    pitfalls.write(tmp_path / "pitfalls.json")
     leave_one_run_out.main([str(tmp_path), str(tmp_path / "page.md")])
     assert sentence in (tmp_path / "page.md").read_text()
 
 
 def test_an_empty_study_is_a_page_too():
-    assert "Summary" in page.render(page.ReportInputs("nothing", {"models": {}}))
+    assert "Summary" in rendered(comparison=Comparison(models={}))
 
 
 @pytest.mark.parametrize("quantity", ["velocity_rmse", "velocity_mae", "acceleration_rmse"])
 def test_tables_hold_the_comparisons_numbers(content, quantity):
-    table = errors_table(content["comparison"], "2", "test", quantity)
+    table = tabulate_errors(content["comparison"], "2", "test", quantity)
     rows = list(csv.reader(io.StringIO(table.csv())))
-    assert len(rows) == 1 + len(content["comparison"]["models"])
-    runs = content["comparison"]["models"]["nominal"]["runs"]
-    tests = [r["windows"]["2"][quantity]["surge"] for r in runs.values() if r["split"] == "test"]
+    assert len(rows) == 1 + len(content["comparison"].models)
+    runs = content["comparison"].models["nominal"].runs
+    tests = [r.windows["2"].by_axis(quantity)["surge"] for r in runs.values() if r.split == "test"]
     row = next(r for r in rows if r[0] == "nominal")
     assert min(tests) <= float(row[1]) <= max(tests)
     latex = table.latex()
@@ -224,5 +234,4 @@ def test_tables_hold_the_comparisons_numbers(content, quantity):
 
 
 def test_latex_special_characters_are_escaped():
-    assert escaped("a_b & 50%") == r"a\_b \& 50\%"
-    assert r"zero\_acceleration" in ladder_table(study()["ladder"]).latex()
+    assert r"zero\_acceleration" in tabulate_ladder(study()["ladder"]).latex()

@@ -6,6 +6,7 @@ import time
 import numpy as np
 import pytest
 
+import synthetic_study
 from chores import counting, dying, failing
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
@@ -18,6 +19,8 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import describe_model, read_model, write_model
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.ladder import Ladder, Step
 from worlds import model
 
 
@@ -30,25 +33,26 @@ def bench(tmp_path_factory):
     return Workbench.opened(settings, built_in())
 
 
-def diagnosis(**values):
-    """A diagnosis that selects a lag with this fitted value."""
+def diagnosis():
+    """A diagnosis that selects a lag with a fitted value."""
     lag = {"effect": "thruster_lag", "parameters": {"time_constant": {"value": 0.18, "std": 0.01}}}
-    return {"selected": [lag | values], "ranking": [], "base": describe_model(model())}
+    content = synthetic_study.diagnosis({"steps": []}) | {"selected": [lag], "ranking": []}
+    return Diagnosis.model_validate(content)
 
 
 @pytest.mark.parametrize("horizon", [0.5, 2.0, 5.0, None])
 def test_its_errors_are_those_of_the_comparison(bench, horizon):
-    found = compare(bench.data, [bench.base], bench.settings).comparison["models"]["nominal"]
-    for run, scores in found["runs"].items():
-        told = scores["open_loop"] if horizon is None else scores["windows"][f"{horizon:g}"]
+    found = compare(bench.data, [bench.base], bench.settings).comparison.models["nominal"]
+    for run, scores in found.runs.items():
+        told = scores.open_loop if horizon is None else scores.windows[f"{horizon:g}"]
         assert bench.metrics(bench.base, run, horizon) == told
 
 
 def test_its_ladder_holds_the_diagnosis_the_models_and_the_floor_last(bench, monkeypatch):
-    steps = [bench.step(bench.base), {"model": "+lag", "windows_2s": 0.1}]
-    steps += [{"model": "noise_floor", "windows_2s": 0.05}]
-    monkeypatch.setattr(bench, "diagnosis", {"ladder": {"steps": steps}})
-    names = [s["model"] for s in bench.ladder()["steps"]]
+    found = (Step(model="+lag", windows_2s=0.1), Step(model="noise_floor", windows_2s=0.05))
+    ladder = Ladder(steps=(bench.step(bench.base), *found))
+    monkeypatch.setattr(bench, "diagnosis", diagnosis().model_copy(update={"ladder": ladder}))
+    names = [s.model for s in bench.ladder().steps]
     assert names == ["zero_acceleration", "nominal", "+lag", "noise_floor"]
 
 
@@ -80,14 +84,14 @@ def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench
     here = Workbench(bench.settings, built_in(), bench.data, dict(bench.models), dict(bench.paths))
     file = tasks.train_into(here.only("nominal"), here.out / "knn_6dof.yaml")
     here.add(read_model(file, built_in()), file)
-    page = tasks.report_into(here.only(*here.models), {"ladder": here.ladder()}, here.out)
+    page = tasks.report_into(here.only(*here.models), here.ladder(), None, here.out)
     assert page.name == "report.html"
     assert len(drawn) == 1
     comparison = read_json(here.out / "comparison.json")["models"]
     assert list(comparison) == ["nominal", "knn_6dof"]
     for name, one in here.models.items():
         for run, scores in comparison[name]["runs"].items():
-            assert here.metrics(one, run, 2.0) == scores["windows"]["2"]
+            assert here.metrics(one, run, 2.0).model_dump() == scores["windows"]["2"]
     steps = read_json(here.out / "ladder.json")["steps"]
     assert [s["model"] for s in steps] == ["zero_acceleration", "nominal", "knn_6dof"]
 
@@ -129,7 +133,7 @@ def test_a_draft_begins_as_the_diagnosis_and_what_is_saved_is_read_back(tmp_path
 
 @pytest.mark.parametrize("effect", built_in())
 def test_every_effect_can_be_added_and_moved_within_its_sliders(effect):
-    draft = Draft(model(), {}, built_in())
+    draft = Draft(model(), None, built_in())
     draft.tick(effect, True)
     known = {p.name: p for p in built_in()[effect].parameters}
     for name, value in draft.entry(effect).parameters.items():
@@ -141,7 +145,7 @@ def test_every_effect_can_be_added_and_moved_within_its_sliders(effect):
 
 
 def test_values_no_model_can_have_are_refused():
-    draft = Draft(model(), {}, built_in())
+    draft = Draft(model(), None, built_in())
     draft.tick("added_mass", True)
     draft.move("added_mass", "surge", -1e4)
     with pytest.raises(BadInput):

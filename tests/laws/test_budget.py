@@ -6,7 +6,7 @@ import pytest
 from rovsim.core.rotations import exp
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot
-from rovsim.evaluation.budget import RESTORING, Budget, budget
+from rovsim.evaluation.budget import RESTORING, Budget, balance_forces
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
@@ -24,7 +24,7 @@ def run(kind="thruster"):
 
 def made(world, found=None):
     found = found or run()
-    return budget(
+    return balance_forces(
         world, found, sample_run(world, found, SignalSettings(), ReplaySettings()), ReplaySettings()
     )
 
@@ -70,7 +70,7 @@ def test_the_missing_force_is_the_one_that_was_left_out():
     settings = SignalSettings()
     found = sample_run(world, moved, settings, ReplaySettings())
     plain = sample_run(world, measured, settings, ReplaySettings())
-    both = [budget(world, moved, s, ReplaySettings()).missing for s in (found, plain)]
+    both = [balance_forces(world, moved, s, ReplaySettings()).missing for s in (found, plain)]
     change = (both[0] - both[1] - moved.nu_dot @ world.body.M.T)[5:-5]
     np.testing.assert_allclose(change, 0.0, atol=1e-9)
     assert "+constant_wrench" in made(pushed).parts

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rovsim import AXES
-from rovsim.diagnosis.advice import next_experiment
+from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
@@ -57,9 +57,7 @@ def test_a_value_that_is_surely_there_is_known_by_itself():
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     found = TrainDiagnosis(fit(alike()).hypothesis.base, fit(alike()), [], [], [], [], [], 60.0)
     loops = [f"onboard_control.gain_{axis}" for axis in AXES[:2]]
-    advice = next_experiment(
-        found, [], [["added_mass.surge", "net_buoyancy.force"], loops], built_in()
-    )
+    advice = advise(found, [], [["added_mass.surge", "net_buoyancy.force"], loops], built_in())
     reveals = built_in()["onboard_control"].revealed_by
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
-    assert next_experiment(found, [], [], built_in()).startswith("Nothing is needed")
+    assert advise(found, [], [], built_in()).startswith("Nothing is needed")

@@ -42,9 +42,9 @@ def test_what_is_wrong_costs(flown):
     found = cost(model, runs, test)
     assert set(found) == set(PITFALLS) - {"wrong clock"}  # sampled: there are no bins
     for one in found.values():
-        assert one["wrong"] < one["right"] < 1.0
-    assert found["lost data"]["right"] > 0.3
-    assert found["lost data"]["wrong"] == pytest.approx(0.0, abs=1e-3)  # the prior knows nothing
+        assert one.wrong < one.right < 1.0
+    assert found["lost data"].right > 0.3
+    assert found["lost data"].wrong == pytest.approx(0.0, abs=1e-3)  # the prior knows nothing
     alone = cost(model, runs[1:], test)
     assert "copied runs" not in alone
 

@@ -9,9 +9,11 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.held_out.folds import held_out
-from rovsim.evaluation.held_out.published_errors import METRICS, Published, against, standing
+from rovsim.evaluation.held_out.published_errors import METRICS, Published, compare_published, stand
 from rovsim.learning.pairs import choose_training_runs
 from rovsim.measurement.signals.motion import Poses
+from rovsim.results.base import ByAxis
+from rovsim.results.comparison import Comparison, Metrics, ModelErrors, RunErrors
 
 errors = st.floats(1e-3, 1e3)
 six = st.lists(errors, min_size=6, max_size=6)
@@ -21,10 +23,14 @@ def compared(still, ours):
     """`comparison.json` of run r, its errors (6,) the same in every metric."""
 
     def entry(values):
-        by_axis = dict(zip(AXES, values, strict=True))
-        return {"runs": {"r": {"open_loop": dict.fromkeys(METRICS, by_axis)}}}
+        by_axis = ByAxis.of(np.array(values))
+        errors = Metrics(
+            **dict.fromkeys(METRICS, by_axis), position_rmse_m=None, attitude_rmse_rad=None
+        )
+        run = RunErrors(split="test", control="6dof", open_loop=errors, windows={})
+        return ModelErrors(runs={"r": run})
 
-    return {"r": {"models": {"zero_acceleration": entry(still), "ours": entry(ours)}}}
+    return {"r": Comparison(models={"zero_acceleration": entry(still), "ours": entry(ours)})}
 
 
 def table(*models):
@@ -37,32 +43,34 @@ def table(*models):
 
 @given(six, six, six, six, st.lists(st.booleans(), min_size=6, max_size=6))
 def test_no_mark_is_above_all_that_is_known(one, two, still, ours, moved):
-    found = against(
+    found = compare_published(
         table(one, two), compared(still, ours), {"r": dict(zip(AXES, moved, strict=True))}
     )
-    for cell in found["cells"]:
-        k = AXES.index(cell["axis"])
-        assert min(one[k], two[k]) <= cell["mark"] <= max(min(one[k], two[k]), still[k])
-        assert moved[k] <= (cell["mark"] == min(one[k], two[k]))
-        assert cell["ratios"]["ours"] * cell["mark"] == pytest.approx(ours[k])
+    for cell in found.cells:
+        k = AXES.index(cell.axis)
+        assert min(one[k], two[k]) <= cell.mark <= max(min(one[k], two[k]), still[k])
+        assert moved[k] <= (cell.mark == min(one[k], two[k]))
+        assert cell.ratios["ours"] * cell.mark == pytest.approx(ours[k])
 
 
 @given(six, six, six, six, st.floats(0.1, 10.0))
 def test_the_mean_scales_with_the_errors(one, two, still, ours, factor):
     moved = {"r": dict.fromkeys(AXES, True)}
     means = [
-        against(table(one, two), compared(still, [s * x for x in ours]), moved)["models"]["ours"]
+        compare_published(table(one, two), compared(still, [s * x for x in ours]), moved).models[
+            "ours"
+        ]
         for s in (1.0, factor)
     ]
-    assert means[1]["geometric_mean"] == pytest.approx(factor * means[0]["geometric_mean"])
+    assert means[1].geometric_mean == pytest.approx(factor * means[0].geometric_mean)
 
 
 @given(st.lists(st.one_of(st.none(), errors), min_size=1))
 def test_below_and_not_below_are_all_cells(ratios):
-    found = standing(ratios)
-    assert found["cells"] == len(ratios)
-    assert found["below"] == sum(r is not None and r < 1 for r in ratios)
-    assert (found["geometric_mean"] is None) == (None in ratios)
+    found = stand(ratios)
+    assert found.cells == len(ratios)
+    assert found.below == sum(r is not None and r < 1 for r in ratios)
+    assert (found.geometric_mean is None) == (None in ratios)
 
 
 def run(name, control, split):

@@ -1,7 +1,5 @@
 """Hidden physics is named, with its values; nothing is named where nothing is hidden."""
 
-import json
-
 import numba
 import pytest
 
@@ -9,7 +7,7 @@ from rovsim.benchmarks.blind.asking import diagnosis
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import combination, nothing
 from rovsim.core.files import read_yaml
-from rovsim.diagnosis.result import SCHEMA
+from rovsim.results.diagnosis import Diagnosis
 from worlds import SHARED, needed
 
 pytestmark = pytest.mark.slow
@@ -20,7 +18,7 @@ PRACTICE = (
 
 
 def named(found):
-    return {one["effect"]: one["parameters"] for one in found["selected"]}
+    return {one.effect: one.parameters for one in found.selected}
 
 
 @pytest.mark.parametrize("name", PRACTICE)
@@ -28,28 +26,27 @@ def test_independent_exports_give_up_what_they_hide(name):
     folder = needed(SHARED / "practice" / name)
     answer = read_yaml(folder / "answer.yaml")
     found = diagnosis(folder, folder)
-    assert found["verdict"] == answer["verdict"]
+    assert found.verdict == answer["verdict"]
     if answer["verdict"] == "unexplained":
-        assert found["unexplained"]["significant"]
+        assert found.unexplained.significant
         return
     truth = {e["effect"]: e["parameters"] for e in answer.get("effects", [])}
     assert set(named(found)) == set(truth)
     for effect, values in truth.items():
         for parameter, value in values.items():
-            assert named(found)[effect][parameter]["value"] == pytest.approx(value, rel=0.05)
-    before, after, floor = (found["error"][k] for k in ("nominal", "with_effects", "noise_floor"))
-    assert after <= before
-    assert after == pytest.approx(floor, rel=0.15)
+            assert named(found)[effect][parameter].value == pytest.approx(value, rel=0.05)
+    assert found.error.with_effects <= found.error.nominal
+    assert found.error.with_effects == pytest.approx(found.error.noise_floor, rel=0.15)
 
 
 @pytest.mark.parametrize("case", [nothing(40, "development"), combination(2, 41, "development")])
 def test_the_tank_gives_up_what_it_hides(case, tmp_path):
     flown = fly(case, tmp_path / "raw")
     found = diagnosis(tmp_path / "raw", tmp_path)
-    assert found["verdict"] in flown.verdicts
+    assert found.verdict in flown.verdicts
     assert set(named(found)) == set(flown.names)
-    assert found["schema"] == SCHEMA
-    assert json.loads(json.dumps(found, allow_nan=False)) == found
+    found.write(tmp_path / "diagnosis.json")
+    assert Diagnosis.read(tmp_path / "diagnosis.json") == found
 
 
 def test_the_same_runs_give_the_same_diagnosis_on_any_number_of_cores(tmp_path, monkeypatch):
@@ -58,4 +55,4 @@ def test_the_same_runs_give_the_same_diagnosis_on_any_number_of_cores(tmp_path, 
     monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 3)
     first = diagnosis(tmp_path / "raw", tmp_path)
     monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 1)
-    assert json.dumps(diagnosis(tmp_path / "raw", tmp_path)) == json.dumps(first)
+    assert diagnosis(tmp_path / "raw", tmp_path) == first

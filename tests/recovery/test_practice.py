@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.application.pipeline.recordings import load_campaign_vehicle
 from rovsim.dynamics.model import nominal
-from rovsim.evaluation.scores import errors, pooled, rms, score
+from rovsim.evaluation.scores import pool, rms, score, subtract
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
@@ -22,8 +22,8 @@ def test_the_nominal_model_explains_the_empty_practice_tank():
         if run.split == "test":
             motion = clean(read_run(campaign, run.id)[0], SignalSettings())
             again = replay(model, motion, SignalSettings(), ReplaySettings())
-            found.append(errors(motion, again.horizons["2"]))
-    assert np.all(rms(pooled(found).nu) <= [0.013] * 3 + [0.035] * 3)
+            found.append(subtract(motion, again.horizons["2"]))
+    assert np.all(rms(pool(found).nu) <= [0.013] * 3 + [0.035] * 3)
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_bins_are_compared_as_bins(binned):
     model, motion = binned
     found = score(motion, replay(model, motion, SignalSettings(), ReplaySettings()))
     for horizon in ("0.5", "2", "5"):
-        assert found["windows"][horizon]["velocity_rmse"]["surge"] < 1.0
+        assert found.windows[horizon].velocity_rmse["surge"] < 1.0
     again = replay(model, motion, SignalSettings(), ReplaySettings())
     predicted = again.horizons["2"]
     both = np.isfinite(predicted.nu).all(axis=1)

@@ -7,7 +7,7 @@ import pytest
 
 from rovsim.benchmarks.blind import methods
 from rovsim.benchmarks.blind.library import problem, steps
-from rovsim.benchmarks.blind.sparse import answered, forward, thresholded
+from rovsim.benchmarks.blind.sparse import answer, forward, thresholded
 from rovsim.core import extras
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
@@ -39,16 +39,16 @@ def exact(world):
 @BOTH
 def test_a_linear_effect_is_found_with_its_value(regression):
     run = exact(model(built_in()["linear_damping"](**DRAG)))
-    answer = answered(problem(model(), [run], OFFERED), regression)
-    assert answer["verdict"] == "missing_effects"
-    assert [s["effect"] for s in answer["selected"]] == ["linear_damping"]
-    assert answer["selected"][0]["parameters"]["surge"]["value"] == pytest.approx(20.0, rel=0.02)
+    found = answer(problem(model(), [run], OFFERED), regression)
+    assert found.verdict == "missing_effects"
+    assert [one.effect for one in found.selected] == ["linear_damping"]
+    assert found.selected[0].parameters["surge"].value == pytest.approx(20.0, rel=0.02)
 
 
 @BOTH
 def test_nothing_is_found_where_nothing_is_hidden(regression):
-    answer = answered(problem(model(), [exact(model())], OFFERED), regression)
-    assert (answer["verdict"], answer["selected"]) == ("adequate", [])
+    found = answer(problem(model(), [exact(model())], OFFERED), regression)
+    assert (found.verdict, found.selected) == ("adequate", ())
 
 
 def test_every_effect_has_its_columns():

@@ -7,9 +7,9 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry
-from rovsim.evaluation.scores import errors, rms
+from rovsim.evaluation.scores import rms, subtract
 from rovsim.measurement.campaign import load_campaign
-from rovsim.measurement.quality_report import quality_of
+from rovsim.measurement.quality_report import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay
@@ -46,7 +46,7 @@ def recorded(tmp_path, **settings):
 
 def window_error(model, motion):
     found = replay(model, motion, SignalSettings(), ReplaySettings())
-    return rms(errors(motion, found.horizons["2"]).nu)
+    return rms(subtract(motion, found.horizons["2"]).nu)
 
 
 @pytest.mark.parametrize("seed", [11, 12])
@@ -115,14 +115,14 @@ def test_logged_demands_drive_an_empty_tank_too(tmp_path):
 def test_the_exports_hold_the_stated_noise_and_faults(tmp_path):
     camera = Camera(bursts_per_minute=10, outliers_per_minute=10)
     _, recording, anomalies, _ = recorded(tmp_path, seed=3, camera=camera)
-    report = quality_of(recording, anomalies, SignalSettings().outliers)
-    assert report["frames"] == 3000
-    assert 1 <= report["outliers"] <= 15
-    assert report["not_found"] > 0
-    noise = report["noise"]
-    assert noise["position_m"] == pytest.approx(camera.position_noise, rel=0.1)
-    assert noise["attitude_rad"] == pytest.approx(camera.attitude_noise, rel=0.1)
-    assert all(axis["excited"] for axis in report["excitation"].values())
+    report = report_quality(recording, anomalies, SignalSettings().outliers)
+    assert report.frames == 3000
+    assert 1 <= report.outliers <= 15
+    assert report.not_found > 0
+    noise = report.noise
+    assert noise.position_m == pytest.approx(camera.position_noise, rel=0.1)
+    assert noise.attitude_rad == pytest.approx(camera.attitude_noise, rel=0.1)
+    assert all(axis.excited for axis in report.excitation.values())
 
 
 def test_without_noise_the_measured_velocity_is_the_true_one(tmp_path):

@@ -7,12 +7,14 @@ import pytest
 
 from rovsim import AXES
 from rovsim.core.run import Site
-from rovsim.evaluation.error_conditions import blocks, explain, judged
-from rovsim.evaluation.error_conditions.bins import binned, number_stretches, table
-from rovsim.evaluation.error_conditions.conditions import BLOCK
-from rovsim.evaluation.error_conditions.sentences import summary
+from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
+from rovsim.evaluation.error_conditions.conditions import average_blocks
+from rovsim.evaluation.error_conditions.findings import explain
+from rovsim.evaluation.error_conditions.search import search_conditions
+from rovsim.evaluation.error_conditions.sentences import summarize
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.results.error_conditions import BLOCK
 from rovsim.simulation.settings import ReplaySettings
 from synthetic_study import driven
 from worlds import at_rest, model, motion, sticks
@@ -65,12 +67,9 @@ def test_a_planted_cause_is_the_first_finding(cause, seed):
     # bins are steps, and seldom visited ones are not judged, so the share errs to the low side
     low = 0.3 if first.table.binning.judged.all() else 0.8
     assert explained - low < first.share_of_error < explained + 0.05
-    assert words in summary(found)[0]
-    assert f"{100 * first.share_of_error:.0f} %" in summary(found)[0]
-    assert first.entry() == {
-        "axis": "surge", "condition": condition,
-        "share_of_error": pytest.approx(first.share_of_error, abs=1e-3),
-    }  # fmt: skip
+    assert words in summarize(found)[0]
+    assert f"{100 * first.share_of_error:.0f} %" in summarize(found)[0]
+    assert first.share().share_of_error == pytest.approx(first.share_of_error, abs=1e-3)
 
 
 def test_two_causes_are_told_one_after_the_other():
@@ -87,12 +86,12 @@ def test_noise_gives_no_finding_in_95_of_100_campaigns(memory):
 
 
 def test_an_adequate_model_is_told_to_be_one():
-    assert "No condition explains" in summary(explain(driven(SECONDS, noise(1.0, 3), 3)))[0]
+    assert "No condition explains" in summarize(explain(driven(SECONDS, noise(1.0, 3), 3)))[0]
 
 
 def test_too_little_is_said_to_be_too_little():
     short = driven(2.0, noise(0.0, 0)[:8])
-    assert "Too little" in summary(explain(short))[0]
+    assert "Too little" in summarize(explain(short))[0]
 
 
 def test_an_error_too_small_to_matter_is_not_a_finding():
@@ -109,7 +108,7 @@ def test_standard_errors_are_true(memory):
         world = driven(SECONDS, noise(memory, seed), seed)
         stretch = number_stretches(world, world.error[:, 0])
         for condition, values in world.values.items():
-            t = table(binned(condition, values, stretch), world.error[:, 0], stretch)
+            t = bin_errors(cut_bins(condition, values, stretch), world.error[:, 0], stretch)
             inside += (np.abs(t.mean) <= 2 * t.error)[t.binning.judged].tolist()
             assert t.binning.count.sum() == COUNT
             assert np.all(t.effective <= t.binning.count)
@@ -120,7 +119,7 @@ def test_blocks_are_means_over_half_a_second():
     measured = motion(sticks(), seconds=3.0)
     measured = replace(measured, site=Site(np.array([[0, 4.0], [0, 3], [-1, 2]]), np.ones(3)))
     found = sample_run(model(), measured, SignalSettings(), ReplaySettings())
-    made = blocks(measured, found)
+    made = average_blocks(measured, found)
     mine = found.index // 50 == 2
     np.testing.assert_allclose(made.error[2], found.a_res[mine].mean(axis=0))
     assert np.allclose(named(made, "depth below the surface"), 1.0)
@@ -130,5 +129,7 @@ def test_blocks_are_means_over_half_a_second():
 def test_models_are_searched_on_train_runs():
     run = motion(sticks(), seconds=3.0, start=at_rest())
     train = replace(run, run=replace(run.run, id="t", split="train"))
-    assert judged(model(), [run, train], SignalSettings(), ReplaySettings()).runs == ("t",)
-    assert judged(model(), [run], SignalSettings(), ReplaySettings()).split == "test"
+    assert search_conditions(model(), [run, train], SignalSettings(), ReplaySettings()).runs == (
+        "t",
+    )
+    assert search_conditions(model(), [run], SignalSettings(), ReplaySettings()).split == "test"

@@ -9,7 +9,7 @@ import pytest
 from recordings import Swim, csv_lines, write_lines, write_run
 from rovsim.core.rotations import from_matrix, matrix, rotate
 from rovsim.measurement.campaign import CommandLog, Mocap, load_campaign
-from rovsim.measurement.recording import quality_report, read_run
+from rovsim.measurement.recording import assess, read_run
 from rovsim.measurement.recording.commands_csv import read_commands
 from rovsim.measurement.recording.csv import read_csv
 
@@ -85,7 +85,7 @@ def test_command_lines_are_sorted_the_last_of_equals_holds_and_empty_ones_go(tmp
         anomalies.command_long_steps,
     )
     assert counted == (1, 1, 2, 1)
-    remarks = " ".join(quality_report(recording, anomalies)["remarks"])
+    remarks = " ".join(assess(recording, anomalies).remarks)
     assert "2 command lines without a value" in remarks
     assert "held over them" in remarks
 
@@ -116,4 +116,4 @@ def test_the_kth_runs_are_ned_and_frd(run):
     heave, w = recording.commands.value[:, 2], recording.nu[:, 2]
     if heave.any():  # positive down, like w
         assert np.corrcoef(heave, w)[0, 1] > 0.5
-    assert quality_report(recording, anomalies)["unusable"] is None
+    assert assess(recording, anomalies).unusable is None

@@ -6,7 +6,12 @@ import pytest
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
-from rovsim.evaluation.held_out.published_errors import against, demanded, read_published
+from rovsim.evaluation.held_out.published_errors import (
+    compare_published,
+    find_demanded,
+    read_published,
+)
+from rovsim.results.comparison import Comparison
 
 HEAD = "run,control,variant,model,axis,acceleration_rmse,velocity_mae,velocity_rmse"
 LINES = [
@@ -32,10 +37,12 @@ def comparison(run, **models):
     def metrics(axes):
         values = {axis: axes.get(axis, (None, None, None)) for axis in AXES}
         names = ("acceleration_rmse", "velocity_mae", "velocity_rmse")
-        return {name: {a: v[k] for a, v in values.items()} for k, name in enumerate(names)}
+        found = {name: {a: v[k] for a, v in values.items()} for k, name in enumerate(names)}
+        return found | {"position_rmse_m": None, "attitude_rmse_rad": None}
 
-    runs = {name: {"runs": {run: {"open_loop": metrics(a)}}} for name, a in models.items()}
-    return {"models": runs}
+    entry = {"split": "test", "control": "3dof", "windows": {}}
+    runs = {n: {"runs": {run: entry | {"open_loop": metrics(a)}}} for n, a in models.items()}
+    return Comparison.model_validate({"models": runs})
 
 
 def example():
@@ -50,7 +57,7 @@ MOVED = {"one": dict.fromkeys(AXES, False) | {"surge": True}, "three": dict.from
 
 
 def test_the_mark_is_the_smallest_of_any_model_and_variant(published):
-    found = against(published, example(), MOVED)
+    found = compare_published(published, example(), MOVED).to_json()
     cells = {(c["axis"], c["metric"]): c for c in found["cells"]}
     assert len(cells) == len(found["cells"]) == 6
     surge = [cells["surge", m] for m in ("acceleration_rmse", "velocity_mae", "velocity_rmse")]
@@ -65,7 +72,7 @@ def test_the_mark_is_the_smallest_of_any_model_and_variant(published):
 
 
 def test_where_nobody_demanded_anything_staying_still_is_no_feat(published):
-    found = against(published, example(), MOVED)
+    found = compare_published(published, example(), MOVED).to_json()
     cells = {(c["axis"], c["metric"]): c for c in found["cells"]}
     assert cells["roll", "acceleration_rmse"]["mark"] == 0.5  # larger than 0.2 of zero acceleration
     assert cells["roll", "velocity_mae"]["mark"] == 0.06  # of zero acceleration
@@ -73,7 +80,7 @@ def test_where_nobody_demanded_anything_staying_still_is_no_feat(published):
 
 
 def test_standings(published):
-    models = against(published, example(), MOVED)["models"]
+    models = compare_published(published, example(), MOVED).to_json()["models"]
     ours = models["ours"]  # 0.1/0.2, 0.15/0.1, 0.25/0.5, 0.03/0.06
     assert (ours["cells"], ours["below"], ours["share_below"]) == (4, 3, 0.75)
     assert ours["geometric_mean"] == pytest.approx((0.5 * 1.5 * 0.5 * 0.5) ** 0.25)
@@ -86,7 +93,7 @@ def test_standings(published):
 
 
 def test_a_model_that_diverged_is_not_below_and_has_no_mean(published):
-    lost = against(published, example(), MOVED)["models"]["lost"]
+    lost = compare_published(published, example(), MOVED).to_json()["models"]["lost"]
     assert (lost["cells"], lost["below"], lost["geometric_mean"]) == (4, 2, None)
     assert [c["ratio"] for c in lost["not_below"]] == [None, None]
 
@@ -95,9 +102,9 @@ def test_demand_that_never_moves_is_told_from_demand_that_does():
     value = np.zeros((3, 6))
     value[:, 0] = 0.25  # held all the time
     value[1, 5] = 0.1
-    moved = demanded(Commands(np.arange(3.0), value, "demand"))
+    moved = find_demanded(Commands(np.arange(3.0), value, "demand"))
     assert moved == dict.fromkeys(AXES, False) | {"yaw": True}
-    assert all(demanded(Commands(np.arange(3.0), np.zeros((3, 8)), "thruster")).values())
+    assert all(find_demanded(Commands(np.arange(3.0), np.zeros((3, 8)), "thruster")).values())
 
 
 @pytest.mark.parametrize(
@@ -119,4 +126,4 @@ def test_a_bad_table_is_one_message(tmp_path, lines, message):
 
 def test_nothing_published_for_any_run_is_an_error(published):
     with pytest.raises(BadInput, match=r"nothing is published for the runs three.*one, two"):
-        against(published, {"three": example()["three"]}, MOVED)
+        compare_published(published, {"three": example()["three"]}, MOVED)

@@ -10,7 +10,7 @@ from recordings import Swim, qtm_cells, qtm_columns, qtm_header, qtm_lines, writ
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign import Mocap, load_campaign
-from rovsim.measurement.recording import quality_report, read_run
+from rovsim.measurement.recording import assess, read_run
 from rovsim.measurement.recording.qtm_tsv import read_qtm
 
 SHARED = Path(__file__).parents[2] / ".." / "shared"
@@ -126,8 +126,8 @@ def test_a_header_rate_that_is_not_the_rate_of_the_times(tmp_path):
     (folder / "poses.tsv").write_text(text)
     recording, anomalies = read_run(load_campaign(folder), "one")
     assert recording.rate == pytest.approx(100.0)
-    report = quality_report(recording, anomalies)
-    assert any("FREQUENCY is not the 100 Hz" in remark for remark in report["remarks"])
+    report = assess(recording, anomalies)
+    assert any("FREQUENCY is not the 100 Hz" in remark for remark in report.remarks)
 
 
 @pytest.mark.skipif(not (DATA / "mocap_exports").is_dir(), reason="no real exports ($ROVSIM_DATA)")
@@ -151,14 +151,14 @@ def test_practice_campaigns_read_whole(campaign):
     low, high = loaded.tank_ned().T
     for run in loaded.runs:
         recording, anomalies = read_run(loaded, run.id)
-        report = quality_report(recording, anomalies)
+        report = assess(recording, anomalies)
         rows = loaded.mocap_path(run).read_text().splitlines()[11:]
         lost = sum(row.split("\t")[8] in ("-1", "-1.000") for row in rows)
-        assert (report["frames"], report["not_found"]) == (len(rows), lost)
+        assert (report.frames, report.not_found) == (len(rows), lost)
         assert np.isnan(recording.position[~recording.found]).all()
         seen = recording.position[recording.found]
         inside = ((seen > low) & (seen < high)).all(axis=1)
         assert inside.mean() > 0.99  # the rest are outlier frames
         assert recording.site.tank[2].tolist() == [-3.0, 0.0]  # NED: the surface is zero, z down
         assert np.abs(recording.commands.value).max() <= 0.9 + 1e-9  # the pilot's limit
-        assert report["unusable"] is None
+        assert report.unusable is None

@@ -2,11 +2,11 @@
 
 from rovsim.application.pipeline.held_out import compare_with_published
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import read_json
+from rovsim.results.comparison import Comparison
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
-        comparisons = [read_json(path) for path in rule.paths("comparisons")]
+        comparisons = [Comparison.read(path) for path in rule.paths("comparisons")]
         compare_with_published(
             published=rule.path("published"),
             comparisons=dict(zip(rule.params.runs, comparisons, strict=True)),

@@ -2,15 +2,17 @@
 
 from rovsim.application.pipeline.summary import summarize
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import read_json
+from rovsim.results.comparison import Comparison
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.error_conditions import ErrorConditions
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         summarize(
             motions=rule.motions(),
             replays=rule.replays(),
-            scores=[one for path in rule.paths("scores") for one in read_json(path)],
-            searches=[read_json(path) for path in rule.paths("searches")],
-            diagnosis=read_json(rule.path("diagnosis")),
+            scores=[Comparison.read(path) for path in rule.paths("scores")],
+            searches=[ErrorConditions.read(path) for path in rule.paths("searches")],
+            diagnosis=Diagnosis.read(rule.path("diagnosis")),
             out=rule.output("comparison").parent,
         )

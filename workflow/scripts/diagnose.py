@@ -2,7 +2,6 @@
 
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import write_json
 from rovsim.diagnosis.settings import DiagnosisSettings
 
 if __name__ == "__main__":
@@ -13,4 +12,4 @@ if __name__ == "__main__":
             settings=rule.section(DiagnosisSettings),
             catalogue=rule.catalogue,
         )
-        write_json(rule.output(), found.content)
+        found.diagnosis.write(rule.output())

@@ -2,13 +2,13 @@
 
 from rovsim.application.pipeline.recordings import derive_motion
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import read_json
 from rovsim.measurement.signals.chain import SignalSettings, read_stage
+from rovsim.results.quality import Quality
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         derive_motion(
             poses=read_stage(rule.path("poses")),
-            quality=read_json(rule.path("quality")),
+            quality=Quality.read(rule.path("quality")),
             settings=rule.section(SignalSettings),
         ).write(rule.output())

@@ -4,7 +4,6 @@ from rovsim.application.pipeline.held_out import score_held_out
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
 from rovsim.application.study import BASELINES
-from rovsim.core.files import write_json
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
@@ -14,4 +13,4 @@ if __name__ == "__main__":
             motion=motion,
             settings=rule.section(SimulationSettings),
         )
-        write_json(rule.output(), found)
+        found.write(rule.output())

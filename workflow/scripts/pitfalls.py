@@ -3,7 +3,6 @@
 from rovsim.application.pipeline.held_out import measure_pitfalls_by_run
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import write_json
 from rovsim.learning.learner import learner_settings
 
 if __name__ == "__main__":
@@ -17,4 +16,4 @@ if __name__ == "__main__":
             },
             settings=rule.section(SimulationSettings),
         )
-        write_json(rule.output(), found)
+        found.write(rule.output())

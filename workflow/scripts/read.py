@@ -4,7 +4,6 @@ from pathlib import Path
 
 from rovsim.application.pipeline.recordings import read_recording
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import write_json
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.chain import SignalSettings
 
@@ -15,5 +14,5 @@ if __name__ == "__main__":
             run=rule.wildcards.run,
             settings=rule.section(SignalSettings),
         )
-        write_json(rule.output("quality"), quality)
+        quality.write(rule.output("quality"))
         recording.write(rule.output("recording"))

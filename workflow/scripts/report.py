@@ -2,7 +2,7 @@
 
 from rovsim.application.pipeline.presentation import write_report
 from rovsim.application.snakemake_job import job
-from rovsim.reporting.html.page import CONTENTS
+from rovsim.reporting.html.report import CONTENTS
 
 if __name__ == "__main__":
     with job(snakemake) as rule:

@@ -3,7 +3,6 @@
 from rovsim.application.pipeline.error_conditions import find_error_conditions
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import write_json
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
@@ -12,4 +11,4 @@ if __name__ == "__main__":
             motions=rule.motions(),
             settings=rule.section(SimulationSettings),
         )
-        write_json(rule.output(), found)
+        found.write(rule.output())

@@ -3,7 +3,6 @@
 from rovsim.application.pipeline.training import time_predictors
 from rovsim.application.sections import PredictorSettings
 from rovsim.application.snakemake_job import job
-from rovsim.core.files import write_json
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
@@ -14,4 +13,4 @@ if __name__ == "__main__":
             motion=motion,
             settings=rule.section(PredictorSettings),
         )
-        write_json(rule.output(), found)
+        found.write(rule.output())

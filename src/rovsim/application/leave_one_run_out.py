@@ -6,11 +6,11 @@ from pathlib import Path
 
 from rovsim.application.study import PHYSICS, Study
 from rovsim.core.errors import BadInput
-from rovsim.evaluation.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign
 from rovsim.reporting.report_data import ONCE
+from rovsim.results.ladder import EFFECTS
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ from rovsim.application.provenance import digest, own_digest, provenance
 from rovsim.application.settings import Settings, compose
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
-from rovsim.evaluation.ladder import EFFECTS
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.reporting.report_data import PER_RUN
+from rovsim.results.ladder import EFFECTS
 from rovsim.simulation.synthetic_tank.description import SEALED, describe
 
 BASELINES = ("zero_acceleration", "nominal")

@@ -6,7 +6,7 @@ from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 
 
-def next_experiment(
+def advise(
     found: TrainDiagnosis,
     groups: Sequence[Sequence[str]],
     joint: Sequence[Sequence[str]],

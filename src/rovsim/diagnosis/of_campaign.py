@@ -2,21 +2,24 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Mapping, Sequence
+from typing import Callable, Mapping, Sequence
 
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
 from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
-from rovsim.diagnosis.result import content
+from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model
-from rovsim.evaluation.error_conditions import content as where_content
-from rovsim.evaluation.error_conditions import judged
-from rovsim.evaluation.ladder import floor_step, ladder, step
+from rovsim.evaluation.error_conditions.entries import list_conditions
+from rovsim.evaluation.error_conditions.search import search_conditions
+from rovsim.evaluation.ladder import score_step
 from rovsim.measurement.signals.chain import Stage, read_stage
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step
 from rovsim.simulation.replay import replay
 from rovsim.simulation.settings import ReplaySettings
 
@@ -54,13 +57,13 @@ class Runs:
 
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
-    """`diagnosis.json`, and `where.json` of the model that was diagnosed."""
+    """A diagnosis, and the conditions under which the model that was diagnosed fails."""
 
-    content: dict[str, Any]
-    where: dict[str, Any]
+    diagnosis: Diagnosis
+    where: ErrorConditions
 
 
-def diagnosed(
+def diagnose_campaign(
     runs: Runs,
     base: Model,
     settings: DiagnosisSettings,
@@ -75,25 +78,27 @@ def diagnosed(
     )
     stage("scoring")
     motions = [w.motion for w in train]
-    fails = [judged(base, motions, settings.signals, settings.replay)] if motions else []
-    entries = [finding.entry() for one in fails for finding in one.where.findings]
-    steps = _steps(found, test, settings)
-    said = content(found, entries, _errors(steps), describe_model(base), catalogue)
-    return Diagnosed(said | {"ladder": ladder(steps)}, where_content(fails))
+    searched = (
+        [search_conditions(base, motions, settings.signals, settings.replay)] if motions else []
+    )
+    where = [finding.share() for one in searched for finding in one.explanation.findings]
+    ladder = _climb(found, test, settings)
+    return Diagnosed(
+        report(found, where, ladder, describe_model(base), catalogue), list_conditions(searched)
+    )
 
 
-def _steps(
-    found: TrainDiagnosis, test: list[ObservedRun], settings: DiagnosisSettings
-) -> list[dict[str, Any]]:
+def _climb(found: TrainDiagnosis, test: list[ObservedRun], settings: DiagnosisSettings) -> Ladder:
     """The base, the effects one after the other, and the noise floor, on the test runs."""
     motions = [w.motion for w in test]
     horizons = settings.replay.model_copy(update={"horizons": (2.0,)})
     steps = [
-        step(one.name, motions, [replay(one, m, settings.signals, horizons) for m in motions])
+        score_step(one.name, motions, [replay(one, m, settings.signals, horizons) for m in motions])
         for one in found.models()
     ]
-    reached = [s["windows_2s"] for s in steps if s["windows_2s"] is not None]
-    return [*steps, floor_step(_floor(found, test, settings, reached))]
+    reached = [s.windows_2s for s in steps if s.windows_2s is not None]
+    floor = Step(model=NOISE_FLOOR, windows_2s=_floor(found, test, settings, reached))
+    return Ladder(steps=(*steps, floor))
 
 
 def _floor(
@@ -109,9 +114,3 @@ def _floor(
         found.models()[-1], test, found.fit.noise, settings.signals, settings.seed,
     )  # fmt: skip
     return None if floor is None else min([floor, *reached])
-
-
-def _errors(steps: list[dict[str, Any]]) -> dict[str, float | None]:
-    """Errors of contract section 3; None where there is nothing to score."""
-    *models, floor = (one["windows_2s"] for one in steps)
-    return {"nominal": models[0], "with_effects": models[-1], "noise_floor": floor}

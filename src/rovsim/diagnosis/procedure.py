@@ -36,6 +36,7 @@ from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
+from rovsim.results.diagnosis import Verdict
 
 Stages = Callable[[str], None]
 
@@ -65,7 +66,7 @@ class TrainDiagnosis:
         return self.fit is not None
 
     @property
-    def verdict(self) -> str:
+    def verdict(self) -> Verdict:
         """One of the four of the contract."""
         if not self.enough:
             return "insufficient_data"

@@ -1,64 +1,86 @@
-"""A diagnosis as plain content: `diagnosis.json`."""
+"""A diagnosis as `diagnosis.json` holds it."""
 
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
-from rovsim.diagnosis.advice import next_experiment
+import numpy as np
+from pydantic import JsonValue
+from scipy.sparse.csgraph import connected_components
+
+from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
 from rovsim.diagnosis.selection.rivals import SURE, Rival
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.results.diagnosis import (
+    Diagnosis,
+    DiagnosisErrors,
+    FittedEffect,
+    FittedNoise,
+    FittedValue,
+    RivalEffect,
+    Unexplained,
+)
+from rovsim.results.error_conditions import ConditionShare
+from rovsim.results.ladder import Ladder
 
-SCHEMA = "rovsim.diagnosis/1"
 LISTED = 10  # effects of the ranking
 
 
-def content(
+def report(
     found: TrainDiagnosis,
-    where: Sequence[Mapping[str, Any]],
-    error: Mapping[str, float | None],
-    base: Mapping[str, Any],
+    where: Sequence[ConditionShare],
+    ladder: Ladder,
+    base: Mapping[str, JsonValue],
     catalogue: Catalogue,
-) -> dict[str, Any]:
-    """`diagnosis.json` (docs/formats.md).
+) -> Diagnosis:
+    """What is written of a diagnosis.
 
     Args:
         found: the diagnosis.
-        where: conditions in which the base fails, as listed by rovsim.evaluation.error_conditions.
-        error: of the base, with the effects, and the noise floor, on the test runs.
-        base: the base model's own content, so that `rovsim add` needs nothing else.
+        where: conditions in which the base fails.
+        ladder: the base, the effects one after the other, and the noise floor, on the test runs.
+        base: file of the model that was diagnosed, so that `rovsim add` needs nothing else.
         catalogue: what the effects are.
     """
-    alike = indistinguishable(found.rivals)
+    alike = group_indistinguishable(found.rivals)
     joint = group_joint_parameters(found.fit) if found.fit else []
-    return {
-        "schema": SCHEMA,
-        "verdict": found.verdict,
-        "selected": [_entry(one, one.std) for one in found.selected],
-        "ranking": [_entry(one, {}) for one in _listed(found)],
-        "indistinguishable": alike,
-        "known_together": joint,
-        "where": list(where),
-        "unexplained": unexplained(found),
-        "next_experiment": next_experiment(found, alike, joint, catalogue),
-        "error": {name: _rounded(value) for name, value in error.items()},
-        "not_excited": list(found.still),
-        "rivals": [
-            {"effect": r.effect, "instead_of": r.instead_of, "deficit": _rounded(r.deficit)}
+    return Diagnosis(
+        verdict=found.verdict,
+        selected=tuple(_fitted(one, one.std) for one in found.selected),
+        ranking=tuple(_fitted(one, {}) for one in _listed(found)),
+        indistinguishable=tuple(map(tuple, alike)),
+        known_together=tuple(map(tuple, joint)),
+        where=tuple(where),
+        unexplained=describe_structures(found),
+        next_experiment=advise(found, alike, joint, catalogue),
+        error=_errors(ladder),
+        not_excited=tuple(found.still),
+        rivals=tuple(
+            RivalEffect(effect=r.effect, instead_of=r.instead_of, deficit=_rounded(r.deficit))
             for r in found.rivals
-        ],
-        "noise": _noise(found),
-        "base": dict(base),
-    }
+        ),
+        noise=_noise(found),
+        base=dict(base),
+        ladder=ladder,
+    )
 
 
-def _entry(one: Selected | Ranked, std: Mapping[str, float]) -> dict[str, Any]:
-    return {
-        "effect": one.term.id,
-        "parameters": _parameters(one.term, std),
-        "error_reduction": _rounded(one.error_reduction),
-        "probability": _rounded(one.probability),
-    }
+def _errors(ladder: Ladder) -> DiagnosisErrors:
+    """Errors of contract section 3; None where there is nothing to score."""
+    errors = [_rounded(step.windows_2s) for step in ladder.models]
+    return DiagnosisErrors(
+        nominal=errors[0], with_effects=errors[-1], noise_floor=_rounded(ladder.noise_floor)
+    )
+
+
+def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
+    return FittedEffect(
+        effect=one.term.id,
+        parameters=_parameters(one.term, std),
+        error_reduction=_rounded(one.error_reduction),
+        probability=_rounded(one.probability),
+    )
 
 
 def _listed(found: TrainDiagnosis) -> list[Ranked]:
@@ -71,51 +93,52 @@ def _rounded(value: float | None) -> float | None:
     return None if value is None or value != value else float(f"{value:.6g}")
 
 
-def _parameters(term: Term, std: Mapping[str, float]) -> dict[str, Any]:
+def _parameters(term: Term, std: Mapping[str, float]) -> dict[str, FittedValue]:
     """What the fit chose, and what else differs from the default."""
     given = term.effect.given()
     units = {p.name: p.unit for p in term.effect.parameters}
     names = [p.name for p in term.effect.parameters if p.name in given or p.name in std]
     return {
-        name: {
-            "value": _rounded(term.effect[name]),
+        name: FittedValue(
+            value=_rounded(term.effect[name]),
+            unit=units[name],
             **({"std": _rounded(std[name])} if name in std else {}),
-            "unit": units[name],
-        }
+        )
         for name in names
     }
 
 
-def indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
+def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
     """Groups of effects that explain the data about equally well; groups that meet are one."""
-    groups: list[set[str]] = []
-    for one in rivals:
-        if one.deficit < SURE:
-            pair = {one.effect, one.instead_of}
-            met = [g for g in groups if g & pair]
-            groups = [g for g in groups if not g & pair] + [pair.union(*met)]
-    return sorted(sorted(g) for g in groups)
+    pairs = [(r.effect, r.instead_of) for r in rivals if r.deficit < SURE]
+    names = sorted({name for pair in pairs for name in pair})
+    near = np.zeros((len(names), len(names)), bool)
+    for one, other in pairs:
+        near[names.index(one), names.index(other)] = True
+    _, label = connected_components(near, directed=False)
+    groups = [[n for n, k in zip(names, label, strict=True) if k == g] for g in np.unique(label)]
+    return sorted(groups)
 
 
-def unexplained(found: TrainDiagnosis) -> dict[str, Any]:
+def describe_structures(found: TrainDiagnosis) -> Unexplained:
     """What no effect of the catalogue explains."""
     if not found.structures:
-        return {"fraction": 0.0, "significant": False, "hint": "Nothing is left but noise."}
+        return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
     first = found.structures[0]
     also = [s for s in found.structures[1:] if s.axis != first.axis]
     hint = f"{first.axis.capitalize()}: the remainder shows {first.what}."
     if also:
         axes = ", ".join(dict.fromkeys(s.axis for s in also))
         hint += f" Also {axes}: {also[0].what}."
-    return {"fraction": _rounded(first.share), "significant": True, "hint": hint}
+    return Unexplained(fraction=_rounded(first.share), significant=True, hint=hint)
 
 
-def _noise(found: TrainDiagnosis) -> dict[str, Any]:
+def _noise(found: TrainDiagnosis) -> FittedNoise:
     if found.fit is None:
-        return {}
+        return FittedNoise()
     noise = found.fit.noise
-    return {
-        "disturbance": [_rounded(x) for x in noise.level],
-        "memory_s": [_rounded(x) for x in noise.memory],
-        "reading": [_rounded(x) for x in noise.reading],
-    }
+    return FittedNoise(
+        disturbance=tuple(map(_rounded, noise.level)),
+        memory_s=tuple(map(_rounded, noise.memory)),
+        reading=tuple(map(_rounded, noise.reading)),
+    )

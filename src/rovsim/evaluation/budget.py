@@ -11,17 +11,18 @@ Where two effects multiply (a current and a damping), the later one is charged w
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Iterator, Sequence
+from typing import Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.core.files import read_arrays, write_arrays
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.learning.pairs import Samples
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.base import ByAxis
+from rovsim.results.budget import BudgetTotals, RunBudget
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
 from rovsim.simulation.settings import ReplaySettings
@@ -51,16 +52,16 @@ class Budget:
     parts: dict[str, Array]
     missing: Array
 
-    def rms(self) -> dict[str, dict[str, float | None]]:
+    def rms(self) -> dict[str, ByAxis]:
         """Root mean square of every part and of what is missing, by axis, at usable instants."""
         known = np.isfinite(self.missing).all(axis=1)
-        found = {}
-        for name, force in {**self.parts, MISSING: self.missing}.items():
-            size = np.sqrt(np.mean(force[known] ** 2, axis=0)) if known.any() else [None] * 6
-            found[name] = {
-                a: None if x is None else float(x) for a, x in zip(AXES, size, strict=True)
-            }
-        return found
+        forces = {**self.parts, MISSING: self.missing}
+        if not known.any():
+            return {name: ByAxis() for name in forces}
+        return {
+            name: ByAxis.of(np.sqrt(np.mean(force[known] ** 2, axis=0)))
+            for name, force in forces.items()
+        }
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""
@@ -76,7 +77,9 @@ class Budget:
         return Budget(str(a["label"][0]), str(a["label"][1]), a["time"], parts, a["missing"])
 
 
-def budget(model: Model, motion: Motion, found: Samples, settings: ReplaySettings) -> Budget:
+def balance_forces(
+    model: Model, motion: Motion, found: Samples, settings: ReplaySettings
+) -> Budget:
     """Budget of one model over one run, of which `found` are the samples."""
     parts: dict[str, Array] = {}
     before = np.zeros((len(motion.time), 6))
@@ -88,10 +91,9 @@ def budget(model: Model, motion: Motion, found: Samples, settings: ReplaySetting
     return Budget(model.name, motion.run.id, motion.time, parts, missing)
 
 
-def totals(budgets: Sequence[Budget]) -> dict[str, Any]:
+def total(budgets: Sequence[Budget]) -> BudgetTotals:
     """`budget.json`: RMS by run, part and axis."""
-    runs = {b.run: {"model": b.model, "rms": b.rms()} for b in budgets}
-    return {"schema": "rovsim.budget/1", "runs": runs}
+    return BudgetTotals(runs={b.run: RunBudget(model=b.model, rms=b.rms()) for b in budgets})
 
 
 def _cumulative(

@@ -4,15 +4,17 @@ import gc
 from collections.abc import Callable
 from contextlib import contextmanager
 from time import perf_counter_ns
-from typing import Any, Iterator
+from typing import Iterator
 
 import numpy as np
 from numpy import ndarray as Array
 
-RATES = (50, 100, 250, 1000)  # Hz: control loops from a surface pilot's to a motor controller's
+from rovsim.dynamics.learned.predictor import evaluate_many
+from rovsim.dynamics.learned.residual import Residual
+from rovsim.results.timing import RATES, BothWays, Latency
 
 
-def latency(
+def time_calls(
     call: Callable[[Array], Array],
     queries: Array,
     calls: int,
@@ -20,7 +22,7 @@ def latency(
     *,
     points: int,
     seconds: float = 10.0,
-) -> dict[str, Any]:
+) -> Latency:
     """Time `call` on one query after the other.
 
     Python's garbage collector runs once before and not during the calls, so that the numbers
@@ -33,10 +35,6 @@ def latency(
         warmup: calls before the clock starts; fewer where they take a tenth of `seconds`.
         points: what the predictor looks at, for the record.
         seconds: no further call is started after this long; at least one is timed.
-
-    Returns:
-        points, features, outputs, calls; median_us, p99_us, p999_us, max_us; misses: calls slower
-        than the period at each rate in Hz.
     """
     rows = [queries[i : i + 1] for i in range(len(queries))]
     begun = perf_counter_ns()
@@ -46,17 +44,17 @@ def latency(
             break
     with _no_collection():
         took = _timed(call, rows, calls, int(seconds * 1e9))
-    return {
-        "points": points,
-        "features": int(queries.shape[1]),
-        "outputs": int(np.shape(answer)[-1]),
-        "calls": len(took),
-        "median_us": float(np.median(took)) / 1e3,
-        "p99_us": float(np.percentile(took, 99.0)) / 1e3,
-        "p999_us": float(np.percentile(took, 99.9)) / 1e3,
-        "max_us": float(took.max()) / 1e3,
-        "misses": {str(rate): int(np.sum(took > 1e9 / rate)) for rate in RATES},
-    }
+    return Latency(
+        points=points,
+        features=int(queries.shape[1]),
+        outputs=int(np.shape(answer)[-1]),
+        calls=len(took),
+        median_us=float(np.median(took)) / 1e3,
+        p99_us=float(np.percentile(took, 99.0)) / 1e3,
+        p999_us=float(np.percentile(took, 99.9)) / 1e3,
+        max_us=float(took.max()) / 1e3,
+        misses={str(rate): int(np.sum(took > 1e9 / rate)) for rate in RATES},
+    )
 
 
 def _timed(call: Callable[[Array], Array], rows: list[Array], calls: int, limit: int) -> Array:
@@ -86,16 +84,14 @@ def _no_collection() -> Iterator[None]:
             gc.enable()
 
 
-def both_ways(
-    residual: Any, queries: Array, calls: int, warmup: int, seconds: float
-) -> dict[str, Any]:
+def time_both_ways(
+    residual: Residual, queries: Array, calls: int, warmup: int, seconds: float
+) -> BothWays:
     """Latency of a trained residual's library call and of its exported predictor, side by side."""
-    from rovsim.dynamics.learned.predictor import evaluate_many
     from rovsim.learning.learner import library_of
 
-    data, points = residual.data, residual.points
-    ways = {"library": library_of(residual), "exported": lambda x: evaluate_many(data, x)}
-    return {
-        way: latency(call, queries, calls, warmup, points=points, seconds=seconds)
-        for way, call in ways.items()
-    }
+    def timed(call: Callable[[Array], Array]) -> Latency:
+        return time_calls(call, queries, calls, warmup, points=residual.points, seconds=seconds)
+
+    library = timed(library_of(residual))
+    return BothWays(library=library, exported=timed(lambda x: evaluate_many(residual.data, x)))

@@ -1,7 +1,7 @@
 """How far a model is from the measurement: one definition of each number, used everywhere."""
 
 from dataclasses import dataclass
-from typing import Any, Iterable, Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,10 +10,11 @@ from rovsim import AXES
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.recording.quality import EXCITED
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.prediction import OPEN_LOOP, Prediction, Replay
+from rovsim.results.base import ByAxis, or_none
+from rovsim.results.comparison import OPEN_LOOP, Comparison, Metrics, ModelErrors, RunErrors
+from rovsim.results.growth import Curve
+from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.windows import find_windows
-
-COMPARISON = "rovsim.comparison/1"
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,7 @@ class Errors:
     attitude: Array
 
 
-def errors(motion: Motion, prediction: Prediction) -> Errors:
+def subtract(motion: Motion, prediction: Prediction) -> Errors:
     """Errors of one prediction at usable samples; infinite where it diverged."""
     both = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
     moved = both & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
@@ -43,7 +44,7 @@ def errors(motion: Motion, prediction: Prediction) -> Errors:
     )
 
 
-def pooled(parts: Sequence[Errors]) -> Errors:
+def pool(parts: Sequence[Errors]) -> Errors:
     """Errors of several runs as one set of samples."""
     names = ("nu", "nu_dot", "position", "attitude")
     return Errors(*(np.concatenate([getattr(p, name) for p in parts]) for name in names))
@@ -59,51 +60,38 @@ def mean_absolute(x: Array) -> Array:
     return np.mean(np.abs(x), axis=0) if len(x) else np.full(x.shape[1:], np.nan)
 
 
-def metrics(found: Errors) -> dict[str, Any]:
+def summarize(errors: Errors) -> Metrics:
     """The metrics of contract section 3; None where the model left the finite numbers."""
-    return {
-        "acceleration_rmse": by_axis(rms(found.nu_dot)),
-        "velocity_mae": by_axis(mean_absolute(found.nu)),
-        "velocity_rmse": by_axis(rms(found.nu)),
-        "position_rmse_m": number(rms(found.position)),
-        "attitude_rmse_rad": number(rms(found.attitude)),
-    }
+    return Metrics(
+        acceleration_rmse=ByAxis.of(rms(errors.nu_dot)),
+        velocity_mae=ByAxis.of(mean_absolute(errors.nu)),
+        velocity_rmse=ByAxis.of(rms(errors.nu)),
+        position_rmse_m=or_none(float(rms(errors.position))),
+        attitude_rmse_rad=or_none(float(rms(errors.attitude))),
+    )
 
 
-def number(value: Any) -> float | None:
-    """A finite number, else None (JSON has no NaN)."""
-    return float(value) if np.isfinite(value) else None
-
-
-def by_axis(values: Array) -> dict[str, float | None]:
-    """Six values named surge ... yaw."""
-    return {axis: number(v) for axis, v in zip(AXES, values, strict=True)}
-
-
-def score(motion: Motion, replay: Replay) -> dict[str, Any]:
+def score(motion: Motion, replay: Replay) -> RunErrors:
     """All metrics of one model on one run."""
-    found = {name: metrics(errors(motion, p)) for name, p in replay.horizons.items()}
-    opened = found.pop(OPEN_LOOP)
-    return {
-        "model": replay.model,
-        "run": motion.run.id,
-        "split": motion.run.split,
-        "control": motion.run.control,
-        "open_loop": opened,
-        "windows": found,
+    found = {name: summarize(subtract(motion, p)) for name, p in replay.horizons.items()}
+    return RunErrors(
+        split=motion.run.split,
+        control=motion.run.control,
+        open_loop=found.pop(OPEN_LOOP),
+        windows=found,
+    )
+
+
+def score_all(motions: Sequence[Motion], replays: Mapping[str, Mapping[str, Replay]]) -> Comparison:
+    """`comparison.json` of replays by model and run."""
+    models = {
+        name: ModelErrors(runs={m.run.id: score(m, runs[m.run.id]) for m in motions})
+        for name, runs in replays.items()
     }
+    return Comparison(models=models)
 
 
-def comparison(scores: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """`comparison.json` from the scores of models and runs."""
-    models: dict[str, dict] = {}
-    for one in scores:
-        runs = models.setdefault(one["model"], {"runs": {}})["runs"]
-        runs[one["run"]] = {k: one[k] for k in ("split", "control", "open_loop", "windows")}
-    return {"schema": COMPARISON, "models": models}
-
-
-def normalised(motions: Sequence[Motion], velocity_rmse: Array) -> float | None:
+def normalize(motions: Sequence[Motion], velocity_rmse: Array) -> float | None:
     """Velocity RMSE (6,) over the standard deviation of the measured velocity, mean over axes.
 
     Only axes that were excited count: an axis nobody moved cannot be judged.
@@ -111,12 +99,10 @@ def normalised(motions: Sequence[Motion], velocity_rmse: Array) -> float | None:
     nu = np.concatenate([m.nu[m.usable] for m in motions])
     spread = np.std(nu, axis=0)
     moved = spread > EXCITED
-    return number(np.mean(velocity_rmse[moved] / spread[moved])) if moved.any() else None
+    return or_none(np.mean(velocity_rmse[moved] / spread[moved])) if moved.any() else None
 
 
-def growth(
-    motions: Sequence[Motion], replays: Sequence[Replay], horizon: str = "5"
-) -> dict[str, Any]:
+def trace_growth(motions: Sequence[Motion], replays: Sequence[Replay], horizon: str = "5") -> Curve:
     """Velocity RMSE against time since the anchor, from the windows of one horizon, test runs."""
     ages, found = [], []
     for motion, replay in zip(motions, replays, strict=True):
@@ -130,12 +116,8 @@ def growth(
     bins = np.digitize(age, edges)
     kept = [b for b in range(1, len(edges)) if np.any(bins == b)]
     rows = np.array([rms(error[bins == b]) for b in kept]).reshape(-1, 6)
-    return {
-        "horizon_s": [float(edges[b]) for b in kept],
-        "velocity_rmse": {
-            axis: [number(x) for x in row] for axis, row in zip(AXES, rows.T, strict=True)
-        },
-    }
+    columns = {a: tuple(map(or_none, row)) for a, row in zip(AXES, rows.T, strict=True)}
+    return Curve(horizon_s=tuple(float(edges[b]) for b in kept), velocity_rmse=columns)
 
 
 def _age(motion: Motion, prediction: Prediction, horizon: float) -> Array:

@@ -1,37 +1,76 @@
-"""What figures and reports draw from: measured and predicted, by run and model."""
+"""What figures and reports draw from: measured and predicted, by run and model, and all results."""
 
 from dataclasses import dataclass, field
-from typing import Any, Mapping, Sequence
+from pathlib import Path
+from typing import Mapping, Sequence, TypeVar
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.base import Result
+from rovsim.results.comparison import Comparison
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.growth import Growth
+from rovsim.results.ladder import Ladder
+from rovsim.results.pitfalls import Pitfalls
+from rovsim.results.published_errors import PublishedErrors
+from rovsim.results.quality import Quality
+from rovsim.results.timing import Timing
 from rovsim.simulation.prediction import OPEN_LOOP, Replay
 
 SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
+R = TypeVar("R", bound=Result)
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
-    """Motions by run, replays by model and run, the JSON contents made from them, and budgets.
+class ReportData:
+    """Motions by run, replays by model and run, budgets of one model by run, and results.
 
-    A budget is that of one model, by run.
+    A result that is not known is None, and what would show it is left out.
     """
 
-    motions: Mapping[str, Motion]
-    replays: Mapping[str, Mapping[str, Replay]]
-    comparison: Mapping[str, Any] = field(default_factory=dict)
-    growth: Mapping[str, Any] = field(default_factory=dict)
-    ladder: Mapping[str, Any] = field(default_factory=dict)
-    timing: Mapping[str, Any] = field(default_factory=dict)
-    quality: Mapping[str, Any] = field(default_factory=dict)
-    where: Mapping[str, Any] = field(default_factory=dict)
-    diagnosis: Mapping[str, Any] = field(default_factory=dict)
-    published_errors: Mapping[str, Any] = field(default_factory=dict)
+    motions: Mapping[str, Motion] = field(default_factory=dict)
+    replays: Mapping[str, Mapping[str, Replay]] = field(default_factory=dict)
     budgets: Mapping[str, Budget] = field(default_factory=dict)
+    quality: Mapping[str, Quality] = field(default_factory=dict)
+    comparison: Comparison | None = None
+    growth: Growth | None = None
+    ladder: Ladder | None = None
+    timing: Timing | None = None
+    where: ErrorConditions | None = None
+    diagnosis: Diagnosis | None = None
+    published_errors: PublishedErrors | None = None
+    pitfalls: Pitfalls | None = None
 
-    def predicted(self, run: str, horizon: str, name: str, models: Sequence[str]) -> dict:
+    @staticmethod
+    def read(results: Mapping[str, Path], quality: Mapping[str, Path]) -> "ReportData":
+        """Results by the names they have here, and quality reports by run.
+
+        Raises:
+            BadInput: a file is missing or damaged.
+        """
+
+        def read(name: str, kind: type[R]) -> R | None:
+            return kind.read(results[name]) if name in results else None
+
+        return ReportData(
+            quality={run: Quality.read(path) for run, path in quality.items()},
+            comparison=read("comparison", Comparison),
+            growth=read("growth", Growth),
+            ladder=read("ladder", Ladder),
+            timing=read("timing", Timing),
+            where=read("where", ErrorConditions),
+            diagnosis=read("diagnosis", Diagnosis),
+            published_errors=read("published_errors", PublishedErrors),
+            pitfalls=read("pitfalls", Pitfalls),
+        )
+
+    def predicted(
+        self, run: str, horizon: str, name: str, models: Sequence[str]
+    ) -> dict[str, Array]:
         """One predicted quantity by model."""
         return {
             model: getattr(self.replays[model][run].horizons[horizon], name)
@@ -40,7 +79,7 @@ class Evidence:
         }
 
 
-# Figures drawn once, from the JSON contents of those names; and those drawn for every run.
+# Figures drawn once, from the results of those names; and those drawn for every run.
 ONCE = {
     "ranking": "diagnosis",
     "error_by_axis": "comparison",
@@ -55,31 +94,33 @@ ONCE = {
 PER_RUN = ("budget", "velocities", "residual_series", "path_3d")
 
 
-def arguments(figure: str, evidence: Evidence, run: str = "", models: Sequence[str] = ()) -> dict:
+def select_arguments(
+    figure: str, data: ReportData, run: str = "", models: Sequence[str] = ()
+) -> dict[str, object]:
     """Keyword arguments of a figure's `draw`."""
     if figure in ONCE:
-        return {ONCE[figure]: getattr(evidence, ONCE[figure])}
+        return {ONCE[figure]: getattr(data, ONCE[figure])}
     if figure == "budget":
-        found = evidence.budgets[run]
-        return {"time": found.time, "parts": found.parts, "missing": found.missing}
-    motion = evidence.motions[run]
+        budget = data.budgets[run]
+        return {"time": budget.time, "parts": budget.parts, "missing": budget.missing}
+    motion = data.motions[run]
     common = {"time": motion.time, "usable": motion.usable}
     if figure == "velocities":
-        nu = evidence.predicted(run, SHOWN, "nu", models)
+        nu = data.predicted(run, SHOWN, "nu", models)
         return {**common, "nu": motion.nu, "predicted_nu": nu}
     if figure == "residual_series":
-        nu_dot = evidence.predicted(run, SHOWN, "nu_dot", models)
+        nu_dot = data.predicted(run, SHOWN, "nu_dot", models)
         return {**common, "nu_dot": motion.nu_dot, "predicted_nu_dot": nu_dot}
-    eta = evidence.predicted(run, OPEN_LOOP, "eta", models)
+    eta = data.predicted(run, OPEN_LOOP, "eta", models)
     tank = motion.site.tank if np.isfinite(motion.site.tank).all() else None
     return {**common, "eta": motion.eta, "predicted_eta": eta, "tank": tank}
 
 
-def about(figure: str, run: str, evidence: Evidence | None = None) -> str:
+def describe(figure: str, run: str, data: ReportData | None = None) -> str:
     """What a figure of one run shows, in a few words."""
     if not run:
         return ""
     if figure == "budget":
-        model = evidence.budgets[run].model if evidence and run in evidence.budgets else ""
+        model = data.budgets[run].model if data and run in data.budgets else ""
         return f"run {run}, model {model}" if model else f"run {run}"
     return f"run {run}, {'open loop' if figure == 'path_3d' else f'{SHOWN} s windows'}"

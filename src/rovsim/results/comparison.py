@@ -19,6 +19,10 @@ class Metrics(Section):
     position_rmse_m: float | None
     attitude_rmse_rad: float | None
 
+    def by_axis(self, quantity: str) -> ByAxis:
+        """One of the quantities that have a value for each axis."""
+        return getattr(self, quantity)
+
 
 class RunErrors(Section):
     """Errors of one model on one run; `windows` by their length in s: `0.5`, `2`, `5`."""

@@ -94,5 +94,6 @@ class Diagnosis(Result):
 
     @property
     def fitted(self) -> dict[str, FittedEffect]:
-        """All effects that have values, by id; of a selected one those of the final model."""
-        return {one.effect: one for one in (*self.ranking, *self.selected)}
+        """All that has values, by id: the selected effects first, with those of the final model."""
+        selected = {one.effect: one for one in self.selected}
+        return selected | {r.effect: r for r in self.ranking if r.effect not in selected}

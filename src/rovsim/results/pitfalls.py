@@ -21,5 +21,5 @@ class Pitfalls(Result):
     noun: ClassVar[str] = "list of pitfalls"
     command: ClassVar[str] = "the study of the folds"
 
-    schema_: Literal["rovsim.mistakes/1"] = Field(default="rovsim.mistakes/1", alias="schema")
+    schema_: Literal["rovsim.pitfalls/1"] = Field(default="rovsim.pitfalls/1", alias="schema")
     runs: dict[str, dict[str, Cost]]

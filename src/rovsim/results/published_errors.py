@@ -60,7 +60,9 @@ class PublishedErrors(Result):
     noun: ClassVar[str] = "comparison with published errors"
     command: ClassVar[str] = "the study of the folds"
 
-    schema_: Literal["rovsim.marks/1"] = Field(default="rovsim.marks/1", alias="schema")
+    schema_: Literal["rovsim.published_errors/1"] = Field(
+        default="rovsim.published_errors/1", alias="schema"
+    )
     runs: tuple[str, ...]
     without_published: tuple[str, ...]
     models: dict[str, ModelStanding]

@@ -9,20 +9,24 @@ from rovsim.application.pipeline.replays import measure_growth, replay_models, s
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
-from rovsim.reporting.report_data import Evidence
+from rovsim.reporting.report_data import ReportData
 
 
-def compare(data: Measured, models: Sequence[Model], settings: SimulationSettings) -> Evidence:
+def compare(data: Measured, models: Sequence[Model], settings: SimulationSettings) -> ReportData:
     """Replays, scores and findings of all models, forces of the last."""
     motions = list(data.motions.values())
     replays = replay_models(models, motions, settings)
     grown = measure_growth(motions, replays)
     where = find_error_conditions([m for m in models if not m.inert], motions, settings)
-    return Evidence(
-        data.motions, replays, score_replays(motions, replays), grown, quality=data.quality,
+    forces = {
+        m.run.id: balance_run(models[-1], m, settings) for m in counted(motions, "balancing forces")
+    }
+    return ReportData(
+        motions=data.motions,
+        replays=replays,
+        budgets=forces,
+        quality=data.quality,
+        comparison=score_replays(motions, replays),
+        growth=grown,
         where=where,
-        budgets={
-            m.run.id: balance_run(models[-1], m, settings)
-            for m in counted(motions, "balancing forces")
-        },
-    )  # fmt: skip
+    )

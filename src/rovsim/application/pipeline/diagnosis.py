@@ -2,7 +2,7 @@
 
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import staged
-from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, Runs, diagnosed
+from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, Runs, diagnose_campaign
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
@@ -24,4 +24,4 @@ def diagnose(
             remedy="Give model=nominal, or one model file without a residual.",
         )
     with staged("diagnosing", STAGES) as stage:
-        return diagnosed(runs, base, settings, catalogue, stage)
+        return diagnose_campaign(runs, base, settings, catalogue, stage)

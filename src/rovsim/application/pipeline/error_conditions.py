@@ -1,21 +1,23 @@
 """Under which conditions models fail."""
 
-from typing import Any, Sequence
+from typing import Sequence
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.error_conditions import content, judged
+from rovsim.evaluation.error_conditions.entries import list_conditions
+from rovsim.evaluation.error_conditions.search import search_conditions
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.error_conditions import ErrorConditions
 
 
 def find_error_conditions(
     models: Sequence[Model], motions: Sequence[Motion], settings: SimulationSettings
-) -> dict[str, Any]:
-    """`where.json` of models, each on the runs it may be judged on."""
-    return content(
+) -> ErrorConditions:
+    """What the errors of models vary with, each on the runs it may be judged on."""
+    return list_conditions(
         [
-            judged(model, motions, settings.signals, settings.replay)
+            search_conditions(model, motions, settings.signals, settings.replay)
             for model in counted(models, "searching")
         ]
     )

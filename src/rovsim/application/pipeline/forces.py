@@ -2,7 +2,7 @@
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.budget import Budget, budget
+from rovsim.evaluation.budget import Budget, balance_forces
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.motion import Motion
 
@@ -10,4 +10,4 @@ from rovsim.measurement.signals.motion import Motion
 def balance_run(model: Model, motion: Motion, settings: SimulationSettings) -> Budget:
     """Budget of a model's forces at the measured states of a run, N and N m."""
     pairs = sample_run(model, motion, settings.signals, settings.replay)
-    return budget(model, motion, pairs, settings.replay)
+    return balance_forces(model, motion, pairs, settings.replay)

@@ -4,11 +4,12 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.core.errors import BadInput
-from rovsim.diagnosis.apply import added, read_diagnosis
+from rovsim.diagnosis import apply
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import load_model, write_model
 from rovsim.dynamics.vehicle import Vehicle
+from rovsim.results.diagnosis import Diagnosis
 
 
 def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> list[Model]:
@@ -69,8 +70,8 @@ def add_effects(
     Raises:
         BadInput: no such diagnosis, effect or model.
     """
-    model, names = added(
-        read_diagnosis(diagnosis), diagnosis, base, list(effects) if effects else None, catalogue
-    )
+    found = Diagnosis.read(diagnosis)
+    wanted = list(effects) if effects else None
+    model, names = apply.add_effects(found, diagnosis, base, wanted, catalogue)
     write_model(model, out, provenance={"base": base, "effects": names, **story})
     return names

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Mapping
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from rovsim.core.progress import counted
 from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
-from rovsim.measurement.quality_report import quality_of
+from rovsim.measurement.quality_report import report_quality
 from rovsim.measurement.recording import read_run, usable_reason
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.chain import (
@@ -22,6 +21,7 @@ from rovsim.measurement.signals.chain import (
     resampled,
 )
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.quality import Quality
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class Measured:
     campaign: Campaign
     vehicle: Vehicle
     motions: dict[str, Motion]
-    quality: dict[str, dict[str, Any]]
+    quality: dict[str, Quality]
     stages: dict[str, Stage]
 
     @property
@@ -63,20 +63,20 @@ def load_campaign_vehicle(campaign: Campaign) -> Vehicle:
 
 def read_recording(
     campaign: Campaign, run: str, settings: SignalSettings
-) -> tuple[Recording, dict[str, Any]]:
+) -> tuple[Recording, Quality]:
     """One raw export in NED and FRD, nothing filtered, and its quality report.
 
     Raises:
         BadInput: it cannot be read.
     """
     recording, anomalies = read_run(campaign, run)
-    return recording, quality_of(recording, anomalies, settings.outliers)
+    return recording, report_quality(recording, anomalies, settings.outliers)
 
 
-def derive_motion(poses: Stage, quality: Mapping[str, Any], settings: SignalSettings) -> Motion:
+def derive_motion(poses: Stage, quality: Quality, settings: SignalSettings) -> Motion:
     """Velocities and accelerations of filtered poses; an unusable run keeps none."""
     motion = differentiated(poses, settings)
-    if quality["unusable"]:
+    if quality.unusable:
         return replace(motion, usable=np.zeros_like(motion.usable))
     return motion
 
@@ -96,7 +96,7 @@ def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = 
                 filtered(stages[run.id], settings), quality[run.id], settings
             )
     if not motions and not even_unusable:
-        reasons = "; ".join(f"{run}: {q['unusable']}" for run, q in quality.items())
+        reasons = "; ".join(f"{run}: {q.unusable}" for run, q in quality.items())
         raise BadInput(
             f"no run can be used ({reasons})",
             where=campaign.file,

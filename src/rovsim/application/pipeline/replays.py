@@ -1,13 +1,16 @@
 """Models beside the measurement: replayed with the logged commands, and scored."""
 
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.ladder import step
-from rovsim.evaluation.scores import comparison, growth, score
+from rovsim.evaluation.ladder import score_step
+from rovsim.evaluation.scores import score_all, trace_growth
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.comparison import Comparison
+from rovsim.results.growth import Growth
+from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
 from rovsim.simulation.replay import replay
 
@@ -27,17 +30,17 @@ def replay_models(
     return replays
 
 
-def score_replays(motions: Sequence[Motion], replays: Replays) -> dict[str, Any]:
-    """`comparison.json`."""
-    return comparison(score(m, runs[m.run.id]) for runs in replays.values() for m in motions)
+def score_replays(motions: Sequence[Motion], replays: Replays) -> Comparison:
+    """Errors by model and run."""
+    return score_all(motions, replays)
 
 
-def measure_growth(motions: Sequence[Motion], replays: Replays) -> dict[str, Any]:
-    """`growth.json`."""
-    curves = {name: growth(motions, list(runs.values())) for name, runs in replays.items()}
-    return {"models": curves}
+def measure_growth(motions: Sequence[Motion], replays: Replays) -> Growth:
+    """How the error grows with time, by model."""
+    curves = {name: trace_growth(motions, list(runs.values())) for name, runs in replays.items()}
+    return Growth(models=curves)
 
 
-def climb(motions: Sequence[Motion], replays: Replays) -> list[dict[str, Any]]:
+def climb(motions: Sequence[Motion], replays: Replays) -> list[Step]:
     """A step of the ladder for each model, on the test runs."""
-    return [step(name, motions, list(runs.values())) for name, runs in replays.items()]
+    return [score_step(name, motions, list(runs.values())) for name, runs in replays.items()]

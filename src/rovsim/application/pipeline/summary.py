@@ -1,22 +1,22 @@
 """The study's scores, ladder and growth of errors, brought together."""
 
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Sequence
 
 from rovsim.application.pipeline.replays import Replays, climb, measure_growth
-from rovsim.core.files import write_json
-from rovsim.evaluation.error_conditions import merged
-from rovsim.evaluation.ladder import with_diagnosis
-from rovsim.evaluation.scores import comparison
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.comparison import Comparison
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.ladder import Ladder
 
 
 def summarize(
     motions: Sequence[Motion],
     replays: Replays,
-    scores: Sequence[dict[str, Any]],
-    searches: Sequence[dict[str, Any]],
-    diagnosis: dict[str, Any],
+    scores: Sequence[Comparison],
+    searches: Sequence[ErrorConditions],
+    diagnosis: Diagnosis,
     out: Path,
 ) -> None:
     """Write `comparison.json`, `ladder.json`, `growth.json` and `where.json`.
@@ -24,13 +24,13 @@ def summarize(
     Args:
         motions: all runs.
         replays: by model, in the order of the ladder.
-        scores: of every model on every run.
-        searches: `where.json` of single models.
-        diagnosis: `diagnosis.json`; its effects stand in the ladder one by one.
+        scores: of single models.
+        searches: of single models.
+        diagnosis: its effects stand in the ladder one by one.
         out: the folder.
     """
-    ladder = with_diagnosis(climb(motions, replays), diagnosis["ladder"]["steps"])
-    write_json(out / "where.json", merged(searches))
-    write_json(out / "growth.json", measure_growth(motions, replays))
-    write_json(out / "ladder.json", ladder)
-    write_json(out / "comparison.json", comparison(scores))
+    ladder = Ladder.with_diagnosis(climb(motions, replays), diagnosis.ladder.steps)
+    ErrorConditions.merged(searches).write(out / "where.json")
+    measure_growth(motions, replays).write(out / "growth.json")
+    ladder.write(out / "ladder.json")
+    Comparison.merged(scores).write(out / "comparison.json")

@@ -1,7 +1,7 @@
 """A learned residual on top of a model, and how long its predictions take."""
 
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
 from rovsim.application.sections import PredictorSettings, TrainingSettings
 from rovsim.core.progress import reported
@@ -9,9 +9,10 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import read_model, write_model
-from rovsim.evaluation.latency import both_ways
+from rovsim.evaluation.latency import time_both_ways
 from rovsim.learning.pairs import choose_training_runs, sample_run, train_residual
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.timing import Timing
 
 
 def train(
@@ -49,15 +50,15 @@ def train(
 
 def time_predictors(
     models: Sequence[Model], base: Model, motion: Motion, settings: PredictorSettings
-) -> dict[str, Any]:
-    """`timing.json`: each residual's library call and its exported predictor, on one run."""
+) -> Timing:
+    """Each residual's library call and its exported predictor, on one run."""
     pairs, how = sample_run(base, motion, settings.signals, settings.replay), settings.timing
-    return {
-        "inference": {
-            model.name: both_ways(
+    return Timing(
+        inference={
+            model.name: time_both_ways(
                 residual, pairs.features(residual.features), how.calls, how.warmup, how.seconds
             )
             for model in models
             if (residual := model.residual) is not None
         }
-    }
+    )

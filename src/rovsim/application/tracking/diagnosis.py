@@ -4,15 +4,17 @@ from pathlib import Path
 from typing import Any, Iterable, Mapping
 
 from rovsim.application.settings import TrackingSettings
-from rovsim.application.tracking.runs import flat, track
+from rovsim.application.tracking.runs import track
 from rovsim.core.mappings import leaves
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.ladder import Step
 
 
 def track_diagnosis(
     settings: TrackingSettings,
     experiment: str,
     base: str,
-    found: Mapping[str, Any],
+    found: Diagnosis,
     params: Mapping[str, Any],
     files: Iterable[Path],
     parent: str | None = None,
@@ -23,41 +25,43 @@ def track_diagnosis(
         settings: where.
         experiment: the campaign.
         base: name of the model that was diagnosed.
-        found: content of diagnosis.json.
+        found: the diagnosis.
         params: settings of the diagnosis, nested plain values.
         files: kept as artifacts.
         parent: id of the run this diagnosis belongs to.
     """
-    selected = "+".join(one["effect"] for one in found["selected"]) or "none"
-    tags = {"model": base, "verdict": found["verdict"], "selected": selected}
+    selected = "+".join(one.effect for one in found.selected) or "none"
+    tags = {"model": base, "verdict": found.verdict, "selected": selected}
     whole = track(
         settings, experiment=experiment, name="diagnosis", tags=tags, params=leaves(params),
         scores={}, files=files, parent=parent, metrics=diagnosis_metrics(found),
     )  # fmt: skip
     return {"diagnosis": whole} | {
-        step["model"]: track(
-            settings, experiment=experiment, name=step["model"], parent=whole,
-            tags={"model": step["model"], "residual": "none", "control": "none"}, params={},
+        step.model: track(
+            settings, experiment=experiment, name=step.model, parent=whole,
+            tags={"model": step.model, "residual": "none", "control": "none"}, params={},
             scores={}, files=[], metrics=step_metrics(step),
         )
-        for step in found["ladder"]["steps"]
+        for step in found.ladder.steps
     }  # fmt: skip
 
 
-def diagnosis_metrics(found: Mapping[str, Any]) -> dict[str, float]:
+def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:
     """Errors of a diagnosis, and what each selected effect is worth, with its fitted values."""
-    metrics = {f"error/{name}": value for name, value in found["error"].items()}
-    for one in found["selected"]:
-        name = one["effect"]
-        metrics |= {f"{name}/{key}": one[key] for key in ("error_reduction", "probability")}
-        for parameter, value in one["parameters"].items():
-            metrics[f"{name}/{parameter}"] = value["value"]
-            metrics[f"{name}/{parameter}/std"] = value.get("std")
+    metrics = {f"error/{name}": value for name, value in found.error}
+    for one in found.selected:
+        name = one.effect
+        metrics[f"{name}/error_reduction"] = one.error_reduction
+        metrics[f"{name}/probability"] = one.probability
+        for parameter, fitted in one.parameters.items():
+            metrics[f"{name}/{parameter}"] = fitted.value
+            metrics[f"{name}/{parameter}/std"] = fitted.std
     return {name: value for name, value in metrics.items() if value is not None}
 
 
-def step_metrics(step: Mapping[str, Any]) -> dict[str, float]:
+def step_metrics(step: Step) -> dict[str, float]:
     """Numbers of one step of a ladder, named as those of a comparison."""
-    parts = {f"test/2/{key}": step[key] for key in ("acceleration_rmse", "velocity_mae")}
-    found = {"windows_2s": step["windows_2s"], **dict(flat(parts))}
+    found = {"windows_2s": step.windows_2s}
+    for quantity in ("acceleration_rmse", "velocity_mae"):
+        found |= {f"test/2/{quantity}/{axis}": v for axis, v in getattr(step, quantity)}
     return {name: value for name, value in found.items() if value is not None}

@@ -9,8 +9,10 @@ from filelock import FileLock
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.core.extras import require
+from rovsim.results.base import ByAxis
+from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
 
-HORIZONS = ("open_loop", "0.5", "2", "5")
+HORIZONS = (OPEN_LOOP, "0.5", "2", "5")
 
 
 def track(
@@ -20,7 +22,7 @@ def track(
     name: str,
     tags: Mapping[str, str],
     params: Mapping[str, Any],
-    scores: Mapping[str, Any],
+    scores: Mapping[str, RunErrors],
     files: Iterable[Path],
     parent: str | None = None,
     metrics: Mapping[str, float] | None = None,
@@ -33,7 +35,7 @@ def track(
         name: of the run.
         tags: model, residual, control.
         params: hyperparameters.
-        scores: the model's part of comparison.json, by run.
+        scores: the model's errors, by run.
         files: kept as artifacts.
         parent: id of the run this one belongs to.
         metrics: further numbers.
@@ -50,23 +52,23 @@ def track(
         return run.info.run_id
 
 
-def metrics_of(scores: Mapping[str, Any]) -> dict[str, float]:
+def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
     """Metrics by split, horizon, quantity and axis: the mean over runs of comparison.json."""
     found: dict[str, list[float]] = {}
     for run in scores.values():
         for horizon in HORIZONS:
-            numbers = run["open_loop"] if horizon == "open_loop" else run["windows"].get(horizon)
-            for key, value in flat(numbers or {}):
+            metrics = run.at(horizon)
+            for key, value in _flat(metrics) if metrics else ():
                 if value is not None:
-                    found.setdefault(f"{run['split']}/{horizon}/{key}", []).append(value)
+                    found.setdefault(f"{run.split}/{horizon}/{key}", []).append(value)
     return {key: float(np.mean(values)) for key, values in found.items()}
 
 
-def flat(numbers: Mapping[str, Any]) -> Iterable[tuple[str, float | None]]:
+def _flat(metrics: Metrics) -> Iterable[tuple[str, float | None]]:
     """Numbers by name; those of axes as `quantity/axis`."""
-    for quantity, value in numbers.items():
-        if isinstance(value, Mapping):
-            yield from ((f"{quantity}/{axis}", v) for axis, v in value.items())
+    for quantity, value in metrics:
+        if isinstance(value, ByAxis):
+            yield from ((f"{quantity}/{axis}", v) for axis, v in value)
         else:
             yield quantity, value
 

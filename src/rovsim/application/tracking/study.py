@@ -7,7 +7,10 @@ from typing import Any, Mapping, Sequence
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.diagnosis import track_diagnosis
 from rovsim.application.tracking.runs import track
-from rovsim.core.files import read_json, read_yaml
+from rovsim.core.files import read_yaml
+from rovsim.results.comparison import Comparison
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.ladder import Ladder
 
 
 @dataclass(frozen=True)
@@ -32,21 +35,21 @@ def track_study(
         files: what is logged.
         diagnosing: settings of the diagnosis, nested plain values.
     """
-    steps = {step["model"]: step["windows_2s"] for step in read_json(files.ladder)["steps"]}
+    ladder, diagnosis = Ladder.read(files.ladder), Diagnosis.read(files.diagnosis)
+    steps = {s.model: s.windows_2s for s in ladder.steps if s.windows_2s is not None}
     written = {path.parent.name: path for path in files.models}
     parent = track(
         settings, experiment=campaign, name="study", tags={"model": "study"}, params={},
         scores={}, files=files.kept,
     )  # fmt: skip
     diagnosed = track_diagnosis(
-        settings, campaign, "nominal", read_json(files.diagnosis), diagnosing, [files.diagnosis],
-        parent,
+        settings, campaign, "nominal", diagnosis, diagnosing, [files.diagnosis], parent
     )  # fmt: skip
     runs: dict[str, Any] = {"study": parent, "diagnosis": diagnosed}
-    for name, entry in read_json(files.comparison)["models"].items():
+    for name, entry in Comparison.read(files.comparison).models.items():
         runs[name] = track(
-            settings, experiment=campaign, name=name, parent=parent, scores=entry["runs"],
-            metrics={"windows_2s": steps[name]} if steps.get(name) is not None else {},
+            settings, experiment=campaign, name=name, parent=parent, scores=entry.runs,
+            metrics={"windows_2s": steps[name]} if name in steps else {},
             **_described(name, written.get(name)),
         )  # fmt: skip
     return runs

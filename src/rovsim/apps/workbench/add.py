@@ -21,8 +21,8 @@ from rovsim.apps.workbench.traces import Traces, excited, panels
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
-from rovsim.reporting.catalogue.page import unit
-from rovsim.reporting.figures.marks import significant
+from rovsim.reporting.catalogue.entries import unit
+from rovsim.reporting.wording import significant
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
 STEPS = 400  # of a slider
@@ -189,12 +189,13 @@ class Add:
         except RovsimError as error:
             ui.notify(str(error), type="warning", multi_line=True)
             return
-        before = (await computed(self.bench.step, self.bench.base))["windows_2s"]
-        after = (await computed(self.bench.step, saved))["windows_2s"]
+        before = (await computed(self.bench.step, self.bench.base)).windows_2s
+        after = (await computed(self.bench.step, saved)).windows_2s
         self._tell(path, before, after)
 
     def _tell(self, path: Path, before: float | None, after: float | None) -> None:
-        floor = (self.bench.diagnosis or {}).get("error", {}).get("noise_floor")
+        diagnosis = self.bench.diagnosis
+        floor = diagnosis.error.noise_floor if diagnosis else None
         self.result.clear()
         with self.result:
             with ui.row().classes("tiles"):

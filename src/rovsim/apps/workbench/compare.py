@@ -16,7 +16,7 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.traces import HORIZONS, QUANTITIES, Traces, excited, horizon_text, panels
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.reporting.figures.marks import VELOCITY_UNITS
+from rovsim.reporting.units import VELOCITY_UNITS
 
 TITLE, QUESTION = "Compare", "How far is the model from the measurement?"
 
@@ -123,8 +123,10 @@ class Compare:
             rows = []
             for name in predicted:
                 found = self.bench.metrics(self.bench.models[name], self.chosen["run"], horizon)
-                cells = [cell(found["velocity_rmse"][a], f"velocity_rmse/{a}") for a in AXES]
-                cells += [cell(found[k], k) for k in ("position_rmse_m", "attitude_rmse_rad")]
+                cells = [cell(found.velocity_rmse[a], f"velocity_rmse/{a}") for a in AXES]
+                cells += [
+                    cell(getattr(found, k), k) for k in ("position_rmse_m", "attitude_rmse_rad")
+                ]
                 rows.append((name, cells))
             units = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
             table(

@@ -1,12 +1,13 @@
 """Data: what was recorded, what is wrong with it, and what it can tell."""
 
-from typing import Any
+from typing import Mapping
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
 from rovsim.apps.workbench.parts import cell, chart, heading, section, table, text, words
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.reporting.figures.marks import VELOCITY_UNITS
+from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.results.quality import Quality
 
 TITLE, QUESTION = "Data", "Can these recordings be trusted?"
 
@@ -16,37 +17,36 @@ async def show(bench: Workbench) -> None:
     heading(TITLE, QUESTION)
     quality = bench.data.quality
     for run, report in quality.items():
-        if report["unusable"]:
-            text(f"Run {run} is not used: {report['unusable']}.", "warning")
+        if report.unusable:
+            text(f"Run {run} is not used: {report.unusable}.", "warning")
     _recordings(quality)
     _gaps(quality)
     _excitation(quality)
     section("Remarks")
     for run, report in quality.items():
-        for remark in report["remarks"]:
+        for remark in report.remarks:
             text(f"{run}: {remark}")
-    if not any(report["remarks"] for report in quality.values()):
+    if not any(report.remarks for report in quality.values()):
         text("Nothing to remark on.", "soft")
 
 
-def _recordings(quality: dict[str, dict[str, Any]]) -> None:
+def _recordings(quality: Mapping[str, Quality]) -> None:
     rows = []
     for run, q in quality.items():
-        noise, repairs = q["noise"], q["repairs"]
         rows.append(
             (
                 run,
                 [
-                    words(q["split"]), words(q["control"]),
-                    cell(q["rate_hz"]["median"], f"{run}/rate_hz"),
-                    cell(q["duration_s"], f"{run}/duration_s"),
-                    cell(q["not_found"], f"{run}/not_found"),
-                    cell(len(q["gaps"]), f"{run}/gaps"),
-                    cell(q["longest_gap_s"], f"{run}/longest_gap_s"),
-                    cell(q["outliers"], f"{run}/outliers"),
-                    cell(repairs["duplicates"], f"{run}/duplicates"),
-                    cell(_times(noise["position_m"], 1e3), f"{run}/noise_mm"),
-                    cell(_times(noise["attitude_rad"], 1e3), f"{run}/noise_mrad"),
+                    words(q.split), words(q.control),
+                    cell(q.rate_hz.median, f"{run}/rate_hz"),
+                    cell(q.duration_s, f"{run}/duration_s"),
+                    cell(q.not_found, f"{run}/not_found"),
+                    cell(len(q.gaps), f"{run}/gaps"),
+                    cell(q.longest_gap_s, f"{run}/longest_gap_s"),
+                    cell(q.outliers, f"{run}/outliers"),
+                    cell(q.repairs["duplicates"], f"{run}/duplicates"),
+                    cell(_times(q.noise.position_m, 1e3), f"{run}/noise_mm"),
+                    cell(_times(q.noise.attitude_rad, 1e3), f"{run}/noise_mrad"),
                 ],
             )
         )  # fmt: skip
@@ -61,20 +61,20 @@ def _times(value: float | None, factor: float) -> float | None:
     return None if value is None else factor * value
 
 
-def _gaps(quality: dict[str, dict[str, Any]]) -> None:
+def _gaps(quality: Mapping[str, Quality]) -> None:
     """Each run as a line, its gaps as marks."""
     section("Gaps")
-    runs = list(reversed(quality))
+    runs = list(quality)[::-1]
     data = [
-        [g["start_s"], k, g["start_s"] + g["duration_s"]]
+        [gap.start_s, k, gap.start_s + gap.duration_s]
         for k, run in enumerate(runs)
-        for g in quality[run]["gaps"]
+        for gap in quality[run].gaps
     ]
     if not data:
         text("The body was seen throughout.", "soft")
         return
     text("Where the motion capture lost the body. Nothing is invented across a long gap.", "soft")
-    longest = max(quality[run]["duration_s"] for run in runs)
+    longest = max(quality[run].duration_s for run in runs)
     chart(
         {
             "grid": {"left": 8, "right": 24, "top": 8, "bottom": 34, "containLabel": True},
@@ -103,7 +103,7 @@ GAP_SHAPE = (
 )
 
 
-def _excitation(quality: dict[str, dict[str, Any]]) -> None:
+def _excitation(quality: Mapping[str, Quality]) -> None:
     section("Excitation")
     text("An axis in parentheses hardly moves: nothing can be judged there.", "soft")
     heads = ["run", *(f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True))]
@@ -111,8 +111,8 @@ def _excitation(quality: dict[str, dict[str, Any]]) -> None:
     for run, report in quality.items():
         cells = []
         for axis in AXES:
-            one = report["excitation"][axis]
-            shown = cell(one["std"], f"{run}/excitation/{axis}")
-            cells.append(shown if one["excited"] else shown.replace("number", "number quiet"))
+            one = report.excitation[axis]
+            shown = cell(one.std, f"{run}/excitation/{axis}")
+            cells.append(shown if one.excited else shown.replace("number", "number quiet"))
         rows.append((run, cells))
     table("Standard deviation of the body velocity", heads, rows)

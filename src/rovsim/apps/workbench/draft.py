@@ -2,15 +2,15 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Mapping
 
 import numpy as np
 
-from rovsim.diagnosis.apply import entries_of, extended
+from rovsim.diagnosis.apply import extend, list_entries
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import EffectEntry, Value, build_effect
+from rovsim.results.diagnosis import Diagnosis, FittedEffect
 
 SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
 
@@ -23,20 +23,18 @@ class Draft:
     """
 
     base: Model
-    diagnosis: Mapping[str, Any]
+    diagnosis: Diagnosis | None
     catalogue: Catalogue
     ticked: list[str] = field(default_factory=list)
     values: dict[str, dict[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.ticked = [one["effect"] for one in self.diagnosis.get("selected", [])]
+        self.ticked = [one.effect for one in self.diagnosis.selected] if self.diagnosis else []
 
     @property
-    def fitted(self) -> dict[str, Mapping[str, Any]]:
+    def fitted(self) -> dict[str, FittedEffect]:
         """What the diagnosis has values for, the selected effects first."""
-        found = {one["effect"]: one for one in self.diagnosis.get("selected", [])}
-        ranked = {one["effect"]: one for one in self.diagnosis.get("ranking", [])}
-        return {**found, **{name: one for name, one in ranked.items() if name not in found}}
+        return self.diagnosis.fitted if self.diagnosis else {}
 
     def tick(self, effect: str, yes: bool) -> None:
         """Add or leave out an effect."""
@@ -52,7 +50,7 @@ class Draft:
         An effect without fitted values begins where a fit of it would.
         """
         if effect in self.fitted:
-            (entry,) = entries_of([self.fitted[effect]], Path("diagnosis.json"))
+            (entry,) = list_entries([self.fitted[effect]], Path("diagnosis.json"))
         else:
             cls = self.catalogue[effect]
             known = {
@@ -69,7 +67,7 @@ class Draft:
         Raises:
             BadInput: values no model can have.
         """
-        return extended(
+        return extend(
             self.base, [build_effect(self.entry(name), self.catalogue) for name in self.ticked]
         )
 

@@ -12,7 +12,7 @@ from rovsim.core.shipped import shipped
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.reporting.catalogue.page import PICTURES, chaptered, unit
+from rovsim.reporting.catalogue.entries import PICTURES, chaptered, unit
 
 TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look like?"
 DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`

@@ -8,9 +8,11 @@ from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, SOFT
 from rovsim.apps.workbench.parts import cell, chart, computed, heading, section, table, text
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.evaluation.ladder import FLOOR
-from rovsim.reporting.figures.marks import VELOCITY_UNITS, number, short, significant
 from rovsim.reporting.figures.palette import looks
+from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.reporting.wording import short, significant
+from rovsim.results.base import or_nan
+from rovsim.results.ladder import Ladder
 
 TITLE, QUESTION = "Ladder", "How far down does the error go?"
 KINDS = {"knn": "nearest neighbours (KNN)", "gp": "Gaussian process (GP)"}
@@ -23,21 +25,18 @@ async def show(bench: Workbench) -> None:
         "Each step on the test runs, which nothing was fitted to: velocity error after being set "
         "to the measured state every 2 s, in units of the measured velocity's spread."
     )
-    steps = (await computed(bench.ladder))["steps"]
+    ladder = await computed(bench.ladder)
     about = "Error of each step, the noise floor as a line"
-    chart(chart_of(steps), about, 60 + 36 * len(steps))
+    chart(chart_of(ladder), about, 60 + 36 * len(ladder.steps))
     rows = [
         (
-            s["model"],
+            s.model,
             [
-                cell(s["windows_2s"], f"{s['model']}/windows_2s"),
-                *(
-                    cell(s["velocity_mae"][a], f"{s['model']}/velocity_mae/{a}")
-                    for a in AXES
-                ),
+                cell(s.windows_2s, f"{s.model}/windows_2s"),
+                *(cell(s.velocity_mae[a], f"{s.model}/velocity_mae/{a}") for a in AXES),
             ],
         )
-        for s in steps
+        for s in ladder.steps
     ]  # fmt: skip
     heads = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
     table("The steps, and their mean absolute velocity errors in 2 s windows",
@@ -77,31 +76,28 @@ def _report(bench: Workbench) -> None:
             ui.label(str(path)).classes("soft")
 
 
-def chart_of(steps: list[dict[str, Any]]) -> dict[str, Any]:
+def chart_of(ladder: Ladder) -> dict[str, Any]:
     """Bars from the first step down; the noise floor is a line, for it is a bound and no model."""
-    floor = next((number(s["windows_2s"]) for s in steps if s["model"] == FLOOR), float("nan"))
-    shown = [s for s in steps if s["model"] != FLOOR and s["windows_2s"] is not None]
-    style = looks([s["model"] for s in shown])
-    bars = [
-        {"value": s["windows_2s"], "itemStyle": {"color": style[s["model"]].color}} for s in shown
-    ]
+    floor = ladder.noise_floor
+    shown = [s for s in ladder.models if s.windows_2s is not None]
+    style = looks([s.model for s in shown])
+    bars = [{"value": s.windows_2s, "itemStyle": {"color": style[s.model].color}} for s in shown]
     line = {
         "symbol": "none", "silent": True, "data": [{"xAxis": floor}],
         "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
-        "label": {
-            "formatter": f"noise floor {significant(floor)}", "position": "start", "color": INK
-        },
+        "label": {"formatter": f"noise floor {significant(or_nan(floor))}", "position": "start",
+                  "color": INK},
     }  # fmt: skip
     return {
         "grid": {"left": 8, "right": 56, "top": 30, "bottom": 8, "containLabel": True},
         "xAxis": {"type": "value", "min": 0, "axisLabel": {"color": SOFT},
                   "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
         "yAxis": {"type": "category", "inverse": True, "axisTick": {"show": False},
-                  "data": [short(s["model"], 28) for s in shown], "axisLabel": {"color": INK}},
+                  "data": [short(s.model, 28) for s in shown], "axisLabel": {"color": INK}},
         "series": [{
             "type": "bar", "data": bars, "barMaxWidth": 22,
             "label": {"show": True, "position": "right", "color": INK,
                       ":formatter": "p => Number(p.value).toPrecision(3)"},
-            **({"markLine": line} if floor == floor else {}),
+            **({"markLine": line} if floor is not None else {}),
         }],
     }  # fmt: skip

@@ -7,7 +7,8 @@ from typing import Any, Callable, Sequence
 
 from nicegui import ui
 
-from rovsim.reporting.figures.marks import number, significant
+from rovsim.reporting.wording import significant
+from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
 
@@ -50,7 +51,7 @@ def section(title: str) -> None:
 def cell(value: float | None, name: str = "") -> str:
     """A number in a table, its full value in `data-value`, its name in `data-name`."""
     known = "" if value is None else f' data-value="{value!r}"'
-    shown = str(value) if isinstance(value, int) else significant(number(value))
+    shown = str(value) if isinstance(value, int) else significant(or_nan(value))
     return f'<td class="number" data-name="{escape(name)}"{known}>{shown}</td>'
 
 
@@ -90,7 +91,7 @@ def tile_html(title: str, value: float | None, name: str, note: str = "") -> str
     known = "" if value is None else f' data-value="{value!r}"'
     return (
         f"<span>{escape(title)}</span><strong data-name='{escape(name)}'{known}>"
-        f"{significant(number(value))}</strong><small>{escape(note)}</small>"
+        f"{significant(or_nan(value))}</strong><small>{escape(note)}</small>"
     )
 
 

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
@@ -12,11 +11,12 @@ from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, WorkbenchSettings, select
-from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in, load_catalogue
 from rovsim.reporting.report_data import PER_RUN
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.ladder import Ladder
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
@@ -25,15 +25,15 @@ ONCE = (
 )  # fmt: skip
 
 
-def diagnose_into(settings: WorkbenchSettings, path: Path) -> dict[str, Any]:
+def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
     """Diagnose settings.model; writes diagnosis.json to `path` and returns it."""
     catalogue = load_catalogue(settings.effect_files)
     data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     how = select(settings, DiagnosisSettings)
-    content = diagnose(data.runs, base, how, catalogue).content
-    write_json(path, content)
-    return content
+    found = diagnose(data.runs, base, how, catalogue).diagnosis
+    found.write(path)
+    return found
 
 
 def train_into(settings: WorkbenchSettings, path: Path) -> Path:
@@ -46,22 +46,24 @@ def train_into(settings: WorkbenchSettings, path: Path) -> Path:
     return path
 
 
-def report_into(settings: WorkbenchSettings, known: dict[str, Any], out: Path) -> Path:
-    """Write comparison.json, where.json, what is `known` by name, and report.html; returns it."""
+def report_into(
+    settings: WorkbenchSettings, ladder: Ladder, diagnosis: Diagnosis | None, out: Path
+) -> Path:
+    """Write report.html and the results it shows; returns it."""
     from rovsim.reporting.html.folder import present
 
     catalogue = load_catalogue(settings.effect_files)
     data = measure(open_campaign(settings.campaign), settings.signals)
     models = load_models(settings.model, data.vehicle, catalogue)
-    evidence = replace(compare(data, models, settings), **known)
-    wanted = [(figure, "") for figure in ONCE if figure != "ranking" or "diagnosis" in known]
+    shown = replace(compare(data, models, settings), ladder=ladder, diagnosis=diagnosis)
+    wanted = [(figure, "") for figure in ONCE if figure != "ranking" or diagnosis]
     tests = [run for run, motion in data.motions.items() if motion.run.split == "test"]
     wanted += [(figure, run) for run in tests for figure in PER_RUN]
     origin = provenance(select(settings, CampaignSettings), catalogue)
-    present(out, data.campaign.name, evidence, wanted, origin, catalogue)
-    contents = {"comparison": evidence.comparison, "where": evidence.where, **known}
-    for name, content in contents.items():
-        write_json(out / f"{name}.json", content)
+    present(out, data.campaign.name, shown, wanted, origin, catalogue)
+    for name in ("comparison", "where", "ladder", "diagnosis"):
+        if result := getattr(shown, name):
+            result.write(out / f"{name}.json")
     return out / "report.html"
 
 

@@ -11,7 +11,7 @@ from rovsim.apps.workbench.charts import Panel, cursor, height, series_data, sty
 from rovsim.apps.workbench.parts import chart
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.figures.marks import ACCELERATION_UNITS, VELOCITY_UNITS
+from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.simulation.prediction import Prediction
 
 QUANTITIES = {"nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS)}
@@ -25,8 +25,8 @@ def horizon_text(horizon: float | None) -> str:
 
 def excited(bench: Workbench, run: str) -> list[str]:
     """Axes that moved in a run, at most three to begin with."""
-    known = bench.data.quality[run]["excitation"]
-    moved = [axis for axis in AXES if known[axis]["excited"]]
+    known = bench.data.quality[run].excitation
+    moved = [axis for axis in AXES if known[axis].excited]
     return (moved or list(AXES))[:3]
 
 

@@ -1,7 +1,7 @@
 """Where: the error by condition; a bin shows its samples in time."""
 
 from contextlib import nullcontext
-from typing import Any
+from typing import Any, Sequence
 
 import numpy as np
 from nicegui import ui
@@ -10,9 +10,11 @@ from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
 from rovsim.apps.workbench.parts import chart, computed, heading, onward, section, text
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.evaluation.error_conditions import Judged, content
 from rovsim.evaluation.error_conditions.bins import Table
-from rovsim.reporting.figures.marks import ACCELERATION_UNITS
+from rovsim.evaluation.error_conditions.entries import list_conditions
+from rovsim.evaluation.error_conditions.search import SearchedModel
+from rovsim.reporting.units import ACCELERATION_UNITS
+from rovsim.results.error_conditions import ConditionFinding, ConditionTable
 
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"
 BLUE, GREY = "#0072B2", "#bdbdbd"
@@ -47,13 +49,12 @@ class Where:
     async def draw(self) -> None:
         """Findings, map and bins of one model."""
         model = self.bench.models[self.chosen["model"]]
-        self.judged: Judged = await computed(self.bench.judged, model)
-        self.told = content([self.judged])["models"][model.name]
-        findings = self.told["findings"]
+        self.searched: SearchedModel = await computed(self.bench.searched, model)
+        self.told = list_conditions([self.searched]).models[model.name]
         self.area.clear()
         with self.area:
             with ui.column().classes("half equal"):
-                self._findings(findings)
+                self._findings(self.told.findings)
                 self._map()
             with ui.column().classes("half equal side"):
                 self.bins = ui.column().classes("area")
@@ -64,27 +65,27 @@ class Where:
 
     def _largest(self) -> tuple[str, str] | None:
         """Axis and condition of the first finding, else of the largest share."""
-        if self.told["findings"]:
-            first = self.told["findings"][0]
-            return first["axis"], first["condition"]
+        if self.told.findings:
+            first = self.told.findings[0]
+            return first.axis, first.condition
         shares = {
-            (axis, condition): one["share_of_error"]
-            for axis, tables in self.told["axes"].items()
+            (axis, condition): one.share_of_error
+            for axis, tables in self.told.axes.items()
             for condition, one in tables.items()
         }
         return max(shares, key=lambda at: shares[at]) if shares else None
 
-    def _findings(self, findings: list[dict[str, Any]]) -> None:
+    def _findings(self, findings: Sequence[ConditionFinding]) -> None:
         """What was found, in sentences; the first ones, and the rest folded away."""
-        runs = f"{self.judged.split} runs {', '.join(self.judged.runs)}"
+        runs = f"{self.searched.split} runs {', '.join(self.searched.runs)}"
         text(f"Acceleration error in means over half a second, on the {runs}.", "soft")
-        for k, sentence in enumerate(self.told["sentences"]):
+        for k, sentence in enumerate(self.told.sentences):
             if k == FIRST:
                 folded = ui.expansion(f"{len(findings) - FIRST} more").classes("more")
             with folded if k >= FIRST else nullcontext(), ui.row().classes("finding"):
                 ui.label(sentence)
                 if k < len(findings):
-                    at = (findings[k]["axis"], findings[k]["condition"])
+                    at = (findings[k].axis, findings[k].condition)
                     ui.button("show", on_click=lambda _, a=at: self.choose(*a)).props(
                         f'flat dense no-caps aria-label="Show {at[0]} over {at[1]}"'
                     )
@@ -93,14 +94,14 @@ class Where:
         """Share of each axis' error that varies with each condition."""
         section("What the error varies with")
         text("Darker: more of that axis' squared error. Click a field to see its bins.", "soft")
-        axes = [a for a in AXES if self.told["axes"].get(a)]
+        axes = [a for a in AXES if self.told.axes[a]]
         if not axes:
             return
-        tables = self.told["axes"]
-        best = {c: max(tables[a][c]["share_of_error"] for a in axes) for c in tables[axes[0]]}
+        tables = self.told.axes
+        best = {c: max(tables[a][c].share_of_error for a in axes) for c in tables[axes[0]]}
         self.conditions = sorted(best, key=lambda c: -best[c])[:MOST]
         data = [
-            [k, j, tables[a][c]["share_of_error"]]
+            [k, j, tables[a][c].share_of_error]
             for j, c in enumerate(reversed(self.conditions))
             for k, a in enumerate(axes)
         ]
@@ -132,7 +133,7 @@ class Where:
     def choose(self, axis: str, condition: str) -> None:
         """Show the bins of one condition."""
         self.chosen["at"] = (axis, condition)
-        found: Table = self.judged.where.tables[axis][condition]
+        found: Table = self.searched.explanation.tables[axis][condition]
         unit = ACCELERATION_UNITS[AXES.index(axis)]
         self.bins.clear()
         with self.bins:
@@ -142,7 +143,7 @@ class Where:
                 "Click a bin, or choose it below, to see its samples in time.", "soft",
             )  # fmt: skip
             chart(
-                bins_chart(self.told["axes"][axis][condition], condition, axis, unit),
+                bins_chart(self.told.axes[axis][condition], condition, axis, unit),
                 f"Mean {axis} error by bins of {condition}",
                 200,
                 on_point_click=lambda e: self._samples(axis, found, e.data_index),
@@ -154,13 +155,13 @@ class Where:
 
     def _samples(self, axis: str, found: Table, chosen: int) -> None:
         """The blocks of a bin among all others, over time, run by run."""
-        blocks = self.judged.where.blocks
+        blocks = self.searched.explanation.blocks
         assert blocks is not None  # a table was made of them
         error, inside = blocks.error[:, AXES.index(axis)], found.binning.bin == chosen
         self.series.clear()
         with self.series:
             ui.label(f"{int(inside.sum())} samples, {_span(found, chosen)}").classes("soft")
-            for k, run in enumerate(self.judged.runs):
+            for k, run in enumerate(self.searched.runs):
                 mine = blocks.run == k
                 if (mine & inside).any():
                     options = samples_chart(blocks.time[mine], error[mine], inside[mine], run, axis)
@@ -175,19 +176,19 @@ def _span(found: Table, k: int) -> str:
     return f"{low:.2g} to {high:.2g} {'°' if unit == 'rad' else unit}".replace("-", "−")
 
 
-def bins_chart(found: dict[str, Any], condition: str, axis: str, unit: str) -> dict[str, Any]:
+def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> dict[str, Any]:
     """Means of the bins with two standard errors, from where.json; grey: seen too rarely."""
-    colors = [BLUE if yes else GREY for yes in found["judged"]]
-    centers = [f"{c:.2g}".replace("-", "−") for c in found["center"]]
+    colors = [BLUE if yes else GREY for yes in found.judged]
+    centers = [f"{c:.2g}".replace("-", "−") for c in found.center]
     whiskers = [
         [k, m - 2 * e, m + 2 * e]
-        for k, (m, e) in enumerate(zip(found["mean"], found["std_error"], strict=True))
+        for k, (m, e) in enumerate(zip(found.mean, found.std_error, strict=True))
     ]
     return {
         "grid": {"left": 64, "right": 16, "top": 30, "bottom": 44},
         "tooltip": {"trigger": "item"},
         "xAxis": {"type": "category", "data": centers, "nameLocation": "middle", "nameGap": 26,
-                  "name": f"{condition} ({found['unit']})" if found["unit"] else condition,
+                  "name": f"{condition} ({found.unit})" if found.unit else condition,
                   "nameTextStyle": {"color": SOFT},
                   "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
                   "axisLabel": {"color": SOFT}},
@@ -197,7 +198,7 @@ def bins_chart(found: dict[str, Any], condition: str, axis: str, unit: str) -> d
         "series": [
             {"type": "bar", "name": "mean error", "barMaxWidth": 64,
              "data": [{"value": m, "itemStyle": {"color": c}}
-                      for m, c in zip(found["mean"], colors, strict=True)]},
+                      for m, c in zip(found.mean, colors, strict=True)]},
             {"type": "custom", "silent": True, "data": whiskers, ":renderItem": WHISKER, "z": 4,
              "encode": {"x": 0, "y": [1, 2]}},
         ],

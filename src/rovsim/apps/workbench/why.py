@@ -1,7 +1,6 @@
 """Why: which effects are missing, how sure that is, and what to record next."""
 
 from html import escape
-from typing import Any
 
 from nicegui import ui
 
@@ -19,7 +18,8 @@ from rovsim.apps.workbench.parts import (
     words,
 )
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.reporting.html.verdict import Missing, percent, verdict
+from rovsim.reporting.html.verdict import Missing, explain, percent
+from rovsim.results.diagnosis import Diagnosis, DiagnosisErrors
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
 SHOWN = 8  # effects of the ranking
@@ -32,15 +32,15 @@ async def show(bench: Workbench) -> None:
         _ask(bench)
         return
     found = bench.diagnosis
-    said = verdict(found, bench.catalogue)
+    said = explain(found, bench.catalogue)
     ui.html(
         f"<p><strong>{escape(said.sentence)}</strong> <span>({escape(said.name)})</span></p>",
         sanitize=False,
     ).classes("verdict")
-    _errors(found["error"])
+    _errors(found.error)
     for missing in said.missing:
         await _effect(bench, missing)
-    if found["selected"]:
+    if found.selected:
         onward("Add what is missing", "/add")
     if said.next:
         section("What to record next")
@@ -64,11 +64,11 @@ def _ask(bench: Workbench) -> None:
     )
 
 
-def _errors(error: dict[str, Any]) -> None:
+def _errors(error: DiagnosisErrors) -> None:
     with ui.row().classes("tiles"):
-        tile("Error of the model", error["nominal"], "error/nominal", "test runs")
-        tile("With the effects", error["with_effects"], "error/with_effects", "test runs")
-        tile("Noise floor", error["noise_floor"], "error/noise_floor", "of a perfect model, about")
+        tile("Error of the model", error.nominal, "error/nominal", "test runs")
+        tile("With the effects", error.with_effects, "error/with_effects", "test runs")
+        tile("Noise floor", error.noise_floor, "error/noise_floor", "of a perfect model, about")
     text(
         "Velocity error after being set to the measured state every 2 s, in units of the measured "
         "velocity's spread.", "soft",
@@ -95,16 +95,16 @@ async def _effect(bench: Workbench, missing: Missing) -> None:
                 ui.label("From the gallery: what it looks like in a calm tank, not your data.")
 
 
-def _ranking(found: dict[str, Any]) -> None:
-    ranking = [r for r in found["ranking"] if (r["error_reduction"] or 0.0) > 0.0][:SHOWN]
+def _ranking(found: Diagnosis) -> None:
+    ranking = [r for r in found.ranking if (r.error_reduction or 0.0) > 0.0][:SHOWN]
     if ranking:
         section("Each effect alone")
         rows = [
             (
-                r["effect"],
+                r.effect,
                 [
-                    bar(r["error_reduction"], f"ranking/{r['effect']}/error_reduction"),
-                    cell(r["probability"], f"ranking/{r['effect']}/probability"),
+                    bar(r.error_reduction or 0.0, f"ranking/{r.effect}/error_reduction"),
+                    cell(r.probability, f"ranking/{r.effect}/probability"),
                 ],
             )
             for r in ranking
@@ -113,10 +113,9 @@ def _ranking(found: dict[str, Any]) -> None:
             "Error that each effect removes by itself, at its first estimate",
             ["effect", "error removed", "probability that it alone is missing"], rows,
         )  # fmt: skip
-    if found["where"]:
+    if found.where:
         section("Where the model fails")
         rows = [
-            (w["axis"], [words(w["condition"]), words(percent(w["share_of_error"]))])
-            for w in found["where"]
+            (w.axis, [words(w.condition), words(percent(w.share_of_error))]) for w in found.where
         ]
         table("Conditions the error varies with", ["axis", "condition", "share of error"], rows)

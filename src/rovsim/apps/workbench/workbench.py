@@ -5,7 +5,7 @@ import json
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any
 
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
@@ -15,15 +15,16 @@ from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
-from rovsim.core.files import read_json
-from rovsim.diagnosis.apply import read_diagnosis
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
 from rovsim.dynamics.model_file import describe_model, read_model, write_model
-from rovsim.evaluation.error_conditions import Judged, judged
-from rovsim.evaluation.ladder import EFFECTS, ladder, step, with_diagnosis
-from rovsim.evaluation.scores import errors, metrics
+from rovsim.evaluation.error_conditions.search import SearchedModel, search_conditions
+from rovsim.evaluation.ladder import score_step
+from rovsim.evaluation.scores import subtract, summarize
+from rovsim.results.comparison import Metrics
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.ladder import EFFECTS, Ladder, Step
 from rovsim.simulation.prediction import OPEN_LOOP, Prediction, Replay
 from rovsim.simulation.replay import replay
 
@@ -39,13 +40,13 @@ class Workbench:
     data: Measured
     models: dict[str, Model]
     paths: dict[str, str]  # of models that have a file
-    diagnosis: dict[str, Any] | None = None
-    study: Mapping[str, Any] | None = None  # ladder.json beside a diagnosis that was given
+    diagnosis: Diagnosis | None = None
+    study: Ladder | None = None  # ladder.json beside a diagnosis that was given
     choices: dict[str, Any] = field(default_factory=dict)  # what a screen remembers
     work: Work | None = None  # long work, one at a time
     _replays: dict[tuple, Replay] = field(default_factory=dict)
-    _steps: dict[Model, dict[str, Any]] = field(default_factory=dict)
-    _judged: dict[Model, Judged] = field(default_factory=dict)
+    _steps: dict[Model, Step] = field(default_factory=dict)
+    _searched: dict[Model, SearchedModel] = field(default_factory=dict)
 
     @staticmethod
     def opened(settings: WorkbenchSettings, catalogue: Catalogue) -> "Workbench":
@@ -61,10 +62,10 @@ class Workbench:
         bench = Workbench(settings, catalogue, data, found, paths)
         given = Path(settings.diagnosis) if settings.diagnosis else bench.diagnosis_path
         if settings.diagnosis or given.exists():
-            bench.diagnosis = read_diagnosis(given)
+            bench.diagnosis = Diagnosis.read(given)
         beside = given.with_name("ladder.json")
         if settings.diagnosis and beside.exists():
-            bench.study = read_json(beside)
+            bench.study = Ladder.read(beside)
         return bench
 
     @property
@@ -105,9 +106,9 @@ class Workbench:
     @cached_property
     def draft(self) -> Draft:
         """The model that is being put together."""
-        return Draft(self.base, self.diagnosis or {}, self.catalogue)
+        return Draft(self.base, self.diagnosis, self.catalogue)
 
-    def found(self, diagnosis: dict[str, Any]) -> None:
+    def found(self, diagnosis: Diagnosis) -> None:
         """Take in a new diagnosis; a draft begins with what it selected."""
         self.diagnosis = diagnosis
         self.__dict__.pop("draft", None)
@@ -165,15 +166,14 @@ class Workbench:
 
     def report(self) -> None:
         """Begin to write the report and the JSON files behind it."""
-        known: dict[str, Any] = {"ladder": self.ladder()}
-        known |= {"diagnosis": self.diagnosis} if self.diagnosis else {}
 
         def take(path: Path) -> None:
             self.choices["report"] = path
 
         settings = self.only(*self.models)
+        known = (self.ladder(), self.diagnosis)
         self.work = Work.start(
-            "Writing the report", take, tasks.report_into, settings, known, self.out
+            "Writing the report", take, tasks.report_into, settings, *known, self.out
         )
 
     def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
@@ -194,46 +194,45 @@ class Workbench:
         name = OPEN_LOOP if horizon is None else f"{horizon:g}"
         return self.replayed(model, run, horizon).horizons[name]
 
-    def metrics(self, model: Model, run: str, horizon: float | None) -> dict[str, Any]:
+    def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
         """The errors of one run, as comparison.json has them."""
-        return metrics(errors(self.data.motions[run], self.prediction(model, run, horizon)))
+        return summarize(subtract(self.data.motions[run], self.prediction(model, run, horizon)))
 
     def run_error(self, model: Model, run: str) -> float | None:
         """`windows_2s` of one run alone."""
         motion = self.data.motions[run]
-        return step(model.name, [motion], [self.replayed(model, run, 2.0)], motion.run.split)[
-            "windows_2s"
-        ]
+        replays = [self.replayed(model, run, 2.0)]
+        return score_step(model.name, [motion], replays, motion.run.split).windows_2s
 
-    def step(self, model: Model) -> dict[str, Any]:
+    def step(self, model: Model) -> Step:
         """The ladder's step of one model; this opens the test runs."""
         if model not in self._steps:
             tests = [m for m in self.data.motions.values() if m.run.split == "test"]
             replays = [self.replayed(model, m.run.id, 2.0) for m in tests]
-            self._steps[model] = step(model.name, tests, replays)
+            self._steps[model] = score_step(model.name, tests, replays)
         return self._steps[model]
 
-    def ladder(self) -> dict[str, Any]:
-        """`ladder.json` of all that is known: baseline, base, found effects, models, floor."""
+    def ladder(self) -> Ladder:
+        """All that is known: baseline, base, found effects, models, noise floor."""
         if self.study is not None:
             extra = [self.step(m) for n, m in self.models.items() if m is not self.base]
-            known = list(self.study["steps"])
-            return ladder([*known[:-1], *extra, *known[-1:]])
+            known = self.study.steps
+            return Ladder(steps=(*known[:-1], *extra, *known[-1:]))
         first = [self.baseline, self.base]
         others = [m for m in self.models.values() if m.name not in {one.name for one in first}]
         steps = [self.step(m) for m in first]
-        steps += [{"model": EFFECTS}] if self.diagnosis else []
+        steps += [Step(model=EFFECTS)] if self.diagnosis else []
         steps += [self.step(m) for m in others]
-        return with_diagnosis(steps, self.diagnosis["ladder"]["steps"] if self.diagnosis else [])
+        return Ladder.with_diagnosis(steps, self.diagnosis.ladder.steps if self.diagnosis else ())
 
-    def judged(self, model: Model) -> Judged:
+    def searched(self, model: Model) -> SearchedModel:
         """Where a model fails."""
-        if model not in self._judged:
+        if model not in self._searched:
             motions = list(self.data.motions.values())
-            self._judged[model] = judged(
+            self._searched[model] = search_conditions(
                 model, motions, self.settings.signals, self.settings.replay
             )
-        return self._judged[model]
+        return self._searched[model]
 
 
 def _check_place(path: Path, taken: set[str], catalogue: Catalogue) -> None:

@@ -1,7 +1,6 @@
 """The project's own diagnosis as a method, with the settings a user gets."""
 
 from pathlib import Path
-from typing import Any
 
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.recordings import measure
@@ -11,12 +10,13 @@ from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.measurement.campaign import load_campaign
+from rovsim.results.diagnosis import Diagnosis
 
 
-def diagnosis(campaign: Path, out: Path) -> dict[str, Any]:
+def diagnosis(campaign: Path, out: Path) -> Diagnosis:
     """What `rovsim diagnose` writes, without the report."""
     settings = compose(["command=diagnose"])
     how = select(settings, DiagnosisSettings)
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
-        return diagnose(data.runs, nominal(data.vehicle), how, built_in()).content
+        return diagnose(data.runs, nominal(data.vehicle), how, built_in()).diagnosis

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Callable, Sequence
 
 from rovsim.core.extras import require
+from rovsim.results.diagnosis import Answer, Diagnosis
 
-Answer = Callable[[Path, Path], dict[str, Any]]
+Ask = Callable[[Path, Path], Diagnosis | Answer]
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Method:
     """
 
     name: str
-    answer: Answer
+    answer: Ask
     code: tuple[str, ...]
 
 

@@ -9,16 +9,17 @@ import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Iterator, Sequence
+from typing import Callable, Iterator, Sequence
 
 from rovsim.application.provenance import digest
+from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import Case
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.methods import Method
 from rovsim.core.errors import RovsimError
-from rovsim.core.files import read_json, write_json
+from rovsim.core.files import read_json
+from rovsim.results.diagnosis import Answer, Diagnosis
 
-SCHEMA = "rovsim.blind/1"
 TANK = (
     "rovsim.simulation.synthetic_tank",
     "rovsim.benchmarks.blind.flight",
@@ -68,22 +69,24 @@ def work(job: Job) -> None:
         flown = fly(job.case, campaign)
         for method, path, mark in job.methods:
             begin = time.perf_counter()
-            answer = _asked(method, campaign, Path(folder, method.name))
-            content = {
-                "schema": SCHEMA, "digest": mark, "method": method.name,
-                "case": flown.model_dump(mode="json"),
-                "redrawn": flown != job.case,
-                "seconds": time.perf_counter() - begin, **answer,
-            }  # fmt: skip
-            write_json(path, content)
+            diagnosis, error = _ask(method, campaign, Path(folder, method.name))
+            KeptAnswer(
+                digest=mark,
+                method=method.name,
+                case=flown,
+                redrawn=flown != job.case,
+                seconds=time.perf_counter() - begin,
+                diagnosis=diagnosis,
+                error=error,
+            ).write(path)
 
 
-def _asked(method: Method, campaign: Path, out: Path) -> dict[str, Any]:
+def _ask(method: Method, campaign: Path, out: Path) -> tuple[Diagnosis | Answer | None, str | None]:
     """The answer, or why there is none: a crash is a wrong answer, not the end of the benchmark."""
     try:
-        return {"diagnosis": method.answer(campaign, out)}
+        return method.answer(campaign, out), None
     except (RovsimError, ArithmeticError, LookupError, TypeError, ValueError, SystemExit) as error:
-        return {"error": f"{type(error).__name__}: {error}"}
+        return None, f"{type(error).__name__}: {error}"
 
 
 def run(
@@ -119,7 +122,7 @@ def _in_parallel(jobs: Sequence[Job], cores: int, progress: Progress) -> None:
             raise
 
 
-def answers(cases: Sequence[Case], method: Method, folder: Path) -> list[dict[str, Any]]:
+def read_answers(cases: Sequence[Case], method: Method, folder: Path) -> list[KeptAnswer]:
     """What a method said to those cases that it has answered."""
     paths = [place(folder, method, case) for case in cases]
-    return [read_json(path) for path in paths if path.is_file()]
+    return [KeptAnswer.read(path) for path in paths if path.is_file()]

@@ -6,13 +6,15 @@ indistinguishable, each hidden effect matched by one named effect. How large suc
 counted, so that an answer cannot win by calling everything alike.
 """
 
-from dataclasses import asdict, dataclass
-from typing import Any, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Iterator, Sequence
 
 from rovsim.benchmarks.blind.case import Case
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.base import Parameter
+from rovsim.results.base import or_nan
+from rovsim.results.diagnosis import Answer, Diagnosis, FittedEffect
 
-Diagnosis = Mapping[str, Any]
 SURE = 1.96  # standard deviations of a 95 % interval
 
 
@@ -45,23 +47,19 @@ class Score:
     alike: int
     parameters: tuple[ParameterScore, ...]
 
-    def plain(self) -> dict[str, Any]:
-        """For JSON."""
-        return asdict(self)
 
-
-def score(case: Case, diagnosis: Diagnosis) -> Score:
-    """Judge a diagnosis of the campaign of a case."""
-    selected = [s["effect"] for s in diagnosis["selected"]]
+def score(case: Case, answer: Answer | Diagnosis) -> Score:
+    """Judge what was said of the campaign of a case."""
+    selected = [one.effect for one in answer.selected]
     counted = [s for s in selected if s not in case.forgiven]
-    groups = [set(group) for group in diagnosis.get("indistinguishable", [])]
-    right = diagnosis["verdict"] in case.verdicts
+    groups = [set(group) for group in answer.indistinguishable]
+    right = answer.verdict in case.verdicts
     matched = matching(counted, case.names, groups)
     strict = set(counted) & set(case.names)
     complete = len(counted) == len(case.names)
     return Score(
         verdict=right,
-        flagged=diagnosis["verdict"] == "unexplained",
+        flagged=answer.verdict == "unexplained",
         first_strict=_first(selected, case.names, []),
         first=_first(selected, case.names, groups),
         exact_strict=right and complete and set(counted) == set(case.names),
@@ -69,7 +67,7 @@ def score(case: Case, diagnosis: Diagnosis) -> Score:
         false_strict=len(counted) - len(strict),
         false=len(counted) - matched,
         alike=max((len(g) for g in groups if g & set(case.names)), default=1),
-        parameters=tuple(_parameters(case, diagnosis)),
+        parameters=tuple(_parameters(case, answer)),
     )
 
 
@@ -99,22 +97,22 @@ def matching(named: Sequence[str], truth: Sequence[str], groups: list[set[str]])
     return sum(place(one, set()) for one in named)
 
 
-def _parameters(case: Case, diagnosis: Diagnosis):
+def _parameters(case: Case, answer: Answer | Diagnosis) -> Iterator[ParameterScore]:
     """Every number of a hidden effect that was named by its own name."""
-    answers = {s["effect"]: s["parameters"] for s in diagnosis["selected"]}
+    named = {one.effect: one for one in answer.selected}
     for entry in case.hidden:
-        if entry.effect in case.names and entry.effect in answers:
+        if entry.effect in case.names and entry.effect in named:
             known = {p.name: p for p in built_in()[entry.effect].parameters}
             for name, truth in entry.parameters.items():
                 if known[name].fitted:
-                    yield _parameter(entry.effect, known[name], truth.value, answers[entry.effect])
+                    yield _parameter(known[name], truth.value, named[entry.effect])
 
 
-def _parameter(effect_id, declared, truth: float, answer: Mapping[str, Any]) -> ParameterScore:
+def _parameter(declared: Parameter, truth: float, answer: FittedEffect) -> ParameterScore:
     """The change from the default is what was hidden; a number left out says: the default."""
-    found = answer.get(declared.name, {"value": declared.default, "std": None})
-    size = max(abs(truth - declared.default), 1e-9)
-    miss = abs(found["value"] - truth)
-    std = found.get("std")
+    fitted = answer.parameters.get(declared.name)
+    value, std = (fitted.value, fitted.std) if fitted else (declared.default, None)
+    miss = abs(or_nan(value) - truth)
     covered = None if std is None else miss <= SURE * std
-    return ParameterScore(effect_id, declared.name, miss / size, covered)
+    size = max(abs(truth - declared.default), 1e-9)
+    return ParameterScore(answer.effect, declared.name, miss / size, covered)

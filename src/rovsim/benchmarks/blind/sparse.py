@@ -8,7 +8,7 @@ named if a column of it is active on any axis. Neither can say that something is
 import warnings
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Callable, Iterator
+from typing import Callable, Iterator
 
 import numpy as np
 from numpy import ndarray as Array
@@ -22,6 +22,8 @@ from rovsim.dynamics.model import nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
+from rovsim.results.base import or_nan
+from rovsim.results.diagnosis import Answer, FittedEffect, FittedValue
 
 Regression = Callable[[Array, Array], Array]
 
@@ -30,14 +32,14 @@ THRESHOLD, RIDGE = 0.17, 0.02
 LEAST_GAIN, MOST_TERMS = 0.05, 8
 
 
-def stlsq(campaign: Path, out: Path) -> dict[str, Any]:
+def stlsq(campaign: Path, out: Path) -> Answer:
     """What sequentially thresholded least squares selects."""
-    return answered(of_campaign(campaign), thresholded(THRESHOLD, RIDGE))
+    return answer(of_campaign(campaign), thresholded(THRESHOLD, RIDGE))
 
 
-def frols(campaign: Path, out: Path) -> dict[str, Any]:
+def frols(campaign: Path, out: Path) -> Answer:
     """What forward regression selects."""
-    return answered(of_campaign(campaign), forward(LEAST_GAIN, MOST_TERMS))
+    return answer(of_campaign(campaign), forward(LEAST_GAIN, MOST_TERMS))
 
 
 def thresholded(threshold: float, ridge: float) -> Regression:
@@ -91,7 +93,7 @@ def of_campaign(campaign: Path) -> Problem:
     return problem(nominal(load_campaign_vehicle(found)), motions, built_in())
 
 
-def answered(given: Problem, regression: Regression) -> dict[str, Any]:
+def answer(given: Problem, regression: Regression) -> Answer:
     """Active columns as a diagnosis: effects in the order of the error they remove."""
     coefficients = by_axis(given, regression)
     gains: dict[str, float] = {}
@@ -102,9 +104,11 @@ def answered(given: Problem, regression: Regression) -> dict[str, Any]:
             gain = float(np.mean((left + part) ** 2) - np.mean(left**2))
             gains[column.effect] = gains.get(column.effect, 0.0) + gain
     order = sorted(gains, key=lambda name: -gains[name])
-    selected = [{"effect": n, "parameters": _parameters(given, coefficients, n)} for n in order]
-    verdict = "missing_effects" if selected else "adequate"
-    return {"verdict": verdict, "selected": selected, "ranking": [], "indistinguishable": []}
+    selected = tuple(
+        FittedEffect(effect=name, parameters=_parameters(given, coefficients, name))
+        for name in order
+    )
+    return Answer(verdict="missing_effects" if selected else "adequate", selected=selected)
 
 
 def by_axis(given: Problem, regression: Regression) -> Array:
@@ -131,16 +135,17 @@ def distinct(X: Array, size: Array) -> Array:
     return acting[alike.max(axis=0, initial=0.0) < 1.0 - 1e-9]
 
 
-def _parameters(given: Problem, coefficients: Array, name: str) -> dict[str, Any]:
+def _parameters(given: Problem, coefficients: Array, name: str) -> dict[str, FittedValue]:
     """Each parameter's value, linear from its default: of the axis where its column acts most."""
     declared = {p.name: p for p in built_in()[name].parameters}
-    values: dict[str, Any] = {}
+    values: dict[str, FittedValue] = {}
     for k, column in enumerate(given.columns):
         own = coefficients[:, k]
         if column.effect == name and own.any():
             best = own[np.argmax(np.abs(own) * np.linalg.norm(given.matrix[:, :, k], axis=0))]
             for parameter, step in column.step.items():
+                known, unit = values.get(parameter), declared[parameter].unit
                 default = np.nan_to_num(declared[parameter].default)
-                value = values.get(parameter, {"value": default})["value"] + best * step
-                values[parameter] = {"value": float(value), "unit": declared[parameter].unit}
+                before = or_nan(known.value) if known else default
+                values[parameter] = FittedValue(value=float(before + best * step), unit=unit)
     return values

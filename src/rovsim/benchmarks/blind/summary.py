@@ -1,13 +1,15 @@
 """Many scores put together: rates by kind of case, by effect, and detection limits."""
 
 from dataclasses import dataclass
-from typing import Any, Callable, Iterable, Mapping, Sequence
+from typing import Callable, Iterable, Sequence
 
 import numpy as np
 from scipy.optimize import isotonic_regression
 
+from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import Case
-from rovsim.benchmarks.blind.score import ParameterScore, Score, score
+from rovsim.benchmarks.blind.score import Score, score
+from rovsim.results.blind_benchmark import EffectRates, MethodSummary, Rates
 
 HALF = 0.5 - 1e-12  # a share of one half is one, however a mean of shares is rounded
 
@@ -28,34 +30,30 @@ class Judged:
     error: str | None = None
 
 
-def judged(answers: Iterable[Mapping[str, Any]]) -> list[Judged]:
+def judge(answers: Iterable[KeptAnswer]) -> list[Judged]:
     """Score the kept answers of one method."""
-    return [_judged(a) for a in answers]
+    return [_judge(one) for one in answers]
 
 
-def _judged(answer: Mapping[str, Any]) -> Judged:
-    case, found = Case.model_validate(answer["case"]), answer.get("diagnosis")
-    known = case, bool(answer["redrawn"]), float(answer["seconds"])
-    if found is None:
-        return Judged(*known, None, "", "error", answer["error"])
-    first = found["selected"][0]["effect"] if found["selected"] else ""
-    return Judged(*known, score(case, found), first, found["verdict"])
+def _judge(one: KeptAnswer) -> Judged:
+    if one.diagnosis is None:
+        return Judged(one.case, one.redrawn, one.seconds, None, "", "error", one.error)
+    selected, verdict = one.diagnosis.selected, one.diagnosis.verdict
+    first = selected[0].effect if selected else ""
+    worth = score(one.case, one.diagnosis)
+    return Judged(one.case, one.redrawn, one.seconds, worth, first, verdict)
 
 
-def summary(found: Sequence[Judged]) -> dict[str, Any]:
-    """`{"kinds": …, "effects": …, "outside": …, "failed": …}` of one method."""
-    return {
-        "cases": len(found),
-        "failed": sorted(j.case.id for j in found if j.score is None),
-        "kinds": {kind: rates(rows) for kind, rows in _grouped(found, lambda j: j.case.kind)},
-        "effects": {name: _of_effect(rows) for name, rows in _by_effect(found)},
-        "outside": {
-            name: rates(rows)
-            for name, rows in _grouped(
-                [j for j in found if j.case.outside], lambda j: j.case.outside[0].name
-            )
-        },
-    }
+def summarize(found: Sequence[Judged]) -> MethodSummary:
+    """Rates of one method by kind of case, by effect, and outside the catalogue."""
+    outside = [j for j in found if j.case.outside]
+    return MethodSummary(
+        cases=len(found),
+        failed=tuple(sorted(j.case.id for j in found if j.score is None)),
+        kinds={kind: rate(rows) for kind, rows in _grouped(found, lambda j: j.case.kind)},
+        effects={name: _rate_effect(rows) for name, rows in _by_effect(found)},
+        outside={n: rate(rows) for n, rows in _grouped(outside, lambda j: j.case.outside[0].name)},
+    )
 
 
 def _grouped(
@@ -74,38 +72,30 @@ def _by_effect(found: Sequence[Judged]) -> Iterable[tuple[str, list[Judged]]]:
     return _grouped(alone, lambda j: j.case.hidden[0].effect)
 
 
-def rates(found: Sequence[Judged]) -> dict[str, Any]:
+def rate(found: Sequence[Judged]) -> Rates:
     """Shares of cases. An answer that crashed is wrong in every respect but false names."""
     scores = [j.score for j in found]
     naming = [s for j, s in zip(found, scores, strict=True) if j.case.names]
     parameters = [p for s in scores if s for p in s.parameters]
-    return {
-        "cases": len(found),
-        "verdict": share([bool(s and s.verdict) for s in scores]),
-        "first_strict": share([bool(s and s.first_strict) for s in naming]),
-        "first": share([bool(s and s.first) for s in naming]),
-        "exact_strict": share([bool(s and s.exact_strict) for s in scores]),
-        "exact": share([bool(s and s.exact) for s in scores]),
-        "false_names_strict": share([bool(s and s.false_strict) for s in scores]),
-        "false_names": share([bool(s and s.false) for s in scores]),
-        "unexplained": share([bool(s and s.flagged) for s in scores]),
-        "alike": _mean([s.alike for s in scores if s]),
-        "redrawn": share([j.redrawn for j in found]),
-        "seconds": float(np.median([j.seconds for j in found])) if found else None,
-        **precision(parameters),
-    }
-
-
-def precision(parameters: Sequence[ParameterScore]) -> dict[str, Any]:
-    """Relative errors of hidden numbers that were named, and how often intervals hold them."""
     errors = [p.error for p in parameters]
-    sure = [p.covered for p in parameters if p.covered is not None]
-    return {
-        "parameters": len(errors),
-        "error_median": float(np.median(errors)) if errors else None,
-        "error_95": float(np.quantile(errors, 0.95)) if errors else None,
-        "coverage": share(sure),
-    }
+    return Rates(
+        cases=len(found),
+        verdict=share([bool(s and s.verdict) for s in scores]),
+        first_strict=share([bool(s and s.first_strict) for s in naming]),
+        first=share([bool(s and s.first) for s in naming]),
+        exact_strict=share([bool(s and s.exact_strict) for s in scores]),
+        exact=share([bool(s and s.exact) for s in scores]),
+        false_names_strict=share([bool(s and s.false_strict) for s in scores]),
+        false_names=share([bool(s and s.false) for s in scores]),
+        unexplained=share([bool(s and s.flagged) for s in scores]),
+        alike=_mean([s.alike for s in scores if s]),
+        redrawn=share([j.redrawn for j in found]),
+        seconds=float(np.median([j.seconds for j in found])) if found else None,
+        parameters=len(errors),
+        error_median=float(np.median(errors)) if errors else None,
+        error_95=float(np.quantile(errors, 0.95)) if errors else None,
+        coverage=share([p.covered for p in parameters if p.covered is not None]),
+    )
 
 
 def share(flags: Sequence[bool]) -> float | None:
@@ -117,15 +107,13 @@ def _mean(values: Sequence[float]) -> float | None:
     return float(np.mean(values)) if values else None
 
 
-def _of_effect(found: Sequence[Judged]) -> dict[str, Any]:
+def _rate_effect(found: Sequence[Judged]) -> EffectRates:
     full = [j for j in found if j.case.kind == "single"]
-    return {
-        **rates(full),
-        "limit": detection_limit(
-            [(j.case.strength, bool(j.score and j.score.first)) for j in found]
-        ),
-        "instead": sorted({j.first or j.verdict for j in full if not (j.score and j.score.first)}),
-    }
+    named = [(j.case.strength, bool(j.score and j.score.first)) for j in found]
+    instead = {j.first or j.verdict for j in full if not (j.score and j.score.first)}
+    return EffectRates(
+        **dict(rate(full)), limit=detection_limit(named), instead=tuple(sorted(instead))
+    )
 
 
 def detection_limit(found: Sequence[tuple[float, bool]]) -> float | None:

@@ -13,7 +13,7 @@ from rovsim.benchmarks.blind.case import Case
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.library import Problem
 from rovsim.benchmarks.blind.score import Score, score
-from rovsim.benchmarks.blind.sparse import Regression, answered, forward, of_campaign, thresholded
+from rovsim.benchmarks.blind.sparse import Regression, answer, forward, of_campaign, thresholded
 from rovsim.benchmarks.blind.suites import suite
 from rovsim.core.progress import counted
 
@@ -52,7 +52,7 @@ def tuned() -> dict[str, Any]:
     for case in counted(cases, "tuning"):
         flown, given = prepared(case)
         for name, regression in settings():
-            found.setdefault(name, []).append(score(flown, answered(given, regression)))
+            found.setdefault(name, []).append(score(flown, answer(given, regression)))
     return dict(sorted(((k, worth(v)) for k, v in found.items()), key=lambda kv: kv[1])[::-1])
 
 

@@ -5,35 +5,38 @@ and pitch hardly move in the former).
 """
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import ours
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.evaluation.latency import latency
+from rovsim.evaluation.latency import time_calls
+from rovsim.results.timing import Accuracy, Left
 
 SEEN, UNSEEN = "3dof", "6dof"
 CALLS = 2_000
 
 
-def accuracy(pairs: Pairs) -> list[dict[str, Any]]:
+def measure_accuracy(pairs: Pairs) -> tuple[Accuracy, ...]:
     """One row for each way to learn: cost in us, and the share of the residual that is left."""
     taught = pairs.of(SEEN)
-    return [
-        {
-            "name": name,
-            "points": residual.points,
-            "fades": fades,
-            "median_us": latency(ours(residual), pairs.queries, CALLS, 200, points=residual.points)[
-                "median_us"
-            ],
-            "seen": _left(residual, pairs, SEEN),
-            "unseen": _left(residual, pairs, UNSEEN),
-        }
+    return tuple(
+        Accuracy(
+            name=name,
+            points=residual.points,
+            fades=fades,
+            median_us=_cost(residual, pairs),
+            seen=_left(residual, pairs, SEEN),
+            unseen=_left(residual, pairs, UNSEEN),
+        )
         for name, fades, residual in _ways(taught)
-    ]
+    )
+
+
+def _cost(residual: Residual, pairs: Pairs) -> float:
+    timed = time_calls(ours(residual), pairs.queries, CALLS, 200, points=residual.points)
+    return timed.median_us
 
 
 def _ways(taught: Pairs) -> Iterator[tuple[str, bool, Residual]]:
@@ -52,9 +55,9 @@ def _processes(taught: Pairs) -> Iterator[tuple[str, Residual]]:
         yield "svgp", fitted("svgp", taught, inducing=inducing)
 
 
-def _left(residual: Residual, pairs: Pairs, control: str) -> dict[str, float]:
+def _left(residual: Residual, pairs: Pairs, control: str) -> Left:
     """Root mean square of what is left over that of the residual: all axes, and the worst."""
     asked = pairs.query_control == control
     error = residual.predict(pairs.queries[asked]) - pairs.answers[asked]
     share = np.sqrt((error**2).mean(0) / (pairs.answers[asked] ** 2).mean(0))
-    return {"mean": float(share.mean()), "worst": float(share.max())}
+    return Left(mean=float(share.mean()), worst=float(share.max()))

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from time import perf_counter_ns
-from typing import Any
 
 import numpy as np
 from numpy import ndarray as Array
@@ -14,8 +13,9 @@ from rovsim.benchmarks.speed.machine import as_a_control_loop
 from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many, posterior_many
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.evaluation.latency import latency
+from rovsim.evaluation.latency import time_calls
 from rovsim.learning.learner import library_of
+from rovsim.results.timing import Latency
 
 BUSY = 100  # us: about what the slowest of our own paths to be counted takes
 CHECKED = 500  # queries whose predictions are compared
@@ -35,22 +35,22 @@ class Stopwatch:
     """Times ways to predict and keeps what it found."""
 
     def __init__(self, pairs: Pairs, effort: Effort) -> None:
-        self.pairs, self.effort, self.found = pairs, effort, {}  # type: ignore[var-annotated]
-        self.scheduling = ""
+        self.pairs, self.effort, self.scheduling = pairs, effort, ""
+        self.found: dict[str, Latency] = {}
 
-    def time(self, name: str, call: Callable, points: int, seconds: float) -> dict[str, Any]:
+    def time(self, name: str, call: Callable, points: int, seconds: float) -> Latency:
         """Time one way under the name@points."""
         from threadpoolctl import threadpool_limits
 
         effort = self.effort
         # one query has no work for two threads, and waiting for a second costs milliseconds
         with threadpool_limits(1), as_a_control_loop() as self.scheduling:
-            stats = latency(
+            stats = time_calls(
                 call, self.pairs.queries, effort.calls, effort.warmup, points=points,
                 seconds=seconds,
             )  # fmt: skip
         self.found[f"{name}@{points}"] = stats
-        times = f"{stats['median_us']:12.1f} us median {stats['p999_us']:12.1f} us p99.9"
+        times = f"{stats.median_us:12.1f} us median {stats.p999_us:12.1f} us p99.9"
         print(f"{name}@{points}".ljust(36), times, flush=True)
         return stats
 
@@ -61,12 +61,14 @@ class Stopwatch:
         stats = self.time(name, own, points, 60.0)
         queries = self.pairs.queries[:: max(1, len(self.pairs.queries) // CHECKED)]
         few = queries[:3]  # a library may take seconds a call
-        stats["largest_difference"] = {}
+        differences, faster = {}, {}
         for other, call in theirs.items():
             timed = self.time(other, call, points, seconds)
-            some = few if timed["median_us"] > 1e5 else queries
-            stats["largest_difference"][other] = _difference(own, call, some)
-            stats.setdefault("times_faster", {})[other] = timed["median_us"] / stats["median_us"]
+            some = few if timed.median_us > 1e5 else queries
+            differences[other] = _difference(own, call, some)
+            faster[other] = timed.median_us / stats.median_us
+        beside = {"largest_difference": differences} | ({"times_faster": faster} if faster else {})
+        self.found[f"{name}@{points}"] = stats.model_copy(update=beside)
 
 
 def _difference(own: Callable, call: Callable, queries: Array) -> float:
@@ -94,60 +96,60 @@ def busy(x: Array) -> Array:
     return x
 
 
-def inference(pairs: Pairs, effort: Effort, sweep: float) -> tuple[dict[str, Any], str]:
+def inference(pairs: Pairs, effort: Effort, sweep: float) -> tuple[dict[str, Latency], str]:
     """The named sizes beside the libraries, then sweeps, in which a library gets `sweep` s."""
-    watch = Stopwatch(pairs, effort)
-    watch.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
+    stopwatch = Stopwatch(pairs, effort)
+    stopwatch.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
     for points in (2_000, 20_000):
-        _neighbours(watch, points, effort.seconds)
-    _processes(watch, 2_000, effort.seconds)
-    _six_kernels(watch, 2_000, sweep)
-    _inducing(watch, effort.seconds)
+        _neighbours(stopwatch, points, effort.seconds)
+    _processes(stopwatch, 2_000, effort.seconds)
+    _six_kernels(stopwatch, 2_000, sweep)
+    _inducing(stopwatch, effort.seconds)
     for points in (500, 5_000, 50_000):
-        _neighbours(watch, points, sweep)
+        _neighbours(stopwatch, points, sweep)
     for points in (500, 1_000, 4_000):
-        _processes(watch, points, sweep)
+        _processes(stopwatch, points, sweep)
     for name, own, points in _variants(pairs):
-        watch.beside(name, own, points, {}, sweep)
-    return watch.found, watch.scheduling
+        stopwatch.beside(name, own, points, {}, sweep)
+    return stopwatch.found, stopwatch.scheduling
 
 
-def _neighbours(watch: Stopwatch, points: int, seconds: float) -> None:
-    knn = fitted("knn", watch.pairs.first(points))
-    watch.beside("knn", ours(knn), points, libraries.neighbours(knn), seconds)
+def _neighbours(stopwatch: Stopwatch, points: int, seconds: float) -> None:
+    knn = fitted("knn", stopwatch.pairs.first(points))
+    stopwatch.beside("knn", ours(knn), points, libraries.neighbours(knn), seconds)
 
 
-def _processes(watch: Stopwatch, points: int, seconds: float) -> None:
+def _processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
     """One kernel for six outputs: mean, mean and variance, and the faded correction."""
-    pairs = watch.pairs.first(points)
+    pairs = stopwatch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points, **GP)
     never = unfading(gp)
-    watch.beside("gp_mean", ours(never), points, libraries.means(never), seconds)
-    watch.beside("gp_faded", ours(gp), points, {}, seconds)
+    stopwatch.beside("gp_mean", ours(never), points, libraries.means(never), seconds)
+    stopwatch.beside("gp_faded", ours(gp), points, {}, seconds)
     theirs = libraries.variances(gp) if points <= 2_000 else {}
-    watch.beside("gp_variance", both(gp), points, theirs, seconds)
+    stopwatch.beside("gp_variance", both(gp), points, theirs, seconds)
 
 
-def _six_kernels(watch: Stopwatch, points: int, seconds: float) -> None:
-    pairs = watch.pairs.first(points)
+def _six_kernels(stopwatch: Stopwatch, points: int, seconds: float) -> None:
+    pairs = stopwatch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points)
     never = unfading(gp)
-    ways: tuple[tuple[str, Callable, dict[str, Any]], ...] = (
+    ways: tuple[tuple[str, Callable, dict[str, Callable]], ...] = (
         ("gp_mean", ours(never), libraries.means(never)),
         ("gp_faded", ours(gp), {}),
         ("gp_variance", both(gp), libraries.variances(gp)),
     )
     for name, own, found in ways:
         theirs = {f"{other}_six_kernels": call for other, call in found.items()}
-        watch.beside(f"{name}_six_kernels", own, points, theirs, seconds)
+        stopwatch.beside(f"{name}_six_kernels", own, points, theirs, seconds)
 
 
-def _inducing(watch: Stopwatch, seconds: float) -> None:
-    svgp = unfading(fitted("svgp", watch.pairs.first(2_000)))
+def _inducing(stopwatch: Stopwatch, seconds: float) -> None:
+    svgp = unfading(fitted("svgp", stopwatch.pairs.first(2_000)))
     points = svgp.points
-    watch.beside("svgp", ours(svgp), points, {"gpytorch_svgp": library_of(svgp)}, seconds)
+    stopwatch.beside("svgp", ours(svgp), points, {"gpytorch_svgp": library_of(svgp)}, seconds)
     theirs = {"gpytorch_svgp_variance": libraries.variances(svgp)["gpytorch_variance"]}
-    watch.beside("svgp_variance", both(svgp), points, theirs, seconds)
+    stopwatch.beside("svgp_variance", both(svgp), points, theirs, seconds)
 
 
 def _variants(pairs: Pairs) -> Iterator[tuple[str, Callable, int]]:

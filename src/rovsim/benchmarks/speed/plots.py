@@ -1,11 +1,12 @@
 """The plots of the speed benchmark."""
 
-from typing import Any, Mapping
+from typing import Mapping, Sequence
 
 from matplotlib.figure import Figure
 
-from rovsim.reporting.figures.marks import legend, plain_log
+from rovsim.reporting.figures.legends import legend, plain_log
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.results.timing import Accuracy, Bench, Latency
 
 # One colour for us, the Okabe-Ito colours for the libraries
 SIZES = {
@@ -23,17 +24,17 @@ COLORS = {"knn": "#D55E00", "gp": "#0072B2", "gp_six_kernels": "#009E73", "svgp"
 
 
 @styled()
-def draw_sizes(content: Mapping[str, Any]) -> Figure:
+def draw_sizes(bench: Bench) -> Figure:
     """Median (line) and p99.9 (thin, above it) against points, one panel a family."""
     figure = sheet(110)
     for axes, (title, names) in zip(figure.subplots(1, 2), SIZES.items(), strict=True):
         for name, color in names.items():
-            sizes = _sizes(content["inference"], name)
+            sizes = _sizes(bench.inference, name)
             for statistic, style in (("median_us", "o-"), ("p999_us", ":")):
                 label = name.replace("_", " ") if style == "o-" else None
                 axes.plot(
-                    list(sizes), [s[statistic] for s in sizes.values()], style, color=color,
-                    markersize=3, label=label,
+                    list(sizes), [getattr(s, statistic) for s in sizes.values()], style,
+                    color=color, markersize=3, label=label,
                 )  # fmt: skip
         axes.axhline(1000.0, color="#444444", linestyle="--", linewidth=0.8)
         plain_log(axes, "xy")
@@ -43,7 +44,7 @@ def draw_sizes(content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _sizes(inference: Mapping[str, Any], name: str) -> dict[int, Mapping[str, Any]]:
+def _sizes(inference: Mapping[str, Latency], name: str) -> dict[int, Latency]:
     found = {
         int(key.split("@")[1]): stats
         for key, stats in inference.items()
@@ -53,14 +54,14 @@ def _sizes(inference: Mapping[str, Any], name: str) -> dict[int, Mapping[str, An
 
 
 @styled()
-def draw_accuracy(content: Mapping[str, Any]) -> Figure:
+def draw_accuracy(bench: Bench) -> Figure:
     """Share of the residual that is left against cost; 1 is no correction at all."""
     figure = sheet(75)
     panels = figure.subplots(1, 2, sharey=True)
     for axes, where in zip(panels, ("seen", "unseen"), strict=True):
-        for (name, fades), rows in _by_way(content["accuracy"]).items():
+        for (name, fades), rows in _by_way(bench.accuracy).items():
             axes.plot(
-                [row["median_us"] for row in rows], [row[where]["mean"] for row in rows],
+                [row.median_us for row in rows], [getattr(row, where).mean for row in rows],
                 "o-" if fades else "x--", color=COLORS[name], markersize=4,
                 label=f"{name.replace('_', ' ')}{', fades' if fades else ''}",
             )  # fmt: skip
@@ -72,8 +73,8 @@ def draw_accuracy(content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _by_way(rows: list[Mapping[str, Any]]) -> dict[tuple[str, bool], list[Mapping[str, Any]]]:
-    found: dict[tuple[str, bool], list[Mapping[str, Any]]] = {}
+def _by_way(rows: Sequence[Accuracy]) -> dict[tuple[str, bool], list[Accuracy]]:
+    found: dict[tuple[str, bool], list[Accuracy]] = {}
     for row in rows:
-        found.setdefault((row["name"], row["fades"]), []).append(row)
+        found.setdefault((row.name, row.fades), []).append(row)
     return found

@@ -17,7 +17,7 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import normalised, rms
+from rovsim.evaluation.scores import normalize, rms
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import filter_eta
 
@@ -32,10 +32,10 @@ def simulate_noise_floor(
     signals: SignalSettings,
     seed: int = 0,
 ) -> float | None:
-    """The `windows_2s` error (see scores.normalised) of a perfect model on these runs."""
+    """The `windows_2s` error (see scores.normalize) of a perfect model on these runs."""
     perfect = _PerfectModel(model, noise, signals, np.random.default_rng(seed))
     errors = [perfect.errors(run) for run in runs]
-    return normalised([run.motion for run in runs], rms(np.concatenate(errors)))
+    return normalize([run.motion for run in runs], rms(np.concatenate(errors)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.innovations import drive_all, recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import normalised, rms
+from rovsim.evaluation.scores import normalize, rms
 from rovsim.measurement.signals.binned import bin_means
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.windows import find_windows
@@ -41,7 +41,7 @@ def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Windo
     rmse[[m.possible for m in models]] = [
         rms(np.concatenate([p[k] for p in parts])) for k in range(len(able))
     ]
-    return WindowErrors(rmse, [normalised([run.motion for run in runs], row) for row in rmse])
+    return WindowErrors(rmse, [normalize([run.motion for run in runs], row) for row in rmse])
 
 
 @dataclass(frozen=True, eq=False)

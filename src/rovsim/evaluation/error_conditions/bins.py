@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.evaluation.error_conditions.conditions import BLOCK, Blocks, Condition
+from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
+from rovsim.results.error_conditions import BLOCK
 
 BINS = 8
 VISITS = 4  # stretches that must have visited a bin before it is judged
@@ -48,7 +49,9 @@ class Table:
 
 def number_stretches(blocks: Blocks, error: Array) -> Array:
     """Number (n,) of the stretch each block belongs to, 0 .. g-1, for errors (n,) of one axis."""
-    length = float(np.clip(TIMES * memory(_unexplained(blocks, error), blocks), SHORTEST, LONGEST))
+    length = float(
+        np.clip(TIMES * correlation_time(_unexplained(blocks, error), blocks), SHORTEST, LONGEST)
+    )
     key = np.stack([blocks.run, np.floor(blocks.time / length)], axis=1)
     return np.unique(key, axis=0, return_inverse=True)[1].ravel()
 
@@ -63,7 +66,7 @@ def _unexplained(blocks: Blocks, error: Array) -> Array:
     return error
 
 
-def memory(error: Array, blocks: Blocks) -> float:
+def correlation_time(error: Array, blocks: Blocks) -> float:
     """Integral of the correlation over both signs of the lag, s, up to its first zero."""
     power = float(np.mean(error**2))
     total = 1.0
@@ -90,7 +93,7 @@ def cut(values: Array) -> tuple[Array, Array]:
     return edges, member
 
 
-def binned(condition: Condition, values: Array, stretch: Array) -> Binning:
+def cut_bins(condition: Condition, values: Array, stretch: Array) -> Binning:
     """Bins of a condition, and which of them were visited often enough to be judged."""
     edges, member = cut(values)
     count = np.bincount(member, minlength=len(edges) - 1)
@@ -107,7 +110,7 @@ def sums(binning: Binning, error: Array, stretch: Array) -> Array:
     return total
 
 
-def table(binning: Binning, error: Array, stretch: Array) -> Table:
+def bin_errors(binning: Binning, error: Array, stretch: Array) -> Table:
     """Means, their standard errors and the explained share of the errors (n,) of one axis."""
     total, safe = sums(binning, error, stretch), np.maximum(binning.count, 1)
     mean = total.sum(axis=1) / safe
@@ -124,7 +127,7 @@ def table(binning: Binning, error: Array, stretch: Array) -> Table:
     return Table(binning, mean, np.sqrt(spread), np.sqrt(square), alone, share)
 
 
-def evidence(binning: Binning, error: Array, stretch: Array, signs: Array) -> Array:
+def weigh_evidence(binning: Binning, error: Array, stretch: Array, signs: Array) -> Array:
     """How far the bin means of the errors (n,) are from zero, under each of the signs (g, f): (f,).
 
     The sum over bins of (sum of the errors)^2 / sum over stretches of (their sums)^2: about 1 a bin

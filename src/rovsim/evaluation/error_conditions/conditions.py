@@ -18,8 +18,8 @@ from rovsim import AXES
 from rovsim.core.rotations import to_euler
 from rovsim.learning.pairs import Samples
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.error_conditions import BLOCK
 
-BLOCK = 0.5  # s
 SEEN = 0.5  # share of a block that must have been seen
 SPEEDS = (
     "surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate"
@@ -57,7 +57,7 @@ class Blocks:
     run: Array
 
 
-def blocks(motion: Motion, samples: Samples) -> Blocks:
+def average_blocks(motion: Motion, samples: Samples) -> Blocks:
     """Blocks of one run in which the motion was seen."""
     time = motion.time[samples.index] - motion.time[0]
     step = float(np.median(np.diff(motion.time)))
@@ -79,7 +79,7 @@ def blocks(motion: Motion, samples: Samples) -> Blocks:
     return Blocks(mean(samples.a_res), mean(measured), values, mean(time), run)
 
 
-def together(parts: Sequence[Blocks]) -> Blocks:
+def join_blocks(parts: Sequence[Blocks]) -> Blocks:
     """Blocks of several runs; a condition that is unknown in one of them is left out."""
     shared = [c for c in parts[0].values if all(c in p.values for p in parts)]
     joined = {c: np.concatenate([p.values[c] for p in parts]) for c in shared}

@@ -6,7 +6,7 @@ condition counts only when it explains more than any of all conditions on any ax
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any, Sequence
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -15,12 +15,13 @@ from rovsim import AXES
 from rovsim.evaluation.error_conditions.bins import (
     Binning,
     Table,
-    binned,
-    evidence,
+    bin_errors,
+    cut_bins,
     number_stretches,
-    table,
+    weigh_evidence,
 )
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Blocks, Condition
+from rovsim.results.error_conditions import ConditionShare
 
 LEVEL = 0.005  # chance of a single false finding in a whole search over an adequate model
 FLIPS = 3999
@@ -48,17 +49,15 @@ class Finding:
     alike: tuple[Condition, ...] = ()
     after: tuple[str, ...] = ()
 
-    def entry(self) -> dict[str, Any]:
+    def share(self) -> ConditionShare:
         """As `where` of a diagnosis lists it."""
-        return {
-            "axis": self.axis,
-            "condition": self.condition,
-            "share_of_error": round(self.share_of_error, 3),
-        }
+        return ConditionShare(
+            axis=self.axis, condition=self.condition, share_of_error=round(self.share_of_error, 3)
+        )
 
 
 @dataclass(frozen=True, eq=False)
-class Where:
+class Explanation:
     """Errors of one model by axis and condition, and the findings, largest share first."""
 
     blocks: Blocks | None
@@ -67,25 +66,25 @@ class Where:
     enough: bool = True  # False: too little was recorded to judge anything
 
     @staticmethod
-    def nothing() -> "Where":
+    def nothing() -> "Explanation":
         """What is known of a model without a usable sample."""
-        return Where(None, {axis: {} for axis in AXES}, [], False)
+        return Explanation(None, {axis: {} for axis in AXES}, [], False)
 
 
-def explain(blocks: Blocks, seed: int = 0) -> Where:
+def explain(blocks: Blocks, seed: int = 0) -> Explanation:
     """Search all axes and conditions."""
     if len(blocks.time) < 2:
-        return Where.nothing()
+        return Explanation.nothing()
     tables, found, enough = {}, [], True
     for k, axis in enumerate(AXES):
         error = blocks.error[:, k]
         stretch = number_stretches(blocks, error)
-        cuts = [binned(c, x, stretch) for c, x in blocks.values.items()]
-        tables[axis] = {b.condition.name: table(b, error, stretch) for b in cuts}
+        cuts = [cut_bins(c, x, stretch) for c, x in blocks.values.items()]
+        tables[axis] = {b.condition.name: bin_errors(b, error, stretch) for b in cuts}
         worth = max(SMALLEST, NEGLIGIBLE**2 * _relative_power(blocks, k))
         found += [f for f in _of_axis(axis, error, cuts, stretch, seed) if f.share_of_error > worth]
         enough = enough and int(stretch.max()) + 1 >= FEWEST
-    return Where(blocks, tables, sorted(found, key=lambda f: -f.share_of_error), enough)
+    return Explanation(blocks, tables, sorted(found, key=lambda f: -f.share_of_error), enough)
 
 
 def _relative_power(blocks: Blocks, k: int) -> float:
@@ -114,7 +113,7 @@ def _of_axis(
 
 def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
     """The condition that explains most of what is left, if that is beyond chance."""
-    tables = [table(b, left, stretch) for b in cuts]
+    tables = [bin_errors(b, left, stretch) for b in cuts]
     chances = _chances(left, cuts, stretch, signs)
     real = [(t, p) for t, p in zip(tables, chances, strict=True) if p <= LEVEL / len(AXES)]
     if not real:
@@ -131,8 +130,8 @@ def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
 def _chances(error: Array, cuts: Sequence[Binning], stretch: Array, signs: Array) -> list[float]:
     """Chance that the most striking of all conditions is as striking as each one is."""
     none = np.ones((len(signs), 1))
-    flipped = np.array([evidence(b, error, stretch, signs) for b in cuts])
-    seen = np.array([evidence(b, error, stretch, none)[0] for b in cuts])
+    flipped = np.array([weigh_evidence(b, error, stretch, signs) for b in cuts])
+    seen = np.array([weigh_evidence(b, error, stretch, none)[0] for b in cuts])
     mean, spread = flipped.mean(axis=1), flipped.std(axis=1)
     spread = np.where(spread > 0, spread, np.inf)
     highest = ((flipped - mean[:, None]) / spread[:, None]).max(axis=0)

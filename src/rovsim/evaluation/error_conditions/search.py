@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Sequence
 
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.error_conditions.conditions import blocks, together
-from rovsim.evaluation.error_conditions.findings import Where, explain
+from rovsim.evaluation.error_conditions.conditions import average_blocks, join_blocks
+from rovsim.evaluation.error_conditions.findings import Explanation, explain
 from rovsim.learning.pairs import Samples, sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
@@ -13,16 +13,16 @@ from rovsim.simulation.settings import ReplaySettings
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class SearchedModel:
     """What was found for one model, on the runs it was judged on, all of one split."""
 
     model: str
     split: str
     runs: tuple[str, ...]
-    where: Where
+    explanation: Explanation
 
 
-def chosen(model: Model, motions: Sequence[Motion]) -> list[Motion]:
+def choose_runs(model: Model, motions: Sequence[Motion]) -> list[Motion]:
     """The runs a model is searched on.
 
     Train runs: whoever decides by the findings what to add has not looked at the test runs yet.
@@ -33,13 +33,13 @@ def chosen(model: Model, motions: Sequence[Motion]) -> list[Motion]:
     return [m for m in motions if m.run.split == split] or list(motions)
 
 
-def judged(
+def search_conditions(
     model: Model, motions: Sequence[Motion], signals: SignalSettings, settings: ReplaySettings
-) -> Judged:
+) -> SearchedModel:
     """Search the runs of a campaign for conditions in which the model fails."""
-    runs = chosen(model, motions)
+    runs = choose_runs(model, motions)
     found: list[Samples] = [sample_run(model, m, signals, settings) for m in runs]
-    parts = [blocks(m, s) for m, s in zip(runs, found, strict=True) if len(s.index) > 1]
-    where = explain(together(parts)) if parts else Where.nothing()
+    parts = [average_blocks(m, s) for m, s in zip(runs, found, strict=True) if len(s.index) > 1]
+    explanation = explain(join_blocks(parts)) if parts else Explanation.nothing()
     names = tuple(m.run.id for m in runs)
-    return Judged(model.name, runs[0].run.split, names, where)
+    return SearchedModel(model.name, runs[0].run.split, names, explanation)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
-from rovsim.evaluation.error_conditions.findings import Finding, Where
+from rovsim.evaluation.error_conditions.findings import Explanation, Finding
 
 UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
 POSITIVE = {
@@ -36,22 +36,22 @@ USUAL = {
 }
 
 
-def sentence(found: Finding) -> str:
+def say(found: Finding) -> str:
     """A finding in plain language, complete in itself."""
     after = f", beyond {' and '.join(found.after)}" if found.after else ""
     return f"{found.axis.capitalize()}{after}: {_what(found)} {_share(found)} {_usual(found)}"
 
 
-def summary(where: Where) -> list[str]:
+def summarize(explanation: Explanation) -> list[str]:
     """Sentences of all findings, or why there are none."""
-    if not where.enough:
+    if not explanation.enough:
         return ["Too little was recorded to tell under which condition the model fails."]
-    if not where.findings:
+    if not explanation.findings:
         return [
             "No condition explains the error: whatever varies (speed, thrust, attitude, place, "
             "time), the mean error stays within what chance gives."
         ]
-    return [sentence(found) for found in where.findings]
+    return [say(found) for found in explanation.findings]
 
 
 def amount(value: float) -> str:

@@ -7,17 +7,17 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import errors, normalised, rms
+from rovsim.evaluation.scores import normalize, rms, subtract
 from rovsim.learning.learner import LearnerSettings, Trained, train
 from rovsim.learning.pairs import Samples, sample_run
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.prediction import OPEN_LOOP
+from rovsim.results.comparison import OPEN_LOOP
+from rovsim.results.pitfalls import Cost
 from rovsim.simulation.replay import replay
 from rovsim.simulation.settings import ReplaySettings
 
-SCHEMA = "rovsim.pitfalls/1"
 ERROR, SHARE = "velocity RMSE of the open loop / spread", "share of residual acceleration foretold"
 # What was done, and what `right` and `wrong` measure.
 PITFALLS = {
@@ -47,7 +47,7 @@ def replay_error(
 ) -> float | None:
     """Velocity RMSE of an open-loop replay, each axis in units of how much it moves, their mean."""
     found = replay(model, motion, signals, settings).horizons[OPEN_LOOP]
-    return normalised([motion], rms(errors(motion, found).nu))
+    return normalize([motion], rms(subtract(motion, found).nu))
 
 
 def explained(predict: Callable[[Array], Array], X: Array, Y: Array) -> float:
@@ -62,7 +62,7 @@ def measure_pitfalls(
     learners: dict[str, LearnerSettings],
     signals: SignalSettings,
     settings: ReplaySettings,
-) -> dict[str, dict[str, float | None]]:
+) -> dict[str, Cost]:
     """Each mistake that can be made on one held-out run: `right` and `wrong`.
 
     The clock, if there are bins, by `replay_error`; the others by what is `explained`; copies only
@@ -87,21 +87,21 @@ def measure_pitfalls(
     scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in found.values()]), axis=0), 1e-9)
     same = [m.run.id for m in runs if m.run.control == "3dof"]
     real = [m.run.id for m in runs if m.run.control == "6dof"]
-    told: dict[str, tuple[float | None, float | None]] = {}
+    costs: dict[str, Cost] = {}
     if test.binned:
-        told["wrong clock"] = (
-            replay_error(model, test, signals, settings),
-            replay_error(model, on_wrong_clock(test), signals, settings),
+        costs["wrong clock"] = Cost(
+            right=replay_error(model, test, signals, settings),
+            wrong=replay_error(model, on_wrong_clock(test), signals, settings),
         )
     right = explained(gp.predict, X, asked.a_res)
-    told["lost data"] = right, explained(gp.predict, X + FAR * scale, asked.a_res)
-    told["scaled twice"] = right, explained(gp.predict, X / scale, asked.a_res)
+    lost, twice = (explained(gp.predict, x, asked.a_res) for x in (X + FAR * scale, X / scale))
+    costs["lost data"] = Cost(right=right, wrong=lost)
+    costs["scaled twice"] = Cost(right=right, wrong=twice)
     if same and real:
         (knn, K), (copy, _) = taught("knn", real), taught("knn", same * len(real))
-        told["copied runs"] = (
-            explained(knn.predict, K, asked.a_res), explained(copy.predict, K, asked.a_res)
-        )  # fmt: skip
-    return {name: {"right": right, "wrong": wrong} for name, (right, wrong) in told.items()}
+        copied = explained(copy.predict, K, asked.a_res)
+        costs["copied runs"] = Cost(right=explained(knn.predict, K, asked.a_res), wrong=copied)
+    return costs
 
 
 def _X(one: Samples, residual: Trained) -> Array:

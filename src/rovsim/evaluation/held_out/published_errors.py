@@ -9,7 +9,7 @@ import csv
 import io
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 
@@ -17,16 +17,22 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 from rovsim.core.run import Commands
-from rovsim.evaluation.scores import number
+from rovsim.results.base import ByAxis, or_nan, or_none
+from rovsim.results.comparison import Comparison
+from rovsim.results.published_errors import (
+    MissedCell,
+    ModelStanding,
+    PublishedCell,
+    PublishedErrors,
+    Source,
+    Standing,
+)
 
-SCHEMA = "rovsim.published_errors/1"
 COUNTED = ("acceleration_rmse", "velocity_mae")  # a model is judged by these
 METRICS = (*COUNTED, "velocity_rmse")
 PUBLISHED = "published "  # in front of the names of others' models
 STILL = "zero_acceleration"
 COLUMNS = ("run", "variant", "model", "axis", *METRICS)
-
-Cell = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -73,7 +79,7 @@ def _entry(row: Mapping[str, str], where: str) -> Published:
     )
 
 
-def demanded(commands: Commands) -> dict[str, bool]:
+def find_demanded(commands: Commands) -> dict[str, bool]:
     """Axes whose demand moved in a run.
 
     Thruster commands do not tell axes apart: all count as moved, which makes no mark easier.
@@ -83,11 +89,11 @@ def demanded(commands: Commands) -> dict[str, bool]:
     return {axis: bool(np.any(v != v[:1])) for axis, v in zip(AXES, commands.value.T, strict=True)}
 
 
-def against(
+def compare_published(
     published: Sequence[Published],
-    comparisons: Mapping[str, Mapping[str, Any]],
+    comparisons: Mapping[str, Comparison],
     moved: Mapping[str, Mapping[str, bool]],
-) -> dict[str, Any]:
+) -> PublishedErrors:
     """`published_errors.json`: every cell, and how each model stands.
 
     Args:
@@ -111,36 +117,33 @@ def against(
               run, axis, metric)
         for run in known for axis in AXES for metric in METRICS
     ]  # fmt: skip
-    cells = [cell for cell in found if cell]
-    names = dict.fromkeys(name for cell in cells for name in cell["ratios"])
-    return {
-        "schema": SCHEMA,
-        "runs": known,
-        "without_published": [run for run in comparisons if run not in known],
-        "models": {name: _standing(name, cells) for name in names},
-        "cells": cells,
-    }
+    cells = tuple(cell for cell in found if cell)
+    names = dict.fromkeys(name for cell in cells for name in cell.ratios)
+    return PublishedErrors(
+        runs=tuple(known),
+        without_published=tuple(run for run in comparisons if run not in known),
+        models={name: _stand(name, cells) for name in names},
+        cells=cells,
+    )
 
 
 def _of(published: Sequence[Published], run: str, axis: str) -> list[Published]:
     return [p for p in published if (p.run, p.axis) == (run, axis)]
 
 
-def _errors(
-    comparison: Mapping[str, Any], run: str, axis: str, metric: str
-) -> dict[str, float | None]:
+def _errors(comparison: Comparison, run: str, axis: str, metric: str) -> dict[str, float | None]:
     """Errors of our models in the open loop; None where a model left the finite numbers."""
     return {
-        name: model["runs"][run]["open_loop"][metric][axis]
-        for name, model in comparison["models"].items()
-        if run in model["runs"]
+        name: model.runs[run].open_loop.by_axis(metric)[axis]
+        for name, model in comparison.models.items()
+        if run in model.runs
     }
 
 
 def _cell(
     theirs: Sequence[Published], ours: Mapping[str, float | None], moved: Mapping[str, bool],
     run: str, axis: str, metric: str,
-) -> Cell | None:  # fmt: skip
+) -> PublishedCell | None:  # fmt: skip
     """One cell; None without a published error, or where nothing was measured."""
     still = ours.get(STILL)
     if not theirs or still is None:
@@ -152,14 +155,19 @@ def _cell(
         for model in dict.fromkeys(p.model for p in theirs)
     }
     errors = {**ours, **smallest}
-    return {
-        "run": run, "axis": axis, "metric": metric, "demanded": moved[axis], "mark": mark,
-        "best": {"model": best.model, "variant": best.variant}, "errors": errors,
-        "ratios": {name: None if e is None else e / mark for name, e in errors.items()},
-    }  # fmt: skip
+    return PublishedCell(
+        run=run,
+        axis=axis,
+        metric=metric,
+        demanded=moved[axis],
+        mark=mark,
+        best=Source(model=best.model, variant=best.variant),
+        errors=errors,
+        ratios={name: None if e is None else e / mark for name, e in errors.items()},
+    )
 
 
-def standing(ratios: Sequence[float | None]) -> dict[str, Any]:
+def stand(ratios: Sequence[float | None]) -> Standing:
     """Cells below the mark, and the geometric mean of error / mark.
 
     A model without a value in a cell is not below it, and its mean is None.
@@ -168,27 +176,34 @@ def standing(ratios: Sequence[float | None]) -> dict[str, Any]:
     with np.errstate(divide="ignore"):
         mean = np.exp(np.mean(np.log(values))) if len(values) else np.nan
     below = int(np.sum(values < 1.0))
-    share = below / len(values) if len(values) else np.nan
-    return {
-        "cells": len(values), "below": below, "share_below": number(share),
-        "geometric_mean": number(mean),
-    }  # fmt: skip
+    return Standing(
+        cells=len(values),
+        below=below,
+        share_below=or_none(below / len(values) if len(values) else np.nan),
+        geometric_mean=or_none(mean),
+    )
 
 
-def _standing(name: str, cells: Sequence[Cell]) -> dict[str, Any]:
+def _stand(name: str, cells: Sequence[PublishedCell]) -> ModelStanding:
     """How one model stands in the counted metrics, and by metric and axis."""
-    own = [cell for cell in cells if name in cell["ratios"]]
-    counted = [cell for cell in own if cell["metric"] in COUNTED]
+    own = [cell for cell in cells if name in cell.ratios]
+    counted = [cell for cell in own if cell.metric in COUNTED]
 
-    def of(key: str, value: str, among: Sequence[Cell]) -> dict[str, Any]:
-        return standing([cell["ratios"][name] for cell in among if cell[key] == value])
+    def among(cells: Sequence[PublishedCell]) -> Standing:
+        return stand([cell.ratios[name] for cell in cells])
 
-    missed = [c for c in counted if c["ratios"][name] is None or c["ratios"][name] >= 1.0]
-    return standing([cell["ratios"][name] for cell in counted]) | {
-        "by_metric": {metric: of("metric", metric, own) for metric in METRICS},
-        "by_axis": {axis: of("axis", axis, counted)["geometric_mean"] for axis in AXES},
-        "not_below": [
-            {k: c[k] for k in ("run", "axis", "metric")} | {"ratio": c["ratios"][name]}
-            for c in missed
-        ],
-    }
+    axes = {axis: among([c for c in counted if c.axis == axis]) for axis in AXES}
+    whole = among(counted)
+    return ModelStanding(
+        cells=whole.cells,
+        below=whole.below,
+        share_below=whole.share_below,
+        geometric_mean=whole.geometric_mean,
+        by_metric={metric: among([c for c in own if c.metric == metric]) for metric in METRICS},
+        by_axis=ByAxis(**{axis: one.geometric_mean for axis, one in axes.items()}),
+        not_below=tuple(
+            MissedCell(run=c.run, axis=c.axis, metric=c.metric, ratio=c.ratios[name])
+            for c in counted
+            if not or_nan(c.ratios[name]) < 1.0
+        ),
+    )

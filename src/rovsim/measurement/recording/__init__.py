@@ -1,7 +1,7 @@
 """Raw exports in, recordings out: one module per format, axes converted once, quality told."""
 
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.recording.quality import quality_report, usable_reason
+from rovsim.measurement.recording.quality import assess, usable_reason
 from rovsim.measurement.recording.reading import Anomalies, read_run, site
 from rovsim.measurement.recording.recording import Recording
 
@@ -11,7 +11,7 @@ __all__ = [
     "Recording",
     "RunInfo",
     "Site",
-    "quality_report",
+    "assess",
     "read_run",
     "site",
     "usable_reason",

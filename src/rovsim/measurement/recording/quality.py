@@ -1,7 +1,6 @@
 """How good a recording is: rate, gaps, repairs, excitation, noise, and what to do about it."""
 
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,7 +9,8 @@ from rovsim.core.rotations import conjugate, continuous, log, multiply, normaliz
 from rovsim.measurement.campaign import AXES
 from rovsim.measurement.recording.reading import Anomalies, measured_rate
 from rovsim.measurement.recording.recording import Recording
-from rovsim.measurement.recording.remarks import remarks
+from rovsim.measurement.recording.remarks import remark
+from rovsim.results.quality import CommandLog, Excitation, Gap, PoseNoise, Quality, Rate
 
 GAP = 0.05  # s; shorter ones are bridged by any resampling
 SHORTEST_RUN = 2.0  # s; one scoring window (contract, section 3)
@@ -23,35 +23,31 @@ BLOCK = 0.1  # s; the median of a block rejects single outlier frames
 EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard deviation
 
 
-def quality_report(
-    recording: Recording, anomalies: Anomalies, outliers: int | None = None
-) -> dict[str, Any]:
-    """Describe a recording in plain JSON values (docs/formats.md lists the keys).
+def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = None) -> Quality:
+    """Describe a recording.
 
     `outliers` is the number of frames that the outlier rejection refused, None when not looked for.
     """
     time, found = recording.time, recording.found
     gaps = find_gaps(recording)
-    report: dict[str, Any] = {
-        "schema": "rovsim.quality/1",
-        "run": recording.run.id,
-        "split": recording.run.split,
-        "control": recording.run.control,
-        "rate_hz": {"nominal": recording.rate, "median": measured_rate(time)},
-        "duration_s": float(time[-1] - time[0]),
-        "frames": len(time),
-        "not_found": int(np.sum(~found)),
-        "longest_gap_s": max((gap["duration_s"] for gap in gaps), default=0.0),
-        "gaps": gaps,
-        "outliers": outliers,
-        "repairs": asdict(anomalies),
-        "commands": _commands(recording),
-        "excitation": excitation(recording),
-        "noise": noise(recording),
-        "unusable": usable_reason(recording),
-    }
-    report["remarks"] = remarks(report)
-    return report
+    report = Quality(
+        run=recording.run.id,
+        split=recording.run.split,
+        control=recording.run.control,
+        rate_hz=Rate(nominal=recording.rate, median=measured_rate(time)),
+        duration_s=float(time[-1] - time[0]),
+        frames=len(time),
+        not_found=int(np.sum(~found)),
+        longest_gap_s=max((gap.duration_s for gap in gaps), default=0.0),
+        gaps=tuple(gaps),
+        outliers=outliers,
+        repairs=asdict(anomalies),
+        commands=_describe_commands(recording),
+        excitation=measure_excitation(recording),
+        noise=measure_noise(recording),
+        unusable=usable_reason(recording),
+    )
+    return report.model_copy(update={"remarks": tuple(remark(report))})
 
 
 def usable_reason(recording: Recording) -> str | None:
@@ -70,7 +66,7 @@ def usable_reason(recording: Recording) -> str | None:
     return None
 
 
-def find_gaps(recording: Recording) -> list[dict[str, float]]:
+def find_gaps(recording: Recording) -> list[Gap]:
     """Stretches without a pose, from the last found frame to the next, longer than 0.05 s.
 
     On a slow export (bins) a step is a gap when it is more than twice the usual one.
@@ -79,19 +75,19 @@ def find_gaps(recording: Recording) -> list[dict[str, float]]:
     steps = np.diff(time)
     limit = max(GAP, 2.0 * float(np.median(np.diff(recording.time))))
     long = np.flatnonzero(steps > limit * (1.0 + 1e-9))
-    return [{"start_s": float(time[k]), "duration_s": float(steps[k])} for k in long]
+    return [Gap(start_s=float(time[k]), duration_s=float(steps[k])) for k in long]
 
 
-def excitation(recording: Recording) -> dict[str, dict[str, Any]]:
+def measure_excitation(recording: Recording) -> dict[str, Excitation]:
     """Standard deviation of the body velocity per axis, and whether it suffices to judge it."""
     nu = rough_velocity(recording)
     spread = nu.std(axis=0) if len(nu) else np.zeros(6)
     return {
-        axis: {
-            "std": float(spread[k]),
-            "unit": "m/s" if k < 3 else "rad/s",
-            "excited": bool(spread[k] > EXCITED[k]),
-        }
+        axis: Excitation(
+            std=float(spread[k]),
+            unit="m/s" if k < 3 else "rad/s",
+            excited=bool(spread[k] > EXCITED[k]),
+        )
         for k, axis in enumerate(AXES)
     }
 
@@ -110,7 +106,7 @@ def rough_velocity(recording: Recording) -> Array:
     return np.hstack([linear, angular])[near]
 
 
-def noise(recording: Recording) -> dict[str, float | None]:
+def measure_noise(recording: Recording) -> PoseNoise:
     """Noise per sample in m and rad: robust spread of third differences / sqrt(20).
 
     The variance of the third difference of white noise is 1 + 9 + 9 + 1 = 20 times its own; any
@@ -121,21 +117,21 @@ def noise(recording: Recording) -> dict[str, float | None]:
     even = _evenly_spaced(recording)
     turns = log(multiply(conjugate(attitude[:-1]), attitude[1:]))
     moved, turned = np.diff(position, 3, axis=0)[even], np.diff(turns, 2, axis=0)[even]
-    return {"position_m": _robust_std(moved), "attitude_rad": _robust_std(turned)}
+    return PoseNoise(position_m=_robust_std(moved), attitude_rad=_robust_std(turned))
 
 
-def _commands(recording: Recording) -> dict[str, Any]:
+def _describe_commands(recording: Recording) -> CommandLog:
     time = recording.commands.time
     steps = np.diff(time)
-    return {
-        "kind": recording.commands.kind,
-        "lines": len(time),
-        "start_s": float(time[0]),
-        "end_s": float(time[-1]),
-        "median_step_s": float(np.median(steps)) if len(steps) else None,
-        "longest_step_s": float(steps.max()) if len(steps) else None,
-        "varies": bool(np.ptp(recording.commands.value, axis=0).max() > 0.0),
-    }
+    return CommandLog(
+        kind=recording.commands.kind,
+        lines=len(time),
+        start_s=float(time[0]),
+        end_s=float(time[-1]),
+        median_step_s=float(np.median(steps)) if len(steps) else None,
+        longest_step_s=float(steps.max()) if len(steps) else None,
+        varies=bool(np.ptp(recording.commands.value, axis=0).max() > 0.0),
+    )
 
 
 def _seen(recording: Recording) -> tuple[Array, Array, Array]:

@@ -1,6 +1,8 @@
 """Plain sentences about a recording that its owner can act on."""
 
-from typing import Any, Iterator
+from typing import Iterator
+
+from rovsim.results.quality import Quality
 
 # Above these a recording is worth a second look; they change nothing else.
 MANY_MISSING = 0.05  # share of frames
@@ -8,49 +10,46 @@ NOISY_POSITION, NOISY_ATTITUDE = 0.003, 0.015  # m, rad: three times a usual und
 SLOW = 20.0  # Hz; below it thruster lag and added mass are hard to see
 
 
-def remarks(report: dict[str, Any]) -> list[str]:
-    """Sentences for a quality report (its other keys), most important first."""
+def remark(report: Quality) -> list[str]:
+    """Sentences about a recording, most important first."""
     return [*_use(report), *_frames(report), *_commands(report), *_repairs(report)]
 
 
-def _use(report: dict[str, Any]) -> Iterator[str]:
-    if report["unusable"]:
-        yield f"This run cannot be used ({report['unusable']}). Record it again or remove it."
+def _use(report: Quality) -> Iterator[str]:
+    if report.unusable:
+        yield f"This run cannot be used ({report.unusable}). Record it again or remove it."
         return
-    quiet = [axis for axis, e in report["excitation"].items() if not e["excited"]]
+    quiet = [axis for axis, e in report.excitation.items() if not e.excited]
     if quiet:
         yield f"Hardly any motion in {', '.join(quiet)}: nothing can be said about the model there."
 
 
-def _frames(report: dict[str, Any]) -> Iterator[str]:
-    share = report["not_found"] / report["frames"]
+def _frames(report: Quality) -> Iterator[str]:
+    share = report.not_found / report.frames
     if share > MANY_MISSING:
         yield f"The body was not found in {share:.0%} of the frames: check markers and cameras."
-    if report["longest_gap_s"] > 0.5:
-        yield (
-            f"The longest gap is {report['longest_gap_s']:.2f} s; motion across it is not rebuilt."
-        )
-    rate = report["rate_hz"]
-    if rate["median"] < SLOW:
-        yield f"{rate['median']:.3g} Hz is slow: noise is overestimated and lags are hard to see."
-    noise = report["noise"]
-    if rate["median"] >= SLOW and (
-        (noise["position_m"] or 0.0) > NOISY_POSITION
-        or (noise["attitude_rad"] or 0.0) > NOISY_ATTITUDE
+    if report.longest_gap_s > 0.5:
+        yield (f"The longest gap is {report.longest_gap_s:.2f} s; motion across it is not rebuilt.")
+    rate = report.rate_hz.median
+    if rate < SLOW:
+        yield f"{rate:.3g} Hz is slow: noise is overestimated and lags are hard to see."
+    noise = report.noise
+    if rate >= SLOW and (
+        (noise.position_m or 0.0) > NOISY_POSITION or (noise.attitude_rad or 0.0) > NOISY_ATTITUDE
     ):
         yield "The poses are noisy: check the calibration and the marker set of the body."
-    if report["outliers"] and report["outliers"] > 0.01 * report["frames"]:
-        yield f"{report['outliers']} outlier frames: look for swapped markers or reflections."
+    if report.outliers and report.outliers > 0.01 * report.frames:
+        yield f"{report.outliers} outlier frames: look for swapped markers or reflections."
 
 
-def _commands(report: dict[str, Any]) -> Iterator[str]:
-    commands, repairs = report["commands"], report["repairs"]
-    if not commands["varies"]:
+def _commands(report: Quality) -> Iterator[str]:
+    commands, repairs = report.commands, report.repairs
+    if not commands.varies:
         yield "The commands never change: check 'commands.columns', or that the log was running."
     if repairs["command_long_steps"]:
         yield (
             f"{repairs['command_long_steps']} command steps are longer than usual (up to "
-            f"{commands['longest_step_s']:.2f} s); the line before is held over them."
+            f"{commands.longest_step_s:.2f} s); the line before is held over them."
         )
     if repairs["command_clipped"]:
         yield (
@@ -61,8 +60,8 @@ def _commands(report: dict[str, Any]) -> Iterator[str]:
         yield f"{repairs['command_dropped']} command lines without a value were left out."
 
 
-def _repairs(report: dict[str, Any]) -> Iterator[str]:
-    repairs = report["repairs"]
+def _repairs(report: Quality) -> Iterator[str]:
+    repairs = report.repairs
     for prefix, what in (("", "frames"), ("command_", "command lines")):
         unsorted, duplicates = repairs[f"{prefix}unsorted"], repairs[f"{prefix}duplicates"]
         if unsorted:
@@ -72,7 +71,7 @@ def _repairs(report: dict[str, Any]) -> Iterator[str]:
         if repairs[f"{prefix}cut_lines"]:
             yield f"The last of the {what} is cut short and was left out: was the export complete?"
     if repairs["wrong_header_rate"]:
-        rate = report["rate_hz"]["median"]
+        rate = report.rate_hz.median
         yield f"The header's FREQUENCY is not the {rate:.4g} Hz of the times; the times are used."
     if repairs["bad_rotations"]:
         yield f"{repairs['bad_rotations']} frames hold no rotation and count as not found."

@@ -6,8 +6,8 @@ from pathlib import Path
 from rovsim.core.files import write_text
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import built_in
+from rovsim.reporting.catalogue.entries import PAGE, PICTURES, page
 from rovsim.reporting.catalogue.flight import seen, settings
-from rovsim.reporting.catalogue.page import PAGE, PICTURES, page
 from rovsim.reporting.figures.signature import signature, write
 
 

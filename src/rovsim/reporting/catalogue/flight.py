@@ -12,16 +12,15 @@ from rovsim.dynamics.effects.base import Autopilot, Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import describe_effect
-from rovsim.evaluation.error_conditions import Blocks, blocks
-from rovsim.evaluation.error_conditions.bins import binned, number_stretches, table
-from rovsim.evaluation.error_conditions.conditions import Condition
+from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
+from rovsim.evaluation.error_conditions.conditions import Blocks, Condition, average_blocks
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.figures.marks import ACCELERATION_UNITS
 from rovsim.reporting.figures.signature import Seen
+from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import (
@@ -64,15 +63,15 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
     """What the nominal model misses in this tank, and what the hidden effect adds to it."""
     motion, truth = fly(tank, catalogue), true_model(tank, catalogue)
     missing, rest = (
-        blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
+        average_blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
         for model in (nominal(truth.vehicle), truth)
     )
     k = AXES.index(signature.axis)
     condition, values = found(signature.condition, missing)
     error, added = missing.error[:, k], missing.error[:, k] - rest.error[:, k]
     stretch = number_stretches(missing, error)
-    cut = binned(condition, values, stretch)
-    missed, effect = (table(cut, x, stretch) for x in (error, added))
+    cut = cut_bins(condition, values, stretch)
+    missed, effect = (bin_errors(cut, x, stretch) for x in (error, added))
     return Seen(signature, missed, effect, values, missing.time, error, added)
 
 

@@ -1,6 +1,6 @@
 """Every held-out run and axis: our errors divided by the smallest that anybody published."""
 
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,10 +8,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rovsim.evaluation.held_out.published_errors import COUNTED, PUBLISHED
-from rovsim.evaluation.ladder import EFFECTS
-from rovsim.reporting.figures.marks import legend, note, nothing, number, short
-from rovsim.reporting.figures.palette import Look, looks
+from rovsim.reporting.figures.legends import legend, note, nothing
+from rovsim.reporting.figures.palette import Look, Style, looks
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.wording import short
+from rovsim.results.base import or_nan
+from rovsim.results.ladder import EFFECTS
+from rovsim.results.published_errors import PublishedCell, PublishedErrors
 
 SECTION = "published"
 CAPTION = (
@@ -27,38 +30,37 @@ TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 
 
 @styled()
-def draw(*, published_errors: Mapping[str, Any]) -> Figure:
+def draw(*, published_errors: PublishedErrors) -> Figure:
     """Draw the ratios of `published_errors.json`, one panel a metric."""
     names = _shown(published_errors)
     style = looks(names)
     figure = sheet(60 + 60 * len(COUNTED))
     for axes, metric in zip(figure.subplots(len(COUNTED), 1), COUNTED, strict=True):
-        cells = [cell for cell in published_errors.get("cells", []) if cell["metric"] == metric]
+        cells = [cell for cell in published_errors.cells if cell.metric == metric]
         _panel(axes, cells, style)
         axes.set_ylabel(f"{LABELS[metric]} / mark (–)")
     legend(
         figure, [Line2D([], [], label=short(n), **_look(k, style[n])) for k, n in enumerate(names)]
     )
-    beyond = any(_ratio(c, n) > HIGHEST for c in published_errors.get("cells", []) for n in names)
+    beyond = any(_ratio(c, n) > HIGHEST for c in published_errors.cells for n in names)
     note(figure, [f"On the upper edge: {HIGHEST:g} or more, or no value." if beyond else ""])
     return figure
 
 
-def _shown(published_errors: Mapping[str, Any]) -> list[str]:
+def _shown(published_errors: PublishedErrors) -> list[str]:
     """Our models of every cell; of residuals those on top of effects, if there are any."""
-    cells = published_errors.get("cells", [])
-    ours = [n for n in published_errors.get("models", {}) if not n.startswith(PUBLISHED)]
-    whole = [n for n in ours if all(n in cell["ratios"] for cell in cells)]
+    ours = [n for n in published_errors.models if not n.startswith(PUBLISHED)]
+    whole = [n for n in ours if all(n in cell.ratios for cell in published_errors.cells)]
     stacked = {n.partition("+")[2] for n in whole if n.startswith(f"{EFFECTS}+")}
     return [n for n in whole if n not in stacked]
 
 
-def _panel(axes: Axes, cells: Sequence[Mapping[str, Any]], style: Mapping[str, Look]) -> None:
+def _panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]) -> None:
     if not cells:
         nothing(axes, "nothing to compare with")
         return
-    runs = list(dict.fromkeys(cell["run"] for cell in cells))
-    places = np.array([k + runs.index(cell["run"]) for k, cell in enumerate(cells)])
+    runs = list(dict.fromkeys(cell.run for cell in cells))
+    places = np.array([k + runs.index(cell.run) for k, cell in enumerate(cells)])
     shown = np.array([[_ratio(cell, name) for name in style] for cell in cells])
     for k, name in enumerate(style):
         axes.plot(places, np.minimum(shown[:, k], HIGHEST), **_look(k, style[name]))
@@ -67,7 +69,7 @@ def _panel(axes: Axes, cells: Sequence[Mapping[str, Any]], style: Mapping[str, L
     axes.set_xticks(places, [_label(cell) for cell in cells], rotation=90)
     axes.tick_params(axis="x", length=0)
     for run in runs:
-        middle = np.mean([x for x, c in zip(places, cells, strict=True) if c["run"] == run])
+        middle = np.mean([x for x, c in zip(places, cells, strict=True) if c.run == run])
         axes.text(middle, 1.01, f"run {short(run, 14)}", ha="center", va="bottom", fontsize=8,
                   transform=axes.get_xaxis_transform())  # fmt: skip
 
@@ -80,19 +82,19 @@ def _vertical(axes: Axes, lowest: float) -> None:
     axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * HIGHEST)
 
 
-def _ratio(cell: Mapping[str, Any], name: str) -> float:
+def _ratio(cell: PublishedCell, name: str) -> float:
     """Ratio of one model; infinite where it has no value, NaN where it is not in the cell."""
-    if name not in cell["ratios"]:
+    if name not in cell.ratios:
         return float("nan")
-    value = number(cell["ratios"][name])
+    value = or_nan(cell.ratios[name])
     return value if np.isfinite(value) else float("inf")
 
 
-def _label(cell: Mapping[str, Any]) -> str:
-    return cell["axis"] if cell["demanded"] else f"({cell['axis']})"
+def _label(cell: PublishedCell) -> str:
+    return cell.axis if cell.demanded else f"({cell.axis})"
 
 
-def _look(k: int, look: Look) -> dict[str, Any]:
+def _look(k: int, look: Look) -> Style:
     """A marker of its own for each model."""
     return {"color": look.color, "marker": SHAPES[k % len(SHAPES)], "linestyle": "",
             "markersize": 3.6, "markeredgewidth": 0.3, "markeredgecolor": "white"}  # fmt: skip

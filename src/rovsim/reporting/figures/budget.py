@@ -6,11 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
-from rovsim.reporting.figures.marks import legend, lines, note, significant
+from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.panels import plot_all, six_panels
 from rovsim.reporting.figures.series import excerpt
 from rovsim.reporting.figures.style import styled
+from rovsim.reporting.wording import significant
 
 SECTION = "where"
 CAPTION = (

@@ -1,22 +1,16 @@
 """How the velocity error grows with the time since the model was last set to the measurement."""
 
-from typing import Any, Mapping
-
 import numpy as np
 from matplotlib.figure import Figure
 
-from rovsim.reporting.figures.marks import (
-    AXES,
-    VELOCITY_UNITS,
-    legend,
-    lines,
-    listed,
-    note,
-    nothing,
-    number,
-)
+from rovsim import AXES
+from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.reporting.wording import listed
+from rovsim.results.base import or_nan
+from rovsim.results.growth import Growth
 
 SECTION = "compare"
 CAPTION = (
@@ -26,19 +20,18 @@ CAPTION = (
 
 
 @styled()
-def draw(*, growth: Mapping[str, Any]) -> Figure:
+def draw(*, growth: Growth) -> Figure:
     """Draw `growth.json`: by model, `horizon_s` [..] and `velocity_rmse` {axis: [..]}."""
-    models = growth.get("models", {})
-    style = looks(models)
+    style = looks(growth.models)
     figure = sheet(110)
     panels = figure.subplots(2, 3, sharex=True)
     drawn: set[str] = set()
     for axes, axis, unit in zip(panels.flat, AXES, VELOCITY_UNITS, strict=True):
-        for name, curve in models.items():
-            values = [number(v) for v in curve["velocity_rmse"].get(axis) or []]
+        for name, curve in growth.models.items():
+            values = list(map(or_nan, curve.velocity_rmse[axis]))
             if np.isfinite(values).any():
                 drawn.add(name)
-                axes.plot(curve["horizon_s"], values, label=name, **style[name].line())
+                axes.plot(curve.horizon_s, values, label=name, **style[name].line())
         axes.set_title(axis)
         axes.set_ylim(bottom=0)
         axes.set_xlim(left=0)
@@ -48,7 +41,7 @@ def draw(*, growth: Mapping[str, Any]) -> Figure:
             axes.set_ylabel(f"velocity RMSE ({unit})")
     for axes in panels[1]:
         axes.set_xlabel("time since start (s)")
-    missing = [name for name in models if name not in drawn]
+    missing = [name for name in growth.models if name not in drawn]
     legend(figure, lines(style))
     note(figure, [f"No values: {listed(missing)}." if missing else ""])
     return figure

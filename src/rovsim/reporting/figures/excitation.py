@@ -1,14 +1,17 @@
 """Quality of every run at a glance: which axes were excited, and when the vehicle was seen."""
 
-from typing import Any, Mapping
+from typing import Mapping
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rovsim.reporting.figures.marks import AXES, legend, note, nothing, number, short, significant
+from rovsim import AXES
+from rovsim.reporting.figures.legends import legend, note, nothing
+from rovsim.reporting.figures.palette import Style
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.wording import short, significant
+from rovsim.results.quality import Excitation, Quality
 
 SECTION = "quality"
 CAPTION = (
@@ -19,7 +22,7 @@ EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", "#D55E00"
 
 
 @styled()
-def draw(*, quality: Mapping[str, Mapping[str, Any]]) -> Figure:
+def draw(*, quality: Mapping[str, Quality]) -> Figure:
     """Draw the quality reports {run: quality/<run>.json}."""
     figure = sheet(34 + 7 * max(len(quality), 2))
     cells, timeline = figure.subplots(1, 2, width_ratios=[3, 2])
@@ -27,10 +30,10 @@ def draw(*, quality: Mapping[str, Mapping[str, Any]]) -> Figure:
     remarks = []
     for row, run in enumerate(runs):
         y = len(runs) - 1 - row
-        _excitation(cells, y, quality[run].get("excitation") or {})
+        _excitation(cells, y, quality[run].excitation)
         _seen(timeline, y, quality[run])
-        if quality[run].get("unusable"):
-            remarks.append(f"{short(run)} is not used: {quality[run]['unusable']}.")
+        if quality[run].unusable:
+            remarks.append(f"{short(run)} is not used: {quality[run].unusable}.")
     for axes in (cells, timeline):
         axes.set_ylim(-0.5, max(len(runs), 1) - 0.5)
         axes.grid(False)
@@ -46,27 +49,22 @@ def draw(*, quality: Mapping[str, Mapping[str, Any]]) -> Figure:
     if not runs:
         nothing(cells, "no runs")
     labels = ((EXCITED, "excited"), (STILL, "not excited"), (SEEN, "seen"), (GAP, "gap"))
-    edge: dict[str, Any] = {"edgecolor": "#888888", "linewidth": 0.5}
+    edge: Style = {"edgecolor": "#888888", "linewidth": 0.5}
     legend(figure, [Patch(facecolor=color, label=label, **edge) for color, label in labels])
     note(figure, remarks)
     return figure
 
 
-def _excitation(axes: Axes, y: float, excitation: Mapping[str, Any]) -> None:
+def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:
     for k, axis in enumerate(AXES):
-        entry = excitation.get(axis) or {}
-        color = EXCITED if entry.get("excited") else STILL
+        color = EXCITED if excitation[axis].excited else STILL
         axes.bar(k, 0.84, 0.94, y - 0.42, facecolor=color, edgecolor="#BBBBBB", linewidth=0.5)
-        text = significant(number(entry.get("std")), 2)
+        text = significant(excitation[axis].std, 2)
         axes.text(k, y, text, ha="center", va="center", fontsize=8)
 
 
-def _seen(axes: Axes, y: float, report: Mapping[str, Any]) -> None:
-    duration = number(report.get("duration_s"))
-    if not np.isfinite(duration):
-        return
-    axes.barh(y, duration, 0.5, facecolor=SEEN)
-    first = number(report.get("start_s", 0.0))
-    spans = [(g["start_s"] - first, g["duration_s"]) for g in report.get("gaps") or []]
+def _seen(axes: Axes, y: float, report: Quality) -> None:
+    axes.barh(y, report.duration_s, 0.5, facecolor=SEEN)
+    spans = [(gap.start_s, gap.duration_s) for gap in report.gaps]
     # a gap narrower than a hair would vanish on paper: the edge keeps it visible
     axes.broken_barh(spans, (y - 0.25, 0.5), facecolor=GAP, edgecolor=GAP, linewidth=0.4)

@@ -1,69 +1,60 @@
 """Time of one prediction: the library's call next to the exported predictor, against deadlines."""
 
-from typing import Any, Mapping
+from typing import Mapping
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rovsim.reporting.figures.marks import legend, note, nothing, number, plain_log, short
+from rovsim.reporting.figures.legends import legend, nothing, plain_log
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.wording import short
+from rovsim.results.timing import RATES, BothWays, Latency, Timing
 
 SECTION = "timing"
 CAPTION = (
     "Time of one prediction, one call at a time after warm-up: median, 99th and 99.9th percentile "
     "of the library's own call and of the exported predictor, against the periods of control loops."
 )
-RATES = (50, 100, 250, 1000)  # Hz: contract, section 5
 WAYS = {"library": ("#D55E00", 0.17), "exported": ("#0072B2", -0.17)}
 MARKERS = {"median_us": ("o", "median"), "p99_us": ("|", "p99"), "p999_us": (">", "p99.9")}
 
 
 @styled()
-def draw(*, timing: Mapping[str, Any]) -> Figure:
+def draw(*, timing: Timing) -> Figure:
     """Draw `timing.json`: {"inference": {NAME: {"library": STATS, "exported": STATS}}}, in µs."""
-    inference = timing.get("inference", {})
-    names = list(inference)
+    names = list(timing.inference)
     figure = sheet(34 + 11 * max(len(names), 2))
     axes = figure.subplots()
     plain_log(axes)
-    remarks = []
-    for row, name in enumerate(names):
+    for row, both in enumerate(timing.inference.values()):
         for way, (color, shift) in WAYS.items():
-            stats = inference[name].get(way)
-            if stats is None:
-                remarks.append(f"{short(name)}: {way} not measured.")
-            else:
-                _line(axes, len(names) - 1 - row + shift, stats, color)
+            _line(axes, len(names) - 1 - row + shift, getattr(both, way), color)
     axes.set_yticks(range(len(names)), [short(n, 24) for n in reversed(names)])
     axes.set_ylim(-0.6, max(len(names), 1) - 0.4)
     axes.set_xlabel("time of one prediction (µs)")
     axes.grid(False, axis="y")
-    _deadlines(axes, inference)
+    _deadlines(axes, timing.inference)
     if not names:
         nothing(axes, "no predictor was timed")
     legend(figure, _entries())
-    note(figure, remarks)
     return figure
 
 
-def _line(axes: Axes, y: float, stats: Mapping[str, Any], color: str) -> None:
-    values = {key: number(stats.get(key)) for key in MARKERS}
-    if np.isfinite(list(values.values())).all():
-        axes.plot(list(values.values()), [y] * 3, color=color, linewidth=1.2)
+def _line(axes: Axes, y: float, stats: Latency, color: str) -> None:
+    values = {key: getattr(stats, key) for key in MARKERS}
+    axes.plot(list(values.values()), [y] * 3, color=color, linewidth=1.2)
     for key, (marker, _) in MARKERS.items():
-        if np.isfinite(values[key]):
-            axes.plot(values[key], y, marker, color=color, markersize=5 if marker != "|" else 8)
+        axes.plot(values[key], y, marker, color=color, markersize=5 if marker != "|" else 8)
 
 
-def _deadlines(axes: Axes, inference: Mapping[str, Any]) -> None:
+def _deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
     times = [
-        number(stats.get(key))
-        for ways in inference.values() for stats in ways.values() if stats for key in MARKERS
+        getattr(stats, key)
+        for both in inference.values() for stats in (both.library, both.exported) for key in MARKERS
     ]  # fmt: skip
-    low = min([t for t in times if np.isfinite(t) and t > 0], default=100.0)
-    high = max([t for t in times if np.isfinite(t)], default=100.0)
+    low = min([t for t in times if t > 0], default=100.0)
+    high = max(times, default=100.0)
     axes.set_xlim(low / 2, max(high, 1e6 / min(RATES)) * 1.6)
     for rate in RATES:
         axes.axvline(1e6 / rate, color="#444444", linewidth=0.8, linestyle="--", zorder=1)

@@ -1,15 +1,18 @@
 """The ladder: the error on held-out runs falling, step by step."""
 
-from typing import Any, Mapping
+from typing import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rovsim.reporting.figures.marks import legend, note, nothing, number, short, significant
+from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import FAMILIES, looks
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.wording import short, significant
+from rovsim.results.base import or_nan
+from rovsim.results.ladder import NOISE_FLOOR, Ladder
 
 SECTION = "ladder"
 CAPTION = (
@@ -22,10 +25,10 @@ FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the mode
 
 
 @styled()
-def draw(*, ladder: Mapping[str, Any]) -> Figure:
+def draw(*, ladder: Ladder) -> Figure:
     """Draw `windows_2s` of `ladder.json` from the first step down, the noise floor as a line."""
-    steps = {s["model"]: number(s.get("windows_2s")) for s in ladder.get("steps", [])}
-    floor = steps.pop("noise_floor", float("nan"))
+    steps = {step.model: or_nan(step.windows_2s) for step in ladder.models}
+    floor = or_nan(ladder.noise_floor)
     style = looks(steps)
     figure = sheet(26 + 7.5 * max(len(steps), 3))
     axes = figure.subplots()
@@ -43,7 +46,7 @@ def draw(*, ladder: Mapping[str, Any]) -> Figure:
     if not steps:
         nothing(axes, "no steps")
     if np.isfinite(floor):
-        look = FAMILIES["noise_floor"]
+        look = FAMILIES[NOISE_FLOOR]
         axes.axvline(floor, **look.line())
         label = f"noise floor, {significant(floor)}"
         legend(figure, [Line2D([], [], label=label, **look.line())])
@@ -53,7 +56,7 @@ def draw(*, ladder: Mapping[str, Any]) -> Figure:
 
 def _top(steps: Mapping[str, float], floor: float) -> float:
     """Where the axis ends; a baseline that is far higher than all models is cut."""
-    known = {n: v for n, v in {**steps, "noise_floor": floor}.items() if np.isfinite(v)}
+    known = {n: v for n, v in {**steps, NOISE_FLOOR: floor}.items() if np.isfinite(v)}
     models = max((v for n, v in known.items() if n != BASELINE), default=0.0)
     cut = 0.0 < FAR * models < known.get(BASELINE, 0.0)
     return ROOM * (models if cut else max(known.values(), default=0.0)) or 1.0
@@ -69,8 +72,8 @@ def _value(axes: Axes, y: int, value: float, top: float) -> None:
                   fontsize=8, bbox={"facecolor": "white", "pad": 1, "linewidth": 0})  # fmt: skip
 
 
-def _remarks(ladder: Mapping[str, Any], steps: Mapping[str, float], top: float) -> list[str]:
-    splits = sorted({s["split"] for s in ladder.get("steps", []) if s.get("split")})
+def _remarks(ladder: Ladder, steps: Mapping[str, float], top: float) -> list[str]:
+    splits = sorted({step.split for step in ladder.steps})
     beyond = [short(name) for name, value in steps.items() if value > top]
     return [
         f"Runs of the {' and '.join(splits)} split." if splits else "",

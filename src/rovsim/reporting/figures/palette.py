@@ -10,6 +10,7 @@ from typing import Any, Iterable
 from matplotlib.colors import to_hex, to_rgb
 
 Dash = str | tuple[float, tuple[float, ...]]
+Style = dict[str, Any]  # keyword arguments of a Matplotlib artist
 
 
 @dataclass(frozen=True)
@@ -22,11 +23,11 @@ class Look:
 
     width: float = 0.9
 
-    def line(self) -> dict[str, Any]:
+    def line(self) -> Style:
         """Keyword arguments for a line."""
         return {"color": self.color, "linestyle": self.dash, "linewidth": self.width}
 
-    def bar(self) -> dict[str, Any]:
+    def bar(self) -> Style:
         """Keyword arguments for a bar; the hatch is white on the colour."""
         return {"facecolor": self.color, "edgecolor": "white", "linewidth": 0, "hatch": self.hatch}
 

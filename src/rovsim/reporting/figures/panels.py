@@ -7,10 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
-from rovsim.reporting.figures.marks import AXES, listed, nothing
+from rovsim import AXES
+from rovsim.reporting.figures.legends import nothing
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.series import broken, limits
 from rovsim.reporting.figures.style import sheet
+from rovsim.reporting.wording import listed
 
 
 def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, list[Axes]]:

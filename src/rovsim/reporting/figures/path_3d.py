@@ -9,10 +9,11 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.reporting.figures.marks import legend, lines, listed, note
+from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.series import broken, masked
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.wording import listed
 
 SECTION = "compare"
 CAPTION = (

@@ -1,16 +1,17 @@
 """The ranking: how much of the error each effect removes by itself, the selected ones marked."""
 
-from typing import Any, Mapping
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rovsim.reporting.figures.marks import legend, note, nothing, number, short
-from rovsim.reporting.figures.palette import FAMILIES
+from rovsim.reporting.figures.legends import legend, note, nothing
+from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.wording import short
+from rovsim.results.base import or_nan
+from rovsim.results.diagnosis import Diagnosis
 
 SECTION = "verdict"
 CAPTION = (
@@ -21,14 +22,14 @@ OTHER = "#BBBBBB"
 
 
 @styled()
-def draw(*, diagnosis: Mapping[str, Any]) -> Figure:
+def draw(*, diagnosis: Diagnosis) -> Figure:
     """Draw `ranking` and `selected` of `diagnosis.json`, a bar an effect, largest share first.
 
     A diamond is what a selected effect adds in the final model. One that the ranking does not list
     has no bar: others had to be there to bring it to light.
     """
-    alone = {r["effect"]: number(r["error_reduction"]) for r in diagnosis.get("ranking", [])}
-    chosen = {s["effect"]: number(s["error_reduction"]) for s in diagnosis.get("selected", [])}
+    alone = {one.effect: or_nan(one.error_reduction) for one in diagnosis.ranking}
+    chosen = {one.effect: or_nan(one.error_reduction) for one in diagnosis.selected}
     most = {name: np.nan_to_num([alone.get(name, 0.0), chosen.get(name, 0.0)]).max()
             for name in (*alone, *chosen)}  # fmt: skip
     names = sorted(most, key=lambda name: -most[name])
@@ -49,7 +50,7 @@ def draw(*, diagnosis: Mapping[str, Any]) -> Figure:
     if not names:
         nothing(axes, "no effect was judged")
     legend(figure, _handles(bool(chosen)) if names else [])
-    note(figure, _remarks(diagnosis, alone, chosen))
+    note(figure, _remarks(diagnosis))
     return figure
 
 
@@ -74,7 +75,12 @@ def _handles(chosen: bool) -> list[Line2D | Patch]:
     others = Patch(color=OTHER, linewidth=0, label="alone")
     if not chosen:
         return [others]
-    mark: dict[str, Any] = {"marker": "D", "color": "black", "markersize": 4, "linestyle": "none"}
+    mark: Style = {
+        "marker": "D",
+        "color": "black",
+        "markersize": 4,
+        "linestyle": "none",
+    }
     return [
         others,
         Patch(color=FAMILIES["effects"].color, linewidth=0, label="alone, selected"),
@@ -82,7 +88,8 @@ def _handles(chosen: bool) -> list[Line2D | Patch]:
     ]
 
 
-def _remarks(diagnosis: Mapping[str, Any], alone: Mapping, chosen: Mapping) -> list[str]:
-    if not alone:
-        return ["Too little was recorded to judge any effect."] if diagnosis else []
-    return ["Train runs, 2 s windows." if chosen else "Train runs, 2 s windows; none was selected."]
+def _remarks(diagnosis: Diagnosis) -> list[str]:
+    if not diagnosis.ranking:
+        return ["Too little was recorded to judge any effect."]
+    selected = "" if diagnosis.selected else "; none was selected"
+    return [f"Train runs, 2 s windows{selected}."]

@@ -19,9 +19,9 @@ from rovsim import AXES
 from rovsim.core.files import appearing
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.evaluation.error_conditions.bins import Table
-from rovsim.reporting.figures.marks import ACCELERATION_UNITS
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import MM, WIDTH, styled
+from rovsim.reporting.units import ACCELERATION_UNITS
 
 HEIGHT = 56.0  # mm
 PIXELS = 700

@@ -1,22 +1,18 @@
 """Error by condition: small multiples of the conditions that explain most, one row an axis."""
 
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rovsim.reporting.figures.marks import (
-    ACCELERATION_UNITS,
-    AXES,
-    legend,
-    lines,
-    note,
-    nothing,
-    short,
-)
+from rovsim import AXES
+from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import Look, looks
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.units import ACCELERATION_UNITS
+from rovsim.reporting.wording import short
+from rovsim.results.error_conditions import ConditionTable, ErrorConditions, ModelConditions
 
 SECTION = "where"
 CAPTION = (
@@ -29,18 +25,16 @@ SHOWN = 4  # models in one panel
 
 
 @styled()
-def draw(*, where: Mapping[str, Any]) -> Figure:
+def draw(*, where: ErrorConditions) -> Figure:
     """Draw `where.json`: for each axis the conditions that explain most of any model's error."""
-    models = dict(list(where.get("models", {}).items())[-SHOWN:])
+    models = dict(list(where.models.items())[-SHOWN:])
     style = looks(models)
     figure = sheet(222)
     rows = figure.subplots(len(AXES), COLUMNS, sharey="row")
     for k, (axis, panels) in enumerate(zip(AXES, rows, strict=True)):
-        tables = {name: m["axes"].get(axis, {}) for name, m in models.items()}
+        tables = {name: m.axes[axis] for name, m in models.items()}
         names = strongest(list(tables.values()))
-        known = {
-            f["condition"] for m in models.values() for f in m["findings"] if f["axis"] == axis
-        }
+        known = {f.condition for m in models.values() for f in m.findings if f.axis == axis}
         for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
             _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
             title = _title(name, [t[name] for t in tables.values() if name in t]) if name else ""
@@ -53,24 +47,24 @@ def draw(*, where: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def strongest(models: Sequence[Mapping[str, Any]], count: int = COLUMNS) -> list[str]:
+def strongest(models: Sequence[Mapping[str, ConditionTable]], count: int = COLUMNS) -> list[str]:
     """Names of the conditions with more than one bin that explain most, the best first."""
     known: dict[str, float] = {}
     for tables in models:
         for name, table in tables.items():
-            if len(table["mean"]) > 1:
-                known[name] = max(known.get(name, 0.0), table["share_of_error"])
+            if len(table.mean) > 1:
+                known[name] = max(known.get(name, 0.0), table.share_of_error)
     return sorted(known, key=lambda name: -known[name])[:count]
 
 
-def _title(name: str, tables: Sequence[Mapping[str, Any]]) -> str:
-    shares = ", ".join(f"{100 * t['share_of_error']:.0f}" for t in tables)
-    unit = "deg" if tables[0]["unit"] == "rad" else tables[0]["unit"]
+def _title(name: str, tables: Sequence[ConditionTable]) -> str:
+    shares = ", ".join(f"{100 * t.share_of_error:.0f}" for t in tables)
+    unit = "deg" if tables[0].unit == "rad" else tables[0].unit
     name = name.replace("distance to the nearest", "distance to")
     return f"{name} ({unit}): {shares} %"
 
 
-def _panel(axes: Axes, tables: Mapping[str, Any], style: Mapping[str, Look]) -> None:
+def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str, Look]) -> None:
     axes.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     if not tables:
         nothing(axes, "no values")
@@ -81,14 +75,14 @@ def _panel(axes: Axes, tables: Mapping[str, Any], style: Mapping[str, Look]) -> 
     for order, (name, table) in enumerate(tables.items()):
         _curve(axes, table, style[name], 2 + order)
     axes.locator_params(axis="x", nbins=5)
-    centers = _scaled(last, "center")[np.array(last["blocks"]) > 0]
+    centers = _scaled(last.center, last)[np.array(last.blocks) > 0]
     room = 0.08 * max(float(np.ptp(centers)), 1e-9)
     axes.set_xlim(float(centers.min()) - room, float(centers.max()) + room)
 
 
-def _curve(axes: Axes, table: Mapping[str, Any], look: Look, order: int) -> None:
-    x, mean, error, judged = _columns(table, "center", "mean", "std_error", "judged")
-    judged, there = judged.astype(bool), np.array(table["blocks"]) > 0
+def _curve(axes: Axes, table: ConditionTable, look: Look, order: int) -> None:
+    x, mean, error = _scaled(table.center, table), np.array(table.mean), np.array(table.std_error)
+    judged, there = np.array(table.judged, bool), np.array(table.blocks) > 0
     axes.plot(x[judged], mean[judged], zorder=order, **look.line())
     for part, face in ((judged, look.color), (there & ~judged, "white")):
         axes.errorbar(
@@ -98,9 +92,9 @@ def _curve(axes: Axes, table: Mapping[str, Any], look: Look, order: int) -> None
         )  # fmt: skip
 
 
-def _counts(axes: Axes, table: Mapping[str, Any]) -> None:
+def _counts(axes: Axes, table: ConditionTable) -> None:
     """How many blocks lie in each bin, as grey bars along the lower edge."""
-    count, edges = np.array(table["blocks"], float), _scaled(table, "edges")
+    count, edges = np.array(table.blocks, float), _scaled(table.edges, table)
     below = axes.twinx()
     below.set_zorder(axes.get_zorder() - 1)
     axes.patch.set_visible(False)
@@ -112,22 +106,16 @@ def _counts(axes: Axes, table: Mapping[str, Any]) -> None:
         spine.set_visible(False)
 
 
-def _columns(table: Mapping[str, Any], *names: str) -> list[np.ndarray]:
-    return [_scaled(table, name) for name in names]
+def _scaled(places: Sequence[float], table: ConditionTable) -> np.ndarray:
+    """Places along the condition, in degrees where it is an angle."""
+    return np.degrees(places) if table.unit == "rad" else np.array(places)
 
 
-def _scaled(table: Mapping[str, Any], name: str) -> np.ndarray:
-    """A column of a table; places along the condition in degrees where it is an angle."""
-    values = np.array(table[name], float)
-    along = name in ("center", "edges") and table["unit"] == "rad"
-    return np.degrees(values) if along else values
-
-
-def _remarks(models: Mapping[str, Any]) -> Sequence[str]:
+def _remarks(models: Mapping[str, ModelConditions]) -> Sequence[str]:
     if not models:
         return ["No model was searched."]
-    splits = {m["split"] for m in models.values()}
-    told = [f"{short(n)}: runs of the {m['split']} split" for n, m in models.items()]
+    splits = {m.split for m in models.values()}
+    told = [f"{short(n)}: runs of the {m.split} split" for n, m in models.items()]
     return [
         f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(told)}.",
         "Percent: share of the squared error that varies with the condition, model "

@@ -1,13 +1,14 @@
 """The whole search at a glance: share of the error each condition explains on each axis."""
 
-from typing import Any, Mapping
-
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from rovsim.reporting.figures.marks import AXES, note, nothing, short
+from rovsim import AXES
+from rovsim.reporting.figures.legends import note, nothing
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.wording import short
+from rovsim.results.error_conditions import ErrorConditions
 
 SECTION = "where"
 CAPTION = (
@@ -19,21 +20,20 @@ BLUES = LinearSegmentedColormap.from_list("shares", ["#ffffff", "#0072B2"])
 
 
 @styled()
-def draw(*, where: Mapping[str, Any]) -> Figure:
+def draw(*, where: ErrorConditions) -> Figure:
     """Draw `share_of_error` of the last model of `where.json`; framed where it is a finding."""
-    models = where.get("models", {})
-    name, model = list(models.items())[-1] if models else ("", {"axes": {}, "findings": []})
-    tables = model["axes"]
+    name, model = list(where.models.items())[-1] if where.models else ("", None)
+    tables = model.axes if model else {}
     rows = list(next((t for t in tables.values() if t), {}))
     figure = sheet(30 + 4.6 * max(len(rows), 5))
     axes = figure.subplots()
     axes.grid(False)
-    if not rows:
+    if model is None or not rows:
         nothing(axes, "nothing was searched")
         return figure
-    shares = np.array([[tables[a].get(r, {}).get("share_of_error", 0) for a in AXES] for r in rows])
+    shares = np.array([[tables[a][r].share_of_error for a in AXES] for r in rows])
     axes.imshow(shares, cmap=BLUES, vmin=0, vmax=1, aspect="auto")
-    found = {(f["axis"], f["condition"]) for f in model["findings"]}
+    found = {(f.axis, f.condition) for f in model.findings}
     for y, row in enumerate(rows):
         for x, axis in enumerate(AXES):
             _cell(axes, x, y, float(shares[y, x]), (axis, row) in found)
@@ -42,7 +42,7 @@ def draw(*, where: Mapping[str, Any]) -> Figure:
     axes.set_yticks(range(len(rows)), rows)
     axes.tick_params(length=0)
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    note(figure, [f"Model {short(name)}, runs of the {model['split']} split."])
+    note(figure, [f"Model {short(name)}, runs of the {model.split} split."])
     return figure
 
 

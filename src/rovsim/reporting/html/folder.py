@@ -1,14 +1,14 @@
 """A command's results for the eye: figures as files, and all of them on one page."""
 
 from pathlib import Path
-from typing import Any, Iterable, Mapping
+from typing import Iterable, Mapping
 
 from rovsim.core.progress import counted
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
-from rovsim.reporting.html import page
-from rovsim.reporting.report_data import Evidence, about, arguments
+from rovsim.reporting.html import report
+from rovsim.reporting.report_data import ReportData, describe, select_arguments
 
 Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once
 
@@ -16,24 +16,22 @@ Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn on
 def present(
     out: Path,
     campaign: str,
-    evidence: Evidence,
+    data: ReportData,
     wanted: Iterable[Wanted],
-    provenance: Mapping[str, Any],
+    provenance: Mapping[str, object],
     catalogue: Mapping[str, type[Effect]],
 ) -> list[Path]:
     """Draw figures into `out`/figures and write `out`/report.html; returns all that was written."""
-    drawn = [_drawn(out, *one, evidence) for one in counted(list(wanted), "drawing")]
-    inputs = page.ReportInputs(
-        campaign, evidence.comparison, evidence.ladder, evidence.timing, evidence.quality,
-        [picture for picture, _ in drawn], provenance, evidence.where, evidence.diagnosis,
-        catalogue=catalogue,
-    )  # fmt: skip
-    page.write(out / "report.html", inputs)
+    drawn = [_draw(out, *one, data) for one in counted(list(wanted), "drawing")]
+    pictures = [picture for picture, _ in drawn]
+    report.write(
+        out / "report.html", report.Report(campaign, data, pictures, provenance, catalogue)
+    )
     return [out / "report.html", *(path for _, paths in drawn for path in paths)]
 
 
-def _drawn(out: Path, figure: str, run: str, evidence: Evidence) -> tuple[page.Picture, list[Path]]:
-    content = kind(figure).draw(**arguments(figure, evidence, run, list(evidence.replays)))
-    paths = save(content, out / "figures", f"{figure}-{run}" if run else figure)
+def _draw(out: Path, figure: str, run: str, data: ReportData) -> tuple[report.Picture, list[Path]]:
+    drawn = kind(figure).draw(**select_arguments(figure, data, run, list(data.replays)))
+    paths = save(drawn, out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
-    return page.Picture.read(png, figure, about(figure, run, evidence)), paths
+    return report.Picture.read(png, figure, describe(figure, run, data)), paths

@@ -6,55 +6,61 @@ python -m rovsim.reporting.html.leave_one_run_out results/kth_tank_2025 docs/the
 import argparse
 import sys
 from pathlib import Path
-from typing import Any, Iterator, Mapping, Sequence
+from typing import Iterator, Mapping, Sequence
 
 from rovsim.core.errors import RovsimError
-from rovsim.core.files import read_json
 from rovsim.reporting.html.marked import replace_tables, table
-from rovsim.reporting.html.published_errors import repeated, text
+from rovsim.reporting.html.published_errors import tell_pitfalls, write_markdown
 from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.html.verdict import interval
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.pitfalls import Pitfalls
+from rovsim.results.published_errors import PublishedErrors
+from rovsim.results.timing import Timing
 
 
-def found(diagnoses: Mapping[str, Mapping[str, Any]]) -> str:
+def tabulate_selected(diagnoses: Mapping[str, Diagnosis]) -> str:
     """What the diagnosis chose while each run was held out: a row a parameter, a column a run."""
-    values = {run: dict(_values(content)) for run, content in diagnoses.items()}
+    values = {run: dict(_values(one)) for run, one in diagnoses.items()}
     names = dict.fromkeys(name for own in values.values() for name in own)
     rows = [[name, *(own.get(name, "–") for own in values.values())] for name in names]
     return table(["parameter", *(f"without {run}" for run in values)], rows)
 
 
-def _values(diagnosis: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    for one in diagnosis["selected"]:
-        for name, value in one["parameters"].items():
-            yield f"{one['effect']} {name}", interval(value)
+def _values(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
+    for one in diagnosis.selected:
+        for name, value in one.parameters.items():
+            yield f"{one.effect} {name}", interval(value)
 
 
-def together(diagnoses: Mapping[str, Mapping[str, Any]]) -> str:
+def tabulate_together(diagnoses: Mapping[str, Diagnosis]) -> str:
     """What the runs fixed only jointly in half of the folds or more, the most frequent first."""
-    groups = [tuple(g) for one in diagnoses.values() for g in one.get("known_together", [])]
+    groups = [group for one in diagnoses.values() for group in one.known_together]
     seen = {group: n for group in groups if 2 * (n := groups.count(group)) >= len(diagnoses)}
     often = sorted(seen, key=lambda group: (-seen[group], group))
     rows = [[", ".join(group), f"{seen[group]} of {len(diagnoses)}"] for group in often]
     return table(["known only together", "folds"], rows)
 
 
-def page(results: Path) -> str:
+def describe_folds(results: Path) -> str:
     """Markdown of all that was found."""
-    published_errors = read_json(results / "published_errors.json")
-    runs = published_errors["runs"]
-    diagnoses = {run: read_json(results / f"folds/{run}/diagnosis.json") for run in runs}
+    published_errors = PublishedErrors.read(results / "published_errors.json")
+    diagnoses = {
+        run: Diagnosis.read(results / f"folds/{run}/diagnosis.json")
+        for run in published_errors.runs
+    }
     parts = [
-        *text(published_errors),
+        *write_markdown(published_errors),
         "### What was found while each run was held out",
-        found(diagnoses),
-        together(diagnoses),
+        tabulate_selected(diagnoses),
+        tabulate_together(diagnoses),
         "### Time of a prediction",
-        *timing_sentences(read_json(results / "timing.json")),
+        *timing_sentences(Timing.read(results / "timing.json")),
     ]
     pitfalls = results / "pitfalls.json"
     if pitfalls.exists():
-        parts += ["### The public code's pitfalls, repeated", *repeated(read_json(pitfalls))]
+        told = tell_pitfalls(Pitfalls.read(pitfalls))
+        parts += ["### The public code's pitfalls, repeated", *told]
     return "\n\n".join(parts)
 
 
@@ -64,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("results", type=Path)
     parser.add_argument("page", type=Path)
     given = parser.parse_args(arguments)
-    replace_tables(given.page, page(given.results))
+    replace_tables(given.page, describe_folds(given.results))
 
 
 if __name__ == "__main__":

@@ -1,78 +1,78 @@
 """`published_errors.json`, `pitfalls.json` in words and tables: for the report, docs/thesis.md."""
 
-from typing import Any, Mapping
+from typing import Mapping
 
 from rovsim.evaluation.held_out.pitfalls import PITFALLS
 from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED
-from rovsim.evaluation.ladder import EFFECTS
-from rovsim.reporting.figures.marks import significant
 from rovsim.reporting.html.marked import table
 from rovsim.reporting.tables import QUANTITIES
+from rovsim.reporting.wording import significant
+from rovsim.results.ladder import EFFECTS
+from rovsim.results.pitfalls import Cost, Pitfalls
+from rovsim.results.published_errors import ModelStanding, PublishedErrors
 
 
-def said(published_errors: Mapping[str, Any]) -> list[str]:
+def tell_standings(published_errors: PublishedErrors) -> list[str]:
     """One sentence for each residual on top of effects: how many cells, how far, which not."""
-    models = published_errors.get("models", {})
+    models = published_errors.models
     return [_sentence(n, found) for n, found in models.items() if n.startswith(f"{EFFECTS}+")]
 
 
-def _sentence(name: str, found: Mapping[str, Any]) -> str:
+def _sentence(name: str, found: ModelStanding) -> str:
     missed = ", ".join(
-        f"{c['run']} {c['axis']} {QUANTITIES[c['metric']][0]} ({_number(c['ratio'])})"
-        for c in found["not_below"]
+        f"{c.run} {c.axis} {QUANTITIES[c.metric][0]} ({_number(c.ratio)})" for c in found.not_below
     )
     return (
-        f"{name}: {found['below']} of {found['cells']} cells below the mark, geometric mean of the "
-        f"ratios {_number(found['geometric_mean'])}. " + (f"Not below: {missed}." if missed else "")
+        f"{name}: {found.below} of {found.cells} cells below the mark, geometric mean of the "
+        f"ratios {_number(found.geometric_mean)}. " + (f"Not below: {missed}." if missed else "")
     ).strip()
 
 
-def repeated(pitfalls: Mapping[str, Any]) -> list[str]:
+def tell_pitfalls(pitfalls: Pitfalls) -> list[str]:
     """One sentence for each mistake: what was done, and what it cost on each run."""
-    runs = pitfalls.get("runs", {})
     return [
         f"{name[0].upper()}{name[1:]}: {done}. {measure[0].upper()}{measure[1:]}: {costs}."
         for name, (done, measure) in PITFALLS.items()
-        if (costs := _costs(runs, name))
+        if (costs := _costs(pitfalls.runs, name))
     ]
 
 
-def _costs(runs: Mapping[str, Any], name: str) -> str:
+def _costs(runs: Mapping[str, Mapping[str, Cost]], name: str) -> str:
     return ", ".join(
-        f"{_number(found[name]['right'])} becomes {_number(found[name]['wrong'])} ({run})"
+        f"{_number(found[name].right)} becomes {_number(found[name].wrong)} ({run})"
         for run, found in runs.items()
         if name in found
     )
 
 
-def text(published_errors: Mapping[str, Any]) -> list[str]:
+def write_markdown(published_errors: PublishedErrors) -> list[str]:
     """Paragraphs of Markdown of `published_errors.json`."""
-    lacking = published_errors["without_published"]
-    parts = [*said(published_errors), _standings(published_errors)]
+    lacking = published_errors.without_published
+    parts = [*tell_standings(published_errors), _standings(published_errors)]
     parts += [part for metric in METRICS for part in _cells(published_errors, metric)]
     return parts + ([f"Nothing is published for {', '.join(lacking)}."] if lacking else [])
 
 
-def _standings(published_errors: Mapping[str, Any]) -> str:
+def _standings(published_errors: PublishedErrors) -> str:
     head = ["model", "below the mark", "geometric mean of the ratios",
             *(QUANTITIES[metric][0] for metric in METRICS)]  # fmt: skip
     rows = [
-        [name, f"{found['below']} of {found['cells']}", _number(found["geometric_mean"]),
-         *(_number(found["by_metric"][m]["geometric_mean"]) for m in METRICS)]
-        for name, found in published_errors["models"].items()
+        [name, f"{found.below} of {found.cells}", _number(found.geometric_mean),
+         *(_number(found.by_metric[m].geometric_mean) for m in METRICS)]
+        for name, found in published_errors.models.items()
     ]  # fmt: skip
     return table(head, rows)
 
 
-def _cells(published_errors: Mapping[str, Any], metric: str) -> list[str]:
+def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
     """Heading and table of one metric: the mark, whose it is, and the ratios of our models."""
     heading, units = QUANTITIES[metric]
-    ours = [name for name in published_errors["models"] if not name.startswith(PUBLISHED)]
+    ours = [name for name in published_errors.models if not name.startswith(PUBLISHED)]
     rows = [
-        [cell["run"], cell["axis"] if cell["demanded"] else f"({cell['axis']})",
-         significant(cell["mark"]), f"{cell['best']['model']}, {cell['best']['variant']}",
-         *(_number(cell["ratios"].get(name)) for name in ours)]
-        for cell in published_errors["cells"] if cell["metric"] == metric
+        [cell.run, cell.axis if cell.demanded else f"({cell.axis})",
+         significant(cell.mark), f"{cell.best.model}, {cell.best.variant}",
+         *(_number(cell.ratios.get(name)) for name in ours)]
+        for cell in published_errors.cells if cell.metric == metric
     ]  # fmt: skip
     extra = "" if metric in COUNTED else ", not counted above"
     units_text = " and ".join(dict.fromkeys(units))

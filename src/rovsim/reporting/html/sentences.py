@@ -1,101 +1,100 @@
 """The report's summary in plain language. A sentence says only what its numbers show."""
 
 import math
-from typing import Any, Mapping
+from typing import Mapping
 
 import numpy as np
-from numpy import ndarray as Array
+from pandas import DataFrame, Series
 
-from rovsim.reporting.figures.marks import AXES, VELOCITY_UNITS, listed, number, significant
+from rovsim import AXES
 from rovsim.reporting.figures.palette import RESIDUALS, family
-from rovsim.reporting.figures.pooled import pooled, relative
+from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.html.speed import timing_sentences
+from rovsim.reporting.report_data import ReportData
+from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.reporting.wording import listed, significant
+from rovsim.results.ladder import NOISE_FLOOR, Ladder
+from rovsim.results.quality import Quality
 
 EQUAL = 0.01  # share: a smaller change is called none
 REACHED = 0.05  # the noise floor is an estimate itself
 
 
-def summary(
-    comparison: Mapping[str, Any],
-    ladder: Mapping[str, Any],
-    timing: Mapping[str, Any],
-    quality: Mapping[str, Mapping[str, Any]],
-) -> list[str]:
-    """Return the summary, one string per paragraph."""
-    errors = pooled(comparison, "velocity_rmse", "2", "test")
+def summarize(data: ReportData) -> list[str]:
+    """Return the summary, one string per paragraph; nothing without a comparison."""
+    if data.comparison is None:
+        return []
+    errors = pool(data.comparison, "velocity_rmse", "2", "test")
+    steps = scores(data.ladder) if data.ladder else {}
     paragraphs = [
-        runs_sentences(quality),
-        nominal_sentences(errors) + quiet_sentences(quality),
-        residual_sentences(errors, scores(ladder)),
-        ladder_sentences(scores(ladder)),
-        timing_sentences(timing),
+        runs_sentences(data.quality),
+        nominal_sentences(errors) + quiet_sentences(data.quality),
+        residual_sentences(errors, steps),
+        ladder_sentences(steps),
+        timing_sentences(data.timing) if data.timing else [],
     ]
     return [" ".join(sentences) for sentences in paragraphs if sentences]
 
 
-def scores(ladder: Mapping[str, Any]) -> dict[str, float]:
+def scores(ladder: Ladder) -> dict[str, float]:
     """Return {step: windows_2s}, steps without a number left out."""
-    steps = {s["model"]: number(s.get("windows_2s")) for s in ladder.get("steps", [])}
-    return {name: value for name, value in steps.items() if math.isfinite(value)}
+    return {step.model: step.windows_2s for step in ladder.steps if step.windows_2s is not None}
 
 
-def runs_sentences(quality: Mapping[str, Mapping[str, Any]]) -> list[str]:
+def runs_sentences(quality: Mapping[str, Quality]) -> list[str]:
     """Say how many runs there are and which cannot be used."""
     if not quality:
         return []
-    held = [run for run, report in quality.items() if report.get("split") == "test"]
-    unusable = {run: r["unusable"] for run, r in quality.items() if r.get("unusable")}
+    held = [run for run, report in quality.items() if report.split == "test"]
+    unusable = {run: r.unusable for run, r in quality.items() if r.unusable}
     text = (
         f"The campaign has {_count(len(quality), 'run')}, {len(held)} of them held out for tests."
     )
     return [text, *(f"Run {run} is not used: {why}." for run, why in unusable.items())]
 
 
-def nominal_sentences(errors: Mapping[str, Array]) -> list[str]:
+def nominal_sentences(errors: DataFrame) -> list[str]:
     """Say how far the nominal model is from the measurement, and whether it beats doing nothing."""
-    row = errors.get("nominal")
-    if row is None or not np.isfinite(row).any():
+    row = errors.reindex(["nominal"]).loc["nominal"]
+    if row.isna().all():
         return ["The nominal model has no result on the test runs."]
     parts = [
         f"{significant(value, 2)} {unit} in {axis}"
         for axis, unit, value in zip(AXES, VELOCITY_UNITS, row, strict=True)
         if np.isfinite(value)
     ]
-    missing = [axis for axis, value in zip(AXES, row, strict=True) if not np.isfinite(value)]
+    missing = row.index[row.isna()]
     return [
         "On the test runs, set to the measured state every 2 s, the nominal model misses the "
         f"measured velocity by {listed(parts)} (root mean square).",
-        *([f"It has no value in {listed(missing)}."] if missing else []),
+        *([f"It has no value in {listed(missing)}."] if len(missing) else []),
         *_against_nothing(errors),
     ]
 
 
-def _against_nothing(errors: Mapping[str, Array]) -> list[str]:
-    if "zero_acceleration" not in errors:
+def _against_nothing(errors: DataFrame) -> list[str]:
+    ratio = relate(errors, "zero_acceleration").loc["nominal"]
+    if ratio.isna().all():
         return []
-    ratio = relative(errors, "zero_acceleration")["nominal"]
-    if not np.isfinite(ratio).any():
-        return []
-    beaten = [axis for axis, r in zip(AXES, ratio, strict=True) if r >= 1 - EQUAL]
-    if beaten:
+    beaten = ratio.index[ratio >= 1 - EQUAL]
+    if len(beaten):
         return [f"In {listed(beaten)} it is no better than assuming that the velocity is kept."]
-    where = "every axis" if np.isfinite(ratio).all() else "every axis with a value"
+    where = "every axis with a value" if ratio.isna().any() else "every axis"
     return [f"On {where} it is closer than assuming that the vehicle keeps its velocity."]
 
 
-def quiet_sentences(quality: Mapping[str, Mapping[str, Any]]) -> list[str]:
+def quiet_sentences(quality: Mapping[str, Quality]) -> list[str]:
     """Name the axes that hardly moved on any test run: nothing can be judged there."""
-    tests = [r.get("excitation") or {} for r in quality.values() if r.get("split") == "test"]
-    judged = [axis for axis in AXES if any(axis in e for e in tests)]
-    quiet = [a for a in judged if not any(e.get(a, {}).get("excited") for e in tests)]
-    if not quiet:
+    tests = [report.excitation for report in quality.values() if report.split == "test"]
+    quiet = [axis for axis in AXES if not any(one[axis].excited for one in tests)]
+    if not quiet or not tests:
         return []
     return [f"The test runs hardly move in {listed(quiet)}: errors there say little about a model."]
 
 
-def residual_sentences(errors: Mapping[str, Array], steps: Mapping[str, float]) -> list[str]:
+def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[str]:
     """Say which learned residual lowers the nominal error most, where, and where it does not."""
-    if not any(family(name) in RESIDUALS for name in (*errors, *steps)):
+    if not any(family(name) in RESIDUALS for name in (*errors.index, *steps)):
         return []
     ratios, measure = _overall(errors, steps)
     learned = {n: r for n, r in ratios.items() if family(n) in RESIDUALS and math.isfinite(r)}
@@ -104,25 +103,22 @@ def residual_sentences(errors: Mapping[str, Array], steps: Mapping[str, float]) 
     best = min(learned, key=lambda name: learned[name])
     return [
         _best_sentence(best, learned[best], len(learned), measure),
-        *_per_axis(best, relative(errors).get(best)),
+        *_per_axis(best, relate(errors).reindex([best]).loc[best]),
         *_others(learned, best),
     ]
 
 
-def _overall(
-    errors: Mapping[str, Array], steps: Mapping[str, float]
-) -> tuple[dict[str, float], str]:
+def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, float], str]:
     """One error per model, relative to nominal, and what it measures."""
     if steps.get("nominal") and any(family(name) in RESIDUALS for name in steps):
         ratios = {name: value / steps["nominal"] for name, value in steps.items()}
         return ratios, "the velocity error of 2 s windows, averaged over the excited axes"
-    rows = relative(errors)
-    counted = np.isfinite(rows.get("nominal", np.full(len(AXES), np.nan)))
+    rows = relate(errors)
+    counted = rows.reindex(["nominal"]).loc["nominal"].notna()
     if not counted.any():
         return {}, ""
-    ratios = {name: float(np.mean(row[counted])) for name, row in rows.items()}
     return (
-        ratios,
+        rows.loc[:, counted].mean(axis=1, skipna=False).to_dict(),
         "the velocity error of 2 s windows, relative to nominal and averaged over the axes",
     )
 
@@ -144,13 +140,12 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
     return f"None of the {count} learned residuals helps; the best, {best}, {change} ({measure})."
 
 
-def _per_axis(best: str, row: Array | None) -> list[str]:
-    if row is None or not np.isfinite(row).any():
+def _per_axis(best: str, row: Series) -> list[str]:
+    if row.isna().all():
         return []
-    axes = dict(zip(AXES, (float(r) for r in row), strict=True))
-    lower = [f"{a} (−{_percent(1 - r)})" for a, r in axes.items() if r < 1 - EQUAL]
-    same = [a for a, r in axes.items() if abs(r - 1) <= EQUAL]
-    worse = [f"{a} (+{_percent(r - 1)})" for a, r in axes.items() if r > 1 + EQUAL]
+    lower = [f"{a} (−{_percent(1 - r)})" for a, r in row.items() if r < 1 - EQUAL]
+    same = [a for a, r in row.items() if abs(r - 1) <= EQUAL]
+    worse = [f"{a} (+{_percent(r - 1)})" for a, r in row.items() if r > 1 + EQUAL]
     groups = (("lower in", lower), ("the same in", same), ("higher in", worse))
     parts = [f"{what} {listed(where)}" for what, where in groups if where]
     return [f"Axis by axis its velocity RMSE is {'; '.join(parts)}."]
@@ -167,7 +162,7 @@ def _others(learned: Mapping[str, float], best: str) -> list[str]:
 
 def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
     """Say how far the best step has come and how far the noise floor is."""
-    models = {name: value for name, value in steps.items() if name != "noise_floor"}
+    models = {name: value for name, value in steps.items() if name != NOISE_FLOOR}
     if len(models) < 2:
         return []
     best = min(models, key=lambda name: models[name])
@@ -175,7 +170,7 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
     others = [f"{n} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
               if n in models and n != best]  # fmt: skip
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]
-    floor = steps.get("noise_floor", 0.0)
+    floor = steps.get(NOISE_FLOOR, 0.0)
     if floor > 0:
         sentences.append(_floor_sentence(models[best] / floor, floor))
     return sentences

@@ -1,17 +1,15 @@
 """What the timing says about control loops, in plain language."""
 
-import math
-from typing import Any, Mapping
+from typing import Mapping
 
-from rovsim.reporting.figures.inference_time import RATES
-from rovsim.reporting.figures.marks import listed, number, significant
+from rovsim.reporting.wording import listed, significant
+from rovsim.results.timing import RATES, Latency, Timing
 
 
-def timing_sentences(timing: Mapping[str, Any]) -> list[str]:
+def timing_sentences(timing: Timing) -> list[str]:
     """Say which exported predictors keep which deadlines, and how the libraries compare."""
-    inference = timing.get("inference", {})
-    exported = {name: ways["exported"] for name, ways in inference.items() if ways.get("exported")}
-    library = {name: ways["library"] for name, ways in inference.items() if ways.get("library")}
+    exported = {name: both.exported for name, both in timing.inference.items()}
+    library = {name: both.library for name, both in timing.inference.items()}
     return [
         *_range("exported predictors", exported),
         *_deadlines("exported predictors", exported),
@@ -20,16 +18,13 @@ def timing_sentences(timing: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def fastest_loop(stats: Mapping[str, Any]) -> int | None:
-    """Highest rate in Hz whose period no call exceeded, 0 when none, None when not counted."""
-    misses = stats.get("misses")
-    if not misses:
-        return None
-    return max((rate for rate in RATES if misses.get(str(rate)) == 0), default=0)
+def fastest_loop(stats: Latency) -> int:
+    """Highest rate in Hz whose period no call exceeded, 0 when none."""
+    return max((rate for rate in RATES if stats.misses[str(rate)] == 0), default=0)
 
 
-def _range(what: str, entries: Mapping[str, Any]) -> list[str]:
-    medians = [m for m in (number(s.get("median_us")) for s in entries.values()) if m > 0]
+def _range(what: str, entries: Mapping[str, Latency]) -> list[str]:
+    medians = [stats.median_us for stats in entries.values()]
     if not medians:
         return []
     low, high = significant(min(medians), 2), significant(max(medians), 2)
@@ -37,15 +32,14 @@ def _range(what: str, entries: Mapping[str, Any]) -> list[str]:
     return [f"One prediction by the {what} takes {span} (median)."]
 
 
-def _deadlines(what: str, entries: Mapping[str, Any]) -> list[str]:
+def _deadlines(what: str, entries: Mapping[str, Latency]) -> list[str]:
     loops = {name: fastest_loop(stats) for name, stats in entries.items()}
-    counted = {name: rate for name, rate in loops.items() if rate is not None}
-    if not counted:
+    if not loops:
         return []
-    every = f"Of the {what}, " if len(set(counted.values())) > 1 else f"All {what}: "
+    every = f"Of the {what}, " if len(set(loops.values())) > 1 else f"All {what}: "
     groups = [
-        f"{_promise(rate)}{_names(counted, rate)}"
-        for rate in sorted(set(counted.values()), reverse=True)
+        f"{_promise(rate)}{_names(loops, rate)}"
+        for rate in sorted(set(loops.values()), reverse=True)
     ]
     return [f"{every}{'; '.join(groups)}."]
 
@@ -61,13 +55,8 @@ def _names(counted: Mapping[str, int], rate: int) -> str:
     return f" ({listed(names)})"
 
 
-def _against(exported: Mapping[str, Any], library: Mapping[str, Any]) -> list[str]:
-    ratios = [
-        number(library[name].get("median_us")) / number(exported[name].get("median_us"))
-        for name in exported
-        if name in library and number(exported[name].get("median_us")) > 0
-    ]
-    ratios = [r for r in ratios if math.isfinite(r)]
+def _against(exported: Mapping[str, Latency], library: Mapping[str, Latency]) -> list[str]:
+    ratios = [library[name].median_us / exported[name].median_us for name in exported]
     if not ratios:
         return []
     low, high = significant(min(ratios), 2), significant(max(ratios), 2)

@@ -3,10 +3,18 @@
 import math
 import re
 from dataclasses import dataclass
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.figures.marks import listed, number, significant
+from rovsim.reporting.wording import listed, significant
+from rovsim.results.base import or_nan
+from rovsim.results.diagnosis import (
+    Diagnosis,
+    DiagnosisErrors,
+    FittedEffect,
+    FittedValue,
+    RivalEffect,
+)
 
 VERDICTS = {
     "missing_effects": "The model lacks physics that the catalogue knows.",
@@ -44,37 +52,36 @@ class Verdict:
     next: str
 
 
-def verdict(found: Mapping[str, Any], catalogue: Mapping[str, type[Effect]]) -> Verdict:
-    """`diagnosis.json` in words; the catalogue says what its effects are."""
+def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
+    """A diagnosis in words; the catalogue says what its effects are."""
     remarks = [
-        error_sentence(found["error"], bool(found["selected"])),
+        error_sentence(found.error, bool(found.selected)),
         *apart_sentences(found),
         *unexplained_sentences(found),
-        *still_sentences(found.get("not_excited", [])),
+        *still_sentences(found.not_excited),
     ]
-    missing = tuple(_missing(one, catalogue.get(one["effect"])) for one in found["selected"])
+    missing = tuple(_missing(one, catalogue.get(one.effect)) for one in found.selected)
     return Verdict(
-        found["verdict"], VERDICTS[found["verdict"]], missing, tuple(remarks),
-        found["next_experiment"] or "",
-    )  # fmt: skip
+        found.verdict, VERDICTS[found.verdict], missing, tuple(remarks), found.next_experiment
+    )
 
 
-def _missing(one: Mapping[str, Any], known: type[Effect] | None) -> Missing:
+def _missing(one: FittedEffect, known: type[Effect] | None) -> Missing:
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
     equation, cause = (known.equation, known.cause) if known else ("", "")
-    values = tuple(f"{name} {interval(v)}" for name, v in one["parameters"].items())
-    worth = f"removes {percent(one['error_reduction'])} of the error, {_sure(one['probability'])}"
-    return Missing(one["effect"], meaning, values, worth, equation, cause)
+    values = tuple(f"{name} {interval(v)}" for name, v in one.parameters.items())
+    worth = f"removes {percent(one.error_reduction)} of the error, {_sure(one.probability)}"
+    return Missing(one.effect, meaning, values, worth, equation, cause)
 
 
-def interval(value: Mapping[str, Any]) -> str:
+def interval(value: FittedValue) -> str:
     """A fitted value with its 95 % interval and unit: 0.181 ± 0.002 s."""
-    unit = "" if value["unit"] == "1" else re.sub(r"(?<=[a-z])2", "²", value["unit"])
-    half = INTERVAL * number(value.get("std"))
+    unit = "" if value.unit in (None, "1") else re.sub(r"(?<=[a-z])2", "²", value.unit)
+    half = INTERVAL * or_nan(value.std)
     if not math.isfinite(half) or half <= 0.0:
-        return f"{significant(number(value['value']), 4)} {unit}".strip()
+        return f"{significant(or_nan(value.value), 4)} {unit}".strip()
     places = max(0, 1 - math.floor(math.log10(half)))
-    return f"{number(value['value']):.{places}f} ± {half:.{places}f} {unit}".strip()
+    return f"{or_nan(value.value):.{places}f} ± {half:.{places}f} {unit}".strip()
 
 
 def percent(share: float | None) -> str:
@@ -83,15 +90,13 @@ def percent(share: float | None) -> str:
 
 
 def _sure(probability: float | None) -> str:
-    p = number(probability)
+    p = or_nan(probability)
     return "probability above 0.999" if p > 0.999 else f"probability {p:.3f}"
 
 
-def error_sentence(error: Mapping[str, float | None], changed: bool) -> str:
+def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
     """The error on the test runs before and after, and what a perfect model would show."""
-    before, after, floor = (
-        number(error.get(k)) for k in ("nominal", "with_effects", "noise_floor")
-    )
+    before, after, floor = map(or_nan, (error.nominal, error.with_effects, error.noise_floor))
     if not math.isfinite(before):
         return "No test run could be used, so there is no error to report."
     now = f"falls from {significant(before)} to {significant(after)}"
@@ -102,34 +107,34 @@ def error_sentence(error: Mapping[str, float | None], changed: bool) -> str:
     return f"{text} A perfect model would show about {significant(floor)} (noise floor)."
 
 
-def apart_sentences(found: Mapping[str, Any]) -> list[str]:
+def apart_sentences(found: Diagnosis) -> list[str]:
     """Which effects the runs cannot tell apart, and how far behind the next names are."""
-    alike = found["indistinguishable"]
+    alike = found.indistinguishable
     sentences = [f"These runs cannot tell {listed(group)} apart." for group in alike]
     sentences += [
         f"Known only together, not one by one: {', '.join(group)}."
-        for group in found.get("known_together", [])
+        for group in found.known_together
     ]
-    for one in found["selected"]:
-        rivals = [r for r in found.get("rivals", []) if r["instead_of"] == one["effect"]]
-        taken = {name for group in alike if one["effect"] in group for name in group}
-        behind = [r for r in rivals if r["effect"] not in taken]
+    for one in found.selected:
+        rivals = [r for r in found.rivals if r.instead_of == one.effect]
+        taken = {name for group in alike if one.effect in group for name in group}
+        behind = [r for r in rivals if r.effect not in taken]
         if behind:
-            sentences.append(_runner_up(min(behind, key=lambda r: r["deficit"])))
+            sentences.append(_runner_up(min(behind, key=lambda r: or_nan(r.deficit))))
     return sentences
 
 
-def _runner_up(rival: Mapping[str, Any]) -> str:
-    odds = math.exp(min(0.5 * rival["deficit"], 700.0))
+def _runner_up(rival: RivalEffect) -> str:
+    odds = math.exp(min(0.5 * or_nan(rival.deficit), 700.0))
     times = "more than a million" if odds > MANY else f"{significant(odds, 2)}"
-    name, instead = rival["effect"], rival["instead_of"]
+    name, instead = rival.effect, rival.instead_of
     return f"The runner-up for {instead} is {name}, {times} times less likely."
 
 
-def unexplained_sentences(found: Mapping[str, Any]) -> list[str]:
+def unexplained_sentences(found: Diagnosis) -> list[str]:
     """What no effect of the catalogue explains."""
-    left = found["unexplained"]
-    return [f"Unexplained: {left['hint']}"] if left["significant"] else []
+    left = found.unexplained
+    return [f"Unexplained: {left.hint}"] if left.significant else []
 
 
 def still_sentences(axes: Sequence[str]) -> list[str]:

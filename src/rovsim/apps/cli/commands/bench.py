@@ -9,7 +9,6 @@ rovsim[benchmark].
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 
@@ -17,19 +16,19 @@ from rovsim.application.pipeline.recordings import measure
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.settings import BenchSettings, CommandSettings
 from rovsim.apps.cli.output import say
-from rovsim.benchmarks.speed.accuracy import accuracy
+from rovsim.benchmarks.speed.accuracy import measure_accuracy
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import GP, Effort, inference
 from rovsim.benchmarks.speed.machine import machine
-from rovsim.benchmarks.speed.page import write_page
 from rovsim.benchmarks.speed.replay import replay_speeds
+from rovsim.benchmarks.speed.tables import write_page
 from rovsim.core.extras import require
-from rovsim.core.files import write_json
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
+from rovsim.results.timing import Bench
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
@@ -53,15 +52,20 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     gp = fitted("gp", pairs.first(2_000), max_points=2_000, **GP)
     knn = fitted("knn", large.first(2_235), features=LARGE)  # the thesis' size
     residuals = {"knn": knn, "gp": unfading(gp), "gp_faded": gp}
-    content: dict[str, Any] = {"schema": "rovsim.bench/1", "machine": machine()}
-    content["replay"] = replay_speeds(model, residuals)
     effort = Effort(how.calls, how.warmup, how.seconds)
-    content["inference"], content["scheduling"] = inference(pairs, effort, how.sweep_seconds)
-    content["accuracy"] = accuracy(pairs)
+    speeds = replay_speeds(model, residuals)
+    timed, scheduling = inference(pairs, effort, how.sweep_seconds)
+    bench = Bench(
+        machine=machine(),
+        replay=speeds,
+        inference=timed,
+        scheduling=scheduling,
+        accuracy=measure_accuracy(pairs),
+    )
     path = Path(settings.out or "results") / "bench.json"
-    write_json(path, content)
-    write_page(Path(how.page), content)
-    say(settings, str(path), content)
+    bench.write(path)
+    write_page(Path(how.page), bench)
+    say(settings, str(path), bench.to_json())
 
 
 def _samples(settings: Settings, catalogue: Catalogue) -> tuple[Model, dict[str, list]]:

@@ -9,22 +9,19 @@ beside this project's own need the extra rovsim[benchmark].
 """
 
 from pathlib import Path
-from typing import Any
 
 from rovsim.application.settings import BlindSettings, CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.blind.methods import chosen
-from rovsim.benchmarks.blind.page import tables
-from rovsim.benchmarks.blind.run import answers
+from rovsim.benchmarks.blind.run import read_answers
 from rovsim.benchmarks.blind.run import run as run_cases
 from rovsim.benchmarks.blind.suites import suite
-from rovsim.benchmarks.blind.summary import judged, summary
-from rovsim.core.files import write_json
+from rovsim.benchmarks.blind.summary import judge, summarize
+from rovsim.benchmarks.blind.tables import write_markdown
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.marked import replace_tables
-
-SCHEMA = "rovsim.blind.summary/1"
+from rovsim.results.blind_benchmark import BlindSummary
 
 
 class Settings(CommandSettings):
@@ -40,12 +37,11 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     cases, methods = suite(asked.suite, asked.seeds), chosen(asked.methods)
     with reported("blind cases") as progress:
         run_cases(cases, methods, out / asked.seeds, asked.cores, progress)
-    results: dict[str, Any] = {"schema": SCHEMA, "suite": asked.suite, "seeds": asked.seeds}
-    results["methods"] = {
-        m.name: summary(judged(answers(cases, m, out / asked.seeds))) for m in methods
-    }
-    write_json(out / "summary.json", results)
-    text = tables(results)
+    found = {m.name: read_answers(cases, m, out / asked.seeds) for m in methods}
+    summaries = {name: summarize(judge(answers)) for name, answers in found.items()}
+    results = BlindSummary(suite=asked.suite, seeds=asked.seeds, methods=summaries)
+    results.write(out / "summary.json")
+    text = write_markdown(results)
     if asked.seeds == "reporting":
         replace_tables(Path(asked.page), text)
-    say(settings, f"{text}\n{out / 'summary.json'}", results)
+    say(settings, f"{text}\n{out / 'summary.json'}", results.to_json())

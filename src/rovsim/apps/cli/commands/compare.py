@@ -14,10 +14,9 @@ from rovsim.application.pipeline.replays import climb
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
-from rovsim.core.files import write_json
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.evaluation.budget import totals
-from rovsim.reporting.html.terminal import compared
+from rovsim.evaluation.budget import total
+from rovsim.reporting.html.terminal import tell_comparison
 from rovsim.reporting.report_data import PER_RUN
 
 ONCE = ("where", "where_map", "error_by_axis", "error_growth", "excitation")
@@ -34,15 +33,17 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     data = measure(open_campaign(settings.campaign), settings.signals)
     models = load_models(settings.model, data.vehicle, catalogue)
     out = choose_folder(settings, f"results/{data.campaign.name}/compare")
-    evidence = compare(data, models, settings)
+    found = compare(data, models, settings)
+    assert found.comparison is not None
+    assert found.where is not None
     wanted = [(figure, "") for figure in ONCE]
-    wanted += [(figure, run) for run in evidence.motions for figure in PER_RUN]
+    wanted += [(figure, run) for run in found.motions for figure in PER_RUN]
     origin = provenance(settings, catalogue)
-    present(out, data.campaign.name, evidence, wanted, origin, catalogue)
-    write_json(out / "where.json", evidence.where)
-    write_json(out / "budget.json", totals(list(evidence.budgets.values())))
-    write_json(out / "comparison.json", evidence.comparison)
-    ladder = climb(list(data.motions.values()), evidence.replays)
-    text = compared({s["model"]: s["windows_2s"] for s in ladder}, evidence.where)
+    present(out, data.campaign.name, found, wanted, origin, catalogue)
+    found.where.write(out / "where.json")
+    total(list(found.budgets.values())).write(out / "budget.json")
+    found.comparison.write(out / "comparison.json")
+    steps = climb(list(data.motions.values()), found.replays)
+    text = tell_comparison({step.model: step.windows_2s for step in steps}, found.where)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
-    say(settings, f"{text}\n\n{files}", evidence.comparison)
+    say(settings, f"{text}\n\n{files}", found.comparison.to_json())

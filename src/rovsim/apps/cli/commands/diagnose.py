@@ -20,13 +20,12 @@ from rovsim.application.settings import CampaignSettings, TrackingSettings, sele
 from rovsim.application.tracking import track_diagnosis
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import installed
-from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.diagnosis.of_campaign import Diagnosed
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html import terminal
-from rovsim.reporting.report_data import Evidence
+from rovsim.reporting.report_data import ReportData
 
 FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
 
@@ -47,13 +46,14 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     how = select(settings, DiagnosisSettings)
     found = diagnose(data.runs, base, how, catalogue)
     shown = _present(out, data, found, settings, catalogue)
-    write_json(out / "diagnosis.json", found.content)
+    found.diagnosis.write(out / "diagnosis.json")
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
-    say(settings, f"{terminal.diagnosed(found.content, catalogue)}\n\n{files}", found.content)
+    text = terminal.tell_diagnosis(found.diagnosis, catalogue)
+    say(settings, f"{text}\n\n{files}", found.diagnosis.to_json())
     if installed("tracking"):
         with reported("logging to MLflow"):
             track_diagnosis(
-                settings.tracking, data.campaign.name, base.name, found.content,
+                settings.tracking, data.campaign.name, base.name, found.diagnosis,
                 how.model_dump(mode="json"), [out / "diagnosis.json", *shown],
             )  # fmt: skip
 
@@ -63,10 +63,12 @@ def _present(
 ) -> list[Path]:
     from rovsim.reporting.html.folder import present
 
-    evidence = Evidence(
-        {}, {}, ladder=found.content["ladder"], quality=data.quality, where=found.where,
-        diagnosis=found.content,
-    )  # fmt: skip
+    shown = ReportData(
+        quality=data.quality,
+        ladder=found.diagnosis.ladder,
+        where=found.where,
+        diagnosis=found.diagnosis,
+    )
     wanted = [(figure, "") for figure in FIGURES]
     origin = provenance(settings, catalogue)
-    return present(out, data.campaign.name, evidence, wanted, origin, catalogue)
+    return present(out, data.campaign.name, shown, wanted, origin, catalogue)

@@ -17,7 +17,6 @@ from rovsim.application.settings import CampaignSettings, TrackingSettings
 from rovsim.application.tracking import track
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import require
-from rovsim.core.files import write_json
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 
@@ -42,7 +41,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     file, story = out / "model.yaml", provenance(settings, catalogue)
     corrected = train(motions, base, settings, catalogue, file, story)
     found = score_replays(motions, replay_models([base, corrected], motions, settings))
-    write_json(out / "comparison.json", found)
+    found.write(out / "comparison.json")
     with reported("logging to MLflow"):
         track(
             settings.tracking,
@@ -50,7 +49,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             name=name,
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
-            scores=found["models"]["model"]["runs"],
+            scores=found.models["model"].runs,
             files=sorted(p for p in out.iterdir() if p.is_file()),
         )
     say(settings, str(file), {"model": str(file)})

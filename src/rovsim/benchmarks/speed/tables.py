@@ -1,12 +1,13 @@
 """The table and plots of docs/benchmark_speed.md."""
 
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Mapping, Sequence
 
 from rovsim.benchmarks.speed.plots import draw_accuracy, draw_sizes
-from rovsim.reporting.figures.marks import significant
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html.marked import replace_tables, table
+from rovsim.reporting.wording import significant
+from rovsim.results.timing import Accuracy, Bench, Latency
 
 PLOTS = {
     "bench_sizes": "Median and 99.9th percentile of one prediction against the number of points.",
@@ -14,24 +15,24 @@ PLOTS = {
 }
 
 
-def write_page(path: Path, content: Mapping[str, Any]) -> None:
+def write_page(path: Path, bench: Bench) -> None:
     """Put the results between the marks of a page, and the plots into images/ beside it."""
     for name, draw in (("bench_sizes", draw_sizes), ("bench_accuracy", draw_accuracy)):
-        for file in save(draw(content), path.parent / "images", name):
+        for file in save(draw(bench), path.parent / "images", name):
             if file.suffix == ".pdf":
                 file.unlink()
-    replace_tables(path, text(content))
+    replace_tables(path, write_markdown(bench))
 
 
-def text(content: Mapping[str, Any]) -> str:
+def write_markdown(bench: Bench) -> str:
     """Markdown of `bench.json`."""
     plots = [f"![{caption}](images/{name}.png)" for name, caption in PLOTS.items()]
     parts = [
-        f"{content['machine']}; {content['scheduling']}.",
-        "### Replay", _replay(content["replay"]),
-        "### One prediction", _inference(content["inference"]),
+        f"{bench.machine}; {bench.scheduling}.",
+        "### Replay", _replay(bench.replay),
+        "### One prediction", _inference(bench.inference),
         "### By size", plots[0],
-        "### Error against cost", plots[1], _accuracy(content["accuracy"]),
+        "### Error against cost", plots[1], _accuracy(bench.accuracy),
     ]  # fmt: skip
     return "\n\n".join(parts)
 
@@ -44,37 +45,40 @@ def _replay(replay: Mapping[str, float]) -> str:
     return table(["replay", "RK4 steps a second"], rows)
 
 
-def _inference(inference: Mapping[str, Any]) -> str:
+def _inference(inference: Mapping[str, Latency]) -> str:
     head = ["predictor", "points", "calls", "median µs", "p99", "p99.9", "max",
             "late at 1 kHz", "times slower than ours", "largest difference from ours"]  # fmt: skip
-    ratios, gaps = _against(inference, "times_faster"), _against(inference, "largest_difference")
+    ratios = _by_library({key: stats.times_faster for key, stats in inference.items()})
+    gaps = _by_library({key: stats.largest_difference for key, stats in inference.items()})
     rows = []
     for key, stats in inference.items():
         name, points = key.split("@")
-        times = [significant(stats[f"{p}_us"], 3) for p in ("median", "p99", "p999", "max")]
+        times = [
+            significant(time, 3)
+            for time in (stats.median_us, stats.p99_us, stats.p999_us, stats.max_us)
+        ]
         ratio = significant(ratios[key], 2) if key in ratios else ""
         gap = f"{gaps[key]:.1e}" if key in gaps else ""
-        late = str(stats["misses"]["1000"])
-        rows.append([name, points, str(stats["calls"]), *times, late, ratio, gap])
+        late = str(stats.misses["1000"])
+        rows.append([name, points, str(stats.calls), *times, late, ratio, gap])
     return table(head, rows)
 
 
-def _against(inference: Mapping[str, Any], what: str) -> dict[str, float]:
+def _by_library(said: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
     """What our entries say of the libraries', by the libraries' entry."""
     return {
         f"{other}@{key.split('@')[1]}": value
-        for key, stats in inference.items()
-        for other, value in stats.get(what, {}).items()
+        for key, others in said.items()
+        for other, value in others.items()
     }
 
 
-def _accuracy(rows: list[Mapping[str, Any]]) -> str:
+def _accuracy(rows: Sequence[Accuracy]) -> str:
     head = ["residual", "points", "fades", "median µs", "left, seen", "left, unseen",
             "worst axis, unseen"]  # fmt: skip
     lines = [
-        [row["name"], str(row["points"]), "yes" if row["fades"] else "no",
-         significant(row["median_us"], 2), f"{row['seen']['mean']:.3f}",
-         f"{row['unseen']['mean']:.3f}", f"{row['unseen']['worst']:.3f}"]
+        [row.name, str(row.points), "yes" if row.fades else "no", significant(row.median_us, 2),
+         f"{row.seen.mean:.3f}", f"{row.unseen.mean:.3f}", f"{row.unseen.worst:.3f}"]
         for row in rows
     ]  # fmt: skip
     return table(head, lines)

@@ -1,4 +1,4 @@
-"""Legends, notes and axis names, placed so that they never cover what is plotted."""
+"""Legends and notes, placed so that they never cover what is plotted."""
 
 import math
 import textwrap
@@ -12,23 +12,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
-from rovsim import AXES
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.style import FONT_SIZE, MM, WIDTH
-
-VELOCITY = ("u", "v", "w", "p", "q", "r")  # Fossen's letters
-VELOCITY_UNITS = ("m/s",) * 3 + ("rad/s",) * 3
-ACCELERATION_UNITS = ("m/s²",) * 3 + ("rad/s²",) * 3
+from rovsim.reporting.wording import short
 
 EM = FONT_SIZE / 72  # inches
-LONGEST = 40  # letters of a name before it is wrapped
-
-
-def short(name: str, length: int = LONGEST) -> str:
-    """Return `name`, its middle left out where it is longer than `length` letters."""
-    if len(name) <= length:
-        return name
-    return f"{name[: length // 2]}…{name[-(length // 2 - 1) :]}"
 
 
 def lines(looks: dict[str, Look]) -> list[Artist]:
@@ -89,31 +77,3 @@ def plain_log(axes: Axes, names: str = "x") -> None:
         axis = axes.xaxis if name == "x" else axes.yaxis
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(FuncFormatter(lambda *_: ""))
-
-
-def number(value: float | None) -> float:
-    """Return a JSON value as a float; null is NaN."""
-    return math.nan if value is None else float(value)
-
-
-def vector(content: dict[str, Any] | None) -> np.ndarray:
-    """Return the six axes' values (6,) of a JSON object; what is missing is NaN."""
-    return np.array([number((content or {}).get(axis)) for axis in AXES])
-
-
-def listed(names: Iterable[str]) -> str:
-    """Return names as people list them: a, b and c."""
-    *first, last = [short(n) for n in names] or [""]
-    return f"{', '.join(first)} and {last}" if first else last
-
-
-def significant(value: float, digits: int = 3) -> str:
-    """Return `value` to so many significant figures, without an exponent where it is readable."""
-    if not math.isfinite(value):
-        return "–"
-    if value == 0:
-        return "0"
-    if not 1e-4 <= abs(value) < 1e6:
-        return f"{value:.{digits - 1}e}"
-    places = digits - 1 - math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
-    return f"{round(value, places):.{max(places, 0)}f}"

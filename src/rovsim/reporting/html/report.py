@@ -3,25 +3,35 @@
 from base64 import b64encode
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from latex2mathml.converter import convert
 from markupsafe import Markup
 
+from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
 from rovsim.core.mappings import leaves
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, kind
-from rovsim.reporting.figures.inference_time import RATES
-from rovsim.reporting.figures.marks import AXES, number, significant
-from rovsim.reporting.html.published_errors import repeated, said
-from rovsim.reporting.html.sentences import summary
-from rovsim.reporting.html.verdict import verdict
-from rovsim.reporting.tables import Table, errors_table, ladder_table, published_errors_table
+from rovsim.reporting.html.published_errors import tell_pitfalls, tell_standings
+from rovsim.reporting.html.sentences import summarize
+from rovsim.reporting.html.verdict import explain
+from rovsim.reporting.report_data import ReportData
+from rovsim.reporting.tables import (
+    Table,
+    tabulate_errors,
+    tabulate_ladder,
+    tabulate_published_errors,
+)
+from rovsim.reporting.wording import significant
+from rovsim.results.base import or_nan
+from rovsim.results.comparison import Comparison
+from rovsim.results.published_errors import PublishedErrors
+from rovsim.results.timing import RATES
 
-# The JSON files of a study that the report reads.
+# The results of a study that the report reads, as ReportData and the workflow name them.
 CONTENTS = ("comparison", "ladder", "timing", "where", "diagnosis", "published_errors", "pitfalls")
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
@@ -70,32 +80,47 @@ class Picture:
         return f"{self.about[0].upper()}{self.about[1:]}. {text}" if self.about else text
 
 
-@dataclass(frozen=True)
-class ReportInputs:
+@dataclass(frozen=True, eq=False)
+class Report:
     """Everything the report shows; a section without content is left out.
 
-    `comparison`, `ladder`, `timing`, `where`, `diagnosis`, `published_errors`, `pitfalls`: contents
-    of the JSON files of those names. `quality`: the quality reports by run. `pictures`: in order
-    of appearance. `provenance`: nested plain values (settings, code digest, versions).
-    `catalogue`: what the effects of the diagnosis are.
+    `pictures` in order of appearance; `provenance`: nested plain values (settings, code digest,
+    versions); `catalogue`: what the effects of the diagnosis are.
     """
 
     campaign: str
-    comparison: Mapping[str, Any] = field(default_factory=dict)
-    ladder: Mapping[str, Any] = field(default_factory=dict)
-    timing: Mapping[str, Any] = field(default_factory=dict)
-    quality: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    data: ReportData
     pictures: Sequence[Picture] = ()
-    provenance: Mapping[str, Any] = field(default_factory=dict)
-    where: Mapping[str, Any] = field(default_factory=dict)
-    diagnosis: Mapping[str, Any] = field(default_factory=dict)
-    published_errors: Mapping[str, Any] = field(default_factory=dict)
-    pitfalls: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, object] = field(default_factory=dict)
     catalogue: Mapping[str, type[Effect]] = field(default_factory=dict)
 
 
-def render(inputs: ReportInputs) -> str:
+def render(report: Report) -> str:
     """Return the report as HTML: no script, nothing from the network, every name escaped."""
+    data = report.data
+    return (
+        _environment()
+        .get_template("report.html")
+        .render(
+            campaign=report.campaign,
+            verdict=explain(data.diagnosis, report.catalogue) if data.diagnosis else None,
+            summary=summarize(data),
+            where=data.where.models if data.where else {},
+            errors=_errors(data.comparison) if data.comparison else [],
+            ladder=tabulate_ladder(data.ladder) if data.ladder else None,
+            published=_published(data.published_errors) if data.published_errors else None,
+            pitfalls=tell_pitfalls(data.pitfalls) if data.pitfalls else [],
+            timing=data.timing.inference if data.timing else {},
+            rates=RATES,
+            quality=data.quality,
+            axes=AXES,
+            pictures=_by_section(report.pictures),
+            provenance=list_rows(report.provenance),
+        )
+    )
+
+
+def _environment() -> Environment:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -103,52 +128,34 @@ def render(inputs: ReportInputs) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["significant"] = lambda value: significant(number(value))
+    environment.filters["significant"] = lambda value: significant(or_nan(value))
     environment.filters["mathml"] = lambda latex: Markup(convert(latex))
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
-    return environment.get_template("report.html").render(
-        campaign=inputs.campaign,
-        verdict=verdict(inputs.diagnosis, inputs.catalogue) if inputs.diagnosis else None,
-        summary=_summary(inputs),
-        where=inputs.where.get("models", {}),
-        errors=_errors(inputs.comparison) if inputs.comparison else [],
-        ladder=ladder_table(inputs.ladder),
-        published_errors=published_errors_table(inputs.published_errors),
-        published=said(inputs.published_errors),
-        pitfalls=repeated(inputs.pitfalls),
-        timing=inputs.timing.get("inference", {}),
-        rates=RATES,
-        quality=inputs.quality,
-        axes=AXES,
-        pictures=_by_section(inputs.pictures),
-        provenance=rows_of(inputs.provenance),
-    )
+    return environment
 
 
-def _summary(inputs: ReportInputs) -> list[str]:
-    if not inputs.comparison:
-        return []
-    return summary(inputs.comparison, inputs.ladder, inputs.timing, inputs.quality)
-
-
-def write(path: Path, inputs: ReportInputs) -> None:
+def write(path: Path, report: Report) -> None:
     """Write the report, whole or not at all."""
-    write_text(path, render(inputs))
+    write_text(path, render(report))
 
 
-def rows_of(content: Mapping[str, Any]) -> list[tuple[str, str]]:
+def list_rows(content: Mapping[str, object]) -> list[tuple[str, str]]:
     """Nested values as rows of a dotted name and a text."""
     return [(name, _text(value)) for name, value in leaves(content).items()]
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     if isinstance(value, (list, tuple)):
         return ", ".join(str(v) for v in value) or "none"
     return "none" if value is None or value == {} else str(value)
 
 
-def _errors(comparison: Mapping[str, Any]) -> list[Table]:
-    return [errors_table(comparison, horizon, "test", quantity) for horizon, quantity in COMPARED]
+def _errors(comparison: Comparison) -> list[Table]:
+    return [tabulate_errors(comparison, h, "test", quantity) for h, quantity in COMPARED]
+
+
+def _published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:
+    return tabulate_published_errors(published_errors), tell_standings(published_errors)
 
 
 def _by_section(pictures: Sequence[Picture]) -> dict[str, list[Picture]]:

@@ -1,0 +1,86 @@
+"""What was found, as `where.json` holds it."""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.evaluation.error_conditions.findings import Explanation, Finding
+from rovsim.evaluation.error_conditions.search import SearchedModel
+from rovsim.evaluation.error_conditions.sentences import UNITS, say, summarize
+from rovsim.results.error_conditions import (
+    ConditionFinding,
+    ConditionTable,
+    ErrorConditions,
+    ErrorSize,
+    ModelConditions,
+)
+
+
+def list_conditions(models: Sequence[SearchedModel]) -> ErrorConditions:
+    """`where.json` of several models, in the order given."""
+    return ErrorConditions(models={one.model: _list_model(one) for one in models})
+
+
+def _list_model(one: SearchedModel) -> ModelConditions:
+    explanation = one.explanation
+    return ModelConditions(
+        split=one.split,
+        runs=one.runs,
+        enough=explanation.enough,
+        error={axis: _size(explanation, k) for k, axis in enumerate(AXES)},
+        sentences=tuple(summarize(explanation)),
+        findings=tuple(map(_finding, explanation.findings)),
+        axes={
+            axis: {name: _table(t) for name, t in tables.items()}
+            for axis, tables in explanation.tables.items()
+        },
+    )
+
+
+def _size(explanation: Explanation, k: int) -> ErrorSize:
+    """RMS of the error and of the measured acceleration of axis k."""
+    if explanation.blocks is None:
+        return ErrorSize(rms=None, measured_rms=None)
+
+    def rms(x: Array) -> float:
+        return float(np.sqrt(np.mean(x[:, k] ** 2)))
+
+    blocks = explanation.blocks
+    return ErrorSize(rms=rms(blocks.error), measured_rms=rms(blocks.measured))
+
+
+def _finding(found: Finding) -> ConditionFinding:
+    share = found.share()
+    return ConditionFinding(
+        axis=share.axis,
+        condition=share.condition,
+        share_of_error=share.share_of_error,
+        unit=UNITS.get(found.axis, "rad/s²"),
+        chance=found.chance,
+        alike=tuple(c.name for c in found.alike),
+        sentence=say(found),
+    )
+
+
+def _table(one: Table) -> ConditionTable:
+    """One axis by one condition; a value for each bin."""
+    at = one.binning
+    return ConditionTable(
+        unit=at.condition.unit,
+        share_of_error=round(one.share, 4),
+        edges=_rounded(at.edges),
+        center=_rounded(at.center),
+        blocks=tuple(at.count.tolist()),
+        effective=_rounded(one.effective, 3),
+        judged=tuple(at.judged.tolist()),
+        mean=_rounded(one.mean),
+        std_error=_rounded(one.error),
+        rms=_rounded(one.rms),
+    )
+
+
+def _rounded(values: Array, digits: int = 5) -> tuple[float, ...]:
+    return tuple(float(f"{v:.{digits}g}") for v in values)

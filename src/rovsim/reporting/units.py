@@ -1,0 +1,5 @@
+"""Letters and units of the six axes, surge to yaw, as figures and tables print them."""
+
+VELOCITY = ("u", "v", "w", "p", "q", "r")  # Fossen's letters
+VELOCITY_UNITS = ("m/s",) * 3 + ("rad/s",) * 3
+ACCELERATION_UNITS = ("m/s²",) * 3 + ("rad/s²",) * 3
