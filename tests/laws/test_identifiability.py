@@ -55,7 +55,7 @@ def test_a_value_that_is_surely_there_is_known_by_itself():
 
 
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
-    found = TrainDiagnosis(fit(alike()).hypothesis.base, fit(alike()), [], [], [], [], [], 60.0)
+    found = TrainDiagnosis(fit(alike()).hypothesis.base, [], 60.0, fit(alike()))
     loops = [f"onboard_control.gain_{axis}" for axis in AXES[:2]]
     advice = advise(found, [], [["added_mass.surge", "net_buoyancy.force"], loops], built_in())
     reveals = built_in()["onboard_control"].revealed_by

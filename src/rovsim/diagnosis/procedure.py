@@ -47,18 +47,18 @@ POLISHED = 2  # times: the noise of the first is already the right one
 class TrainDiagnosis:
     """What was found on the train runs.
 
-    `fit` of the base and all selected effects, None where there was too little to judge; `still`
-    axes that nobody moved; `seconds` that could be used.
+    `still` axes that nobody moved; `seconds` that could be used; `fit` of the base and all selected
+    effects, None where there was too little to judge.
     """
 
     base: Model
-    fit: Fit | None
-    selected: Sequence[Selected]
-    ranking: Sequence[Ranked]
-    rivals: Sequence[Rival]
-    structures: Sequence[Structure]
     still: Sequence[str]
     seconds: float
+    fit: Fit | None = None
+    selected: Sequence[Selected] = ()
+    ranking: Sequence[Ranked] = ()
+    rivals: Sequence[Rival] = ()
+    structures: Sequence[Structure] = ()
 
     @property
     def enough(self) -> bool:
@@ -96,11 +96,10 @@ def diagnose(
     """Find what a model lacks on the train runs of a campaign."""
     usable = select_usable(train)
     if not usable.enough:
-        return TrainDiagnosis(base, None, [], [], [], [], usable.still, usable.seconds)
+        return TrainDiagnosis(base, usable.still, usable.seconds)
     stage("observing")
     workspace = _observe(base, usable, settings, catalogue)
     nothing = workspace.fit(Hypothesis(base))
-    alone = workspace.propose(nothing)
     stage("searching")
     selection = search(workspace, nothing, seed)
     stage("checking")
@@ -111,10 +110,15 @@ def diagnose(
         found = fit_to_replays(found, bank)
     rivals = selection.named_rivals
     return TrainDiagnosis(
-        base, found, rank_selected(found, rivals, usable.runs),
-        rank_alone(workspace, nothing, alone, found), rivals, structures,
-        usable.still, usable.seconds,
-    )  # fmt: skip
+        base,
+        usable.still,
+        usable.seconds,
+        fit=found,
+        selected=rank_selected(found, rivals, usable.runs),
+        ranking=rank_alone(workspace, nothing, found),
+        rivals=rivals,
+        structures=structures,
+    )
 
 
 def _observe(

@@ -10,7 +10,6 @@ from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.model import Model
@@ -77,14 +76,12 @@ def _share_of_odds(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
     return float(1.0 / (1.0 + odds))
 
 
-def rank_alone(
-    workspace: SearchWorkspace, nothing: Fit, alone: Sequence[Proposal], found: Fit
-) -> list[Ranked]:
+def rank_alone(workspace: SearchWorkspace, nothing: Fit, found: Fit) -> list[Ranked]:
     """Every effect by itself: those refitted first, by their likelihood, then the others' promise.
 
     The probability is that of the name if one effect alone is missing, or none.
     """
-    named = {term.id for term in found.hypothesis.terms}
+    named, alone = {term.id for term in found.hypothesis.terms}, workspace.propose(nothing)
     starts = [(p, nothing.hypothesis.with_term(p.term)) for p in alone]
     fits = [workspace.fit(h) for p, h in starts if p.term.id in named or workspace.has_fitted(h)]
     fits.sort(key=workspace.score, reverse=True)
