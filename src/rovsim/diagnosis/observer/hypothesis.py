@@ -50,6 +50,11 @@ class Term:
         """Values of the free parameters, in units of their scale."""
         return np.array([self.effect[p.name] / p.scale for p in self.parameters])
 
+    @property
+    def vanishes(self) -> bool:
+        """Whether its defaults are its absence; if not, it stays or goes as a whole."""
+        return {} in self.effect.starts
+
     def reach(self, trusted: float) -> tuple[Array, Array]:
         """Lowest and highest scaled step that stays in range, and within `trusted` scales."""
         scale = np.array([p.scale for p in self.parameters])
@@ -98,6 +103,11 @@ class Hypothesis:
     def x(self) -> Array:
         """All free parameters, scaled."""
         return np.concatenate([np.empty(0), *(term.x for term in self.terms)])
+
+    @property
+    def absence(self) -> Array:
+        """Their values (k,), scaled, at which they change nothing."""
+        return np.array([p.default / p.scale for term in self.terms for p in term.parameters])
 
     @property
     def columns(self) -> list[list[int]]:

@@ -33,21 +33,13 @@ def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 
 def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
-    """The hypothesis without its least certain parameter that starts from absence."""
-    h, k, weakest, least = current.hypothesis, 0, None, 2.0 * workspace.price
-    for i, term in enumerate(h.terms):
-        for p in term.parameters:
-            z = (h.x[k] - p.default / p.scale) / max(current.std[k], 1e-12)
-            k += 1
-            if z**2 < least:
-                smaller = _drop_parameter(h, i, p.name)
-                weakest, least = smaller, z**2
-    return weakest
-
-
-def _drop_parameter(h: Hypothesis, i: int, name: str) -> Hypothesis:
-    weak = [(k, n) == (i, name) for k, term in enumerate(h.terms) for n in term.free]
-    return drop_parameters(h, np.array(weak))
+    """The hypothesis without its least certain parameter; None if all of them are sure."""
+    h = current.hypothesis
+    certain = ((h.x - h.absence) / np.maximum(current.std, 1e-12)) ** 2
+    weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
+    if not certain[weakest] < 2.0 * workspace.price:
+        return None
+    return drop_parameters(h, np.arange(len(certain)) == weakest)
 
 
 def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
@@ -60,7 +52,7 @@ def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
         idle = {name for name, k in zip(term.free, own, strict=True) if weak[k]}
         defaults = {p.name: p.default for p in term.parameters if p.name in idle}
         left = tuple(name for name in term.free if name not in idle)
-        if left and (not idle or {} in term.effect.starts):
+        if left and (not idle or term.vanishes):
             terms.append(replace(term, effect=term.effect.with_values(defaults), free=left))
     return Hypothesis(h.base, tuple(terms))
 

@@ -85,9 +85,8 @@ def _prune_together(workspace: SearchWorkspace, found: Fit) -> Fit:
 def _find_weak(found: Fit, price: float) -> Array:
     """Which free parameters (k,) are not worth their price; those of a loop only together."""
     h = found.hypothesis
-    away = np.array([p.default / p.scale for t in h.terms for p in t.parameters])
-    weak = ((h.x - away) / np.maximum(found.std, 1e-12)) ** 2 < price
+    weak = ((h.x - h.absence) / np.maximum(found.std, 1e-12)) ** 2 < price
     for term, own in zip(h.terms, h.columns, strict=True):
-        if {} not in term.effect.starts:
+        if not term.vanishes:
             weak[own] = weak[own].all()
     return np.asarray(weak)
