@@ -13,7 +13,7 @@ help:
 	@echo "make ui      the workbench in the browser (CAMPAIGN=DIR opens one)"
 	@echo "make test    every test"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
-	@echo "make check   formatting, lint, types, layers"
+	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
 	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full"
@@ -63,6 +63,7 @@ check: setup
 	$(BIN)/ruff check src tests workflow
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/snakefmt --check Snakefile workflow
 
 bench-ui: setup chromium
 	PYTHONPATH=tests $(BIN)/python tests/browser/speed.py
