@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.benchmarks.blind.asking import diagnosis
 from rovsim.benchmarks.blind.flight import fly
-from rovsim.benchmarks.blind.suites import combination, nothing
+from rovsim.benchmarks.blind.suites import combination, hiding, nothing, outside
 from rovsim.core.files import read_yaml
 from rovsim.results.diagnosis import Diagnosis
 from worlds import SHARED, needed
@@ -39,12 +39,30 @@ def test_independent_exports_give_up_what_they_hide(name):
     assert found.error.with_effects == pytest.approx(found.error.noise_floor, rel=0.15)
 
 
-@pytest.mark.parametrize("case", [nothing(40, "development"), combination(2, 41, "development")])
+SHORT = {"duration": 30.0}  # s a run
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        nothing(40, "development", tank=SHORT),
+        combination(2, 41, "development"),
+        hiding("single", ("quadratic_damping",), 0, "development", tank=SHORT),
+        outside("squat", 0, "development"),
+    ],
+    ids=lambda case: case.id,
+)
 def test_the_tank_gives_up_what_it_hides(case, tmp_path):
+    """The same as the test above asks of independent exports, in a clone alone."""
     flown = fly(case, tmp_path / "raw")
     found = diagnosis(tmp_path / "raw", tmp_path)
     assert found.verdict in flown.verdicts
     assert set(named(found)) == set(flown.names)
+    for hidden in flown.hidden:
+        for parameter, value in hidden.parameters.items():
+            answer = named(found)[hidden.effect][parameter]
+            near = max(0.05 * abs(value.value), 3.0 * answer.std)
+            assert answer.value == pytest.approx(value.value, abs=near)
     found.write(tmp_path / "diagnosis.json")
     assert Diagnosis.read(tmp_path / "diagnosis.json") == found
 
