@@ -17,7 +17,8 @@ from recordings import (
 )
 from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign import load_campaign
-from rovsim.measurement.recording import Recording, assess, read_run, usable_reason
+from rovsim.measurement.quality import assess, usable_reason
+from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.readers import command_readers, mocap_readers
 
 every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
@@ -80,7 +81,7 @@ def test_a_cut_last_line_is_counted_not_fatal(tmp_path, name):
     recording, anomalies = read_run(load_campaign(folder), "one")
     assert len(recording.time) == len(Swim.ned().time) - 1
     assert anomalies.cut_lines == 1
-    assert any("cut short" in r for r in assess(recording, anomalies)["remarks"])
+    assert any("cut short" in r for r in assess(recording, anomalies).remarks)
 
 
 @every_format

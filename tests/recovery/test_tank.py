@@ -9,7 +9,7 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry
 from rovsim.evaluation.scores import rms, subtract
 from rovsim.measurement.campaign import load_campaign
-from rovsim.measurement.quality_report import report_quality
+from rovsim.measurement.quality import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay

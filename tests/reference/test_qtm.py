@@ -10,7 +10,8 @@ from recordings import Swim, qtm_cells, qtm_columns, qtm_header, qtm_lines, writ
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign import Mocap, load_campaign
-from rovsim.measurement.recording import assess, read_run
+from rovsim.measurement.quality import assess
+from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.qtm_tsv import read_qtm
 
 SHARED = Path(__file__).parents[2] / ".." / "shared"

@@ -30,9 +30,7 @@ rule read:
         campaign=study.campaign_file,
         settings=study.signal("outliers"),
         code=study.code(
-            "measurement.recording",
-            "measurement.campaign",
-            "measurement.signals.outliers",
+            "measurement.recording", "measurement.quality", "measurement.campaign"
         ),
     script:
         "../scripts/read.py"

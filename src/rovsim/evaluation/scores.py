@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.rotations import conjugate, log, multiply
-from rovsim.measurement.recording.quality import EXCITED
+from rovsim.measurement.quality import EXCITED
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis, or_none
 from rovsim.results.comparison import OPEN_LOOP, Comparison, Metrics, ModelErrors, RunErrors

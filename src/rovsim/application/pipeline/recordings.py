@@ -10,8 +10,8 @@ from rovsim.core.progress import counted
 from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
-from rovsim.measurement.quality_report import report_quality
-from rovsim.measurement.recording import read_run, usable_reason
+from rovsim.measurement.quality import report_quality, usable_reason
+from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.chain import (
     SignalSettings,

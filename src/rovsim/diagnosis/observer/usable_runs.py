@@ -7,7 +7,7 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.measurement.recording.quality import EXCITED
+from rovsim.measurement.quality import EXCITED
 
 SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
 

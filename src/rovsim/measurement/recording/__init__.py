@@ -1,7 +1,6 @@
-"""Raw exports in, recordings out: one module per format, axes converted once, quality told."""
+"""Raw exports in, recordings out: one module per format, axes converted once."""
 
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.recording.quality import assess, usable_reason
 from rovsim.measurement.recording.reading import Anomalies, read_run, site
 from rovsim.measurement.recording.recording import Recording
 
@@ -11,8 +10,6 @@ __all__ = [
     "Recording",
     "RunInfo",
     "Site",
-    "assess",
     "read_run",
     "site",
-    "usable_reason",
 ]

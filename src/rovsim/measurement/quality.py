@@ -5,11 +5,12 @@ from dataclasses import asdict
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim import AXES
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
-from rovsim.measurement.campaign import AXES
 from rovsim.measurement.recording.reading import Anomalies, measured_rate
 from rovsim.measurement.recording.recording import Recording
-from rovsim.measurement.recording.remarks import remark
+from rovsim.measurement.remarks import remark
+from rovsim.measurement.signals.outliers import Outliers, find_outliers
 from rovsim.results.quality import CommandLog, Excitation, Gap, PoseNoise, Quality, Rate
 
 GAP = 0.05  # s; shorter ones are bridged by any resampling
@@ -21,6 +22,13 @@ BLOCK = 0.1  # s; the median of a block rejects single outlier frames
 # An axis whose velocity varies less than this cannot be judged: on runs with no command on an
 # axis, disturbances alone move it up to about 0.02 m/s and 0.1 rad/s.
 EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard deviation
+
+
+def report_quality(recording: Recording, anomalies: Anomalies, settings: Outliers) -> Quality:
+    """What `quality/RUN.json` holds; outliers of binned velocities are not looked for."""
+    if recording.nu is not None:
+        return assess(recording, anomalies)
+    return assess(recording, anomalies, int(find_outliers(recording, settings).sum()))
 
 
 def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = None) -> Quality:
