@@ -103,22 +103,15 @@ def diagnose(
     stage("searching")
     selection = search(workspace, nothing, seed)
     stage("checking")
-    selection, structures = _check(selection, base, usable)
-    found, bank = _polish(selection)
-    structures = [*structures, *find_structure(found, bank)]
-    if structures and found.hypothesis.terms:
-        found = fit_to_replays(found, bank)
+    selection, imitated = _check(selection, base, usable)
+    found, structures = _settle(selection, imitated)
     rivals = selection.named_rivals
     return TrainDiagnosis(
-        base,
-        usable.still,
-        usable.seconds,
-        fit=found,
+        base, usable.still, usable.seconds, found,
         selected=rank_selected(found, rivals, usable.runs),
         ranking=rank_alone(workspace, nothing, found),
-        rivals=rivals,
-        structures=structures,
-    )
+        rivals=rivals, structures=structures,
+    )  # fmt: skip
 
 
 def _observe(
@@ -145,6 +138,15 @@ def _check(
     if selection.complete:
         return drop_imitations(drop_idle(selection))
     return fit_jointly(selection.workspace, base, usable.moved), []
+
+
+def _settle(selection: Selection, imitated: Sequence[Structure]) -> tuple[Fit, list[Structure]]:
+    """The final values, and all that they leave unexplained."""
+    found, bank = _polish(selection)
+    structures = [*imitated, *find_structure(found, bank)]
+    if structures and found.hypothesis.terms:
+        found = fit_to_replays(found, bank)
+    return found, structures
 
 
 def _polish(selection: Selection) -> tuple[Fit, FilterBank]:
