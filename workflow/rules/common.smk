@@ -1,5 +1,8 @@
 """What several chapters of the workflow name alike."""
 
+from rovsim.application.sections import PredictorSettings, SimulationSettings
+from rovsim.diagnosis.settings import DiagnosisSettings
+
 R = study.folder
 F = f"{R}/folds/{{fold}}"
 

@@ -11,7 +11,7 @@ rule diagnose:
         f"{R}/benchmarks/diagnose.tsv"
     priority: 10  # most of the study waits for it
     params:
-        settings=study.section("search", "signals", "replay", "seed"),
+        settings=study.section(DiagnosisSettings),
         code=study.code("application.pipeline.diagnosis"),
     script:
         "../scripts/diagnose.py"
@@ -45,7 +45,7 @@ rule refit:
     benchmark:
         f"{R}/benchmarks/refit.tsv"
     params:
-        settings=study.section("replay")["replay"],
+        settings=study.settings.replay.model_dump_json(),
         code=study.code("application.pipeline.refit"),
     script:
         "../scripts/refit.py"

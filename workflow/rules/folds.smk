@@ -86,7 +86,7 @@ rule fold:
     benchmark:
         f"{F}/benchmarks/fold.tsv"
     params:
-        settings=study.section("replay", "signals"),
+        settings=study.section(SimulationSettings),
         code=study.code("application.pipeline.held_out"),
     script:
         "../scripts/fold.py"
@@ -129,8 +129,10 @@ if folds.pitfalls:
         benchmark:
             f"{R}/benchmarks/pitfalls.tsv"
         params:
-            settings=study.section("replay", "signals"),
-            learners={kind: study.learner(kind) for kind in ("knn", "gp")},
+            settings=study.section(SimulationSettings),
+            learners={
+                kind: study.learner(kind).model_dump_json() for kind in ("knn", "gp")
+            },
             code=study.code("application.pipeline.held_out", "learning"),
         script:
             "../scripts/pitfalls.py"

@@ -9,7 +9,7 @@ if study.synthetic:
         benchmark:
             f"{R}/benchmarks/tank.tsv"
         params:
-            settings=study.section("tank")["tank"],
+            settings=study.settings.tank.model_dump_json(),
             code=study.own_code("simulation.synthetic_tank"),
         script:
             "../scripts/tank.py"

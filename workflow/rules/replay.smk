@@ -11,7 +11,7 @@ rule replay:
     benchmark:
         f"{R}/benchmarks/replay/{{model}}/{{run}}.tsv"
     params:
-        settings=study.section("replay", "signals"),
+        settings=study.section(SimulationSettings),
         code=study.code("simulation.replay", "dynamics.effects"),
     script:
         "../scripts/replay.py"
@@ -30,7 +30,7 @@ rule search:
     benchmark:
         f"{R}/benchmarks/search/{{model}}.tsv"
     params:
-        settings=study.section("replay", "signals"),
+        settings=study.section(SimulationSettings),
         code=study.code("application.pipeline.error_conditions"),
     script:
         "../scripts/search.py"
@@ -48,7 +48,7 @@ rule budget:
     benchmark:
         f"{R}/benchmarks/budget/{{run}}.tsv"
     params:
-        settings=study.section("replay", "signals"),
+        settings=study.section(SimulationSettings),
         code=study.code("application.pipeline.forces"),
     script:
         "../scripts/budget.py"

@@ -34,7 +34,7 @@ rule timing:
         f"{R}/benchmarks/timing.tsv"
     threads: workflow.cores
     params:
-        settings=study.section("replay", "signals", "timing"),
+        settings=study.section(PredictorSettings),
         code=study.code("application.pipeline.training", "learning"),
     script:
         "../scripts/timing.py"

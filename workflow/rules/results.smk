@@ -169,8 +169,8 @@ rule track:
         f"{R}/benchmarks/track.tsv"
     params:
         campaign=study.name,
-        settings=study.section("tracking")["tracking"],
-        diagnosis=study.section("search", "signals", "replay", "seed"),
+        settings=study.settings.tracking.model_dump_json(),
+        diagnosis=study.section(DiagnosisSettings),
         code=study.code("application.tracking"),
     script:
         "../scripts/track.py"

@@ -1,5 +1,7 @@
 """Repeat the mistakes of the thesis' public code, on each held-out run."""
 
+import json
+
 from rovsim.application.pipeline.held_out import measure_pitfalls_by_run
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
@@ -11,7 +13,7 @@ if __name__ == "__main__":
             motions=rule.motions(),
             models=rule.models(),
             learners={
-                kind: learner_settings(given, "conf/residual")
+                kind: learner_settings(json.loads(given), "conf/residual")
                 for kind, given in rule.params.learners.items()
             },
             settings=rule.section(SimulationSettings),

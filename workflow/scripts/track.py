@@ -1,5 +1,7 @@
 """Log the study to MLflow: one parent run; in it one run a model, and the diagnosis."""
 
+import json
+
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.snakemake_job import job
 from rovsim.application.tracking.study import StudyFiles, track_study
@@ -17,6 +19,6 @@ if __name__ == "__main__":
                 models=rule.paths("models"),
                 kept=[*rule.paths("figures"), rule.path("report")],
             ),
-            diagnosing=rule.params.diagnosis,
+            diagnosing=json.loads(rule.params.diagnosis),
         )
         write_json(rule.output(), runs)

@@ -1,5 +1,6 @@
 """What surrounds the script of a rule: its files and settings, a log, errors in one message."""
 
+import json
 import logging
 import sys
 import traceback
@@ -65,12 +66,12 @@ class Job:
         return {name: path for name in names for path in self.paths(name)}
 
     def section(self, kind: type[S]) -> S:
-        """The rule's settings as a section of the configuration.
+        """The rule's settings, JSON, as a section of the configuration.
 
         Raises:
             BadInput: one of them does not fit.
         """
-        return checked(kind, dict(self.params.settings), "conf")
+        return checked(kind, json.loads(self.params.settings), "conf")
 
     def motions(self, name: str = "motions") -> list[Motion]:
         """Runs, read."""

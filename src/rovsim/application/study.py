@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from rovsim.application.provenance import digest, own_digest, provenance
-from rovsim.application.settings import Settings, compose
+from rovsim.application.sections import TrainingSettings
+from rovsim.application.settings import Settings, compose, select
 from rovsim.core.errors import BadInput
+from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
-from rovsim.learning.learner import learner
+from rovsim.learning.learner import LearnerSettings, learner, learner_settings
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.reporting.report_data import PER_RUN
@@ -135,30 +137,28 @@ class Study:
         """Train runs of one control."""
         return [r.id for r in self.campaign.runs if r.split == "train" and flown_with(control, r)]
 
-    def learner(self, kind: str) -> dict[str, Any]:
+    def learner(self, kind: str) -> LearnerSettings:
         """Settings of one residual, whichever the configuration chose as default."""
+        return learner_settings(self._residual(kind), "conf/residual")
+
+    def _residual(self, kind: str) -> Mapping[str, object]:
         kept = [word for word in self._overrides if not word.startswith("residual=")]
         if kind != self.settings.residual["kind"]:
             kept = [word for word in kept if not word.startswith("residual.")]
         return compose([*kept, f"residual={kind}"]).residual
 
-    def training(self, residual: str, control: str) -> dict[str, Any]:
-        """What a trained residual depends on, as plain values."""
-        chosen = {"residual": self.learner(residual), "control": control}
-        return self.section("replay", "signals", "seed") | chosen
+    def training(self, residual: str, control: str) -> str:
+        """What a trained residual depends on, as JSON."""
+        chosen = {"residual": self._residual(residual), "control": control}
+        return select(self.settings.model_copy(update=chosen), TrainingSettings).model_dump_json()
 
-    def section(self, *names: str) -> dict[str, Any]:
-        """Parts of the settings as plain values: only what a rule reads."""
-        return {name: getattr(self.settings, name) for name in names} | {
-            name: value.model_dump(mode="json")
-            for name in names
-            if hasattr(value := getattr(self.settings, name), "model_dump")
-        }
+    def section(self, kind: type[Section]) -> str:
+        """A part of the settings as JSON: only what a rule reads, and re-runs for."""
+        return select(self.settings, kind).model_dump_json()
 
-    def signal(self, *names: str) -> dict[str, Any]:
-        """Parts of the signal chain as plain values."""
-        dumped = self.settings.signals.model_dump(mode="json")
-        return {name: dumped[name] for name in names}
+    def signal(self, *names: str) -> str:
+        """Parts of the signal chain as JSON."""
+        return self.settings.signals.model_dump_json(include=set(names))
 
     def code(self, *modules: str) -> str:
         """Digest of modules and all they import: an edit re-runs what it touches."""

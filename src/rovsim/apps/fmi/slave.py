@@ -38,7 +38,10 @@ class Vehicle(Fmi2Slave):
             self._real(name, Fmi2Causality.output, self.state, i, initial=begins)
 
     def to_xml(self, *options):
-        """What describes the unit; pythonfmu 0.7 leaves out the outputs' part in initialisation."""
+        """What describes the unit, with the outputs' part in initialisation.
+
+        pythonfmu 0.7 leaves that out; pythonfmu3 does not, but its FMI 3.0 few tools read.
+        """
         root = super().to_xml(*options)
         structure = root.find("ModelStructure")
         known = SubElement(structure, "InitialUnknowns")

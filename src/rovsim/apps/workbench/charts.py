@@ -8,6 +8,8 @@ from numpy import ndarray as Array
 
 from rovsim.reporting.figures.palette import Look, looks
 
+Options = dict[str, Any]  # of ECharts, plain and deep
+
 POINTS = 1000  # a curve shows at most; a screen is not wider
 INK, SOFT, LINE, MARK = "#1a1a1a", "#555555", "#d9d9d9", "#D55E00"
 TALL, SHORT, GAP, TOP = 104, 56, 36, 40  # px: panels, what lies between, legend
@@ -35,7 +37,7 @@ def points(time: Array, values: Array) -> list[list[float]]:
     return np.stack([np.round(time[::every], 3), np.round(values[::every], 5)], axis=1).tolist()
 
 
-def line_style(look: Look) -> dict[str, Any]:
+def line_style(look: Look) -> Options:
     """Colour, width and dashes of a line."""
     dash = "solid" if isinstance(look.dash, str) else [2 * d for d in look.dash[1]]
     return {"color": look.color, "width": WEIGHT * look.width, "type": dash}
@@ -46,7 +48,7 @@ def height(panels: Sequence[Panel]) -> int:
     return TOP + sum((SHORT if p.short else TALL) + GAP for p in panels) + 24
 
 
-def series_data(time: Array, panels: Sequence[Panel], but: str = "") -> list[dict[str, Any]]:
+def series_data(time: Array, panels: Sequence[Panel], but: str = "") -> list[Options]:
     """The points of every curve, by id; `but` one that has not changed."""
     return [
         {"id": f"{k}/{name}", "data": points(time, values)}
@@ -56,10 +58,10 @@ def series_data(time: Array, panels: Sequence[Panel], but: str = "") -> list[dic
     ]
 
 
-def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> dict[str, Any]:
+def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> Options:
     """Panels one above the other; zoom and pointer move all of them together."""
     every = list(range(len(panels)))
-    found: dict[str, Any] = {
+    found: Options = {
         "legend": {"type": "scroll", "top": 4, "left": 56, "right": 70, "itemWidth": 34,
                    "itemStyle": {"opacity": 0}},
         "toolbox": {
@@ -101,7 +103,7 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
     return found
 
 
-def cursor(panel: int, time: float | None) -> dict[str, Any]:
+def cursor(panel: int, time: float | None) -> Options:
     """A series that is nothing but a line at an instant."""
     at = [] if time is None else [{"xAxis": time}]
     look = {"color": MARK, "width": 1.5, "type": "solid"}
@@ -112,7 +114,7 @@ def cursor(panel: int, time: float | None) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _grids(panels: Sequence[Panel]) -> list[dict[str, Any]]:
+def _grids(panels: Sequence[Panel]) -> list[Options]:
     top, grids = TOP + GAP // 2, []
     for panel in panels:
         size = SHORT if panel.short else TALL
@@ -121,7 +123,7 @@ def _grids(panels: Sequence[Panel]) -> list[dict[str, Any]]:
     return grids
 
 
-def _time_axis(k: int, time: Array, last: bool) -> dict[str, Any]:
+def _time_axis(k: int, time: Array, last: bool) -> Options:
     return {
         "type": "value", "gridIndex": k, "min": float(time[0]), "max": float(time[-1]),
         "axisLabel": {"show": last, "color": SOFT, "hideOverlap": True, "showMinLabel": False,
@@ -134,7 +136,7 @@ def _time_axis(k: int, time: Array, last: bool) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _value_axis(k: int, panel: Panel) -> dict[str, Any]:
+def _value_axis(k: int, panel: Panel) -> Options:
     return {
         "type": "value", "gridIndex": k, "scale": True, "splitNumber": 2 if panel.short else 3,
         "name": f"{panel.title} ({panel.unit})", "nameGap": 10,

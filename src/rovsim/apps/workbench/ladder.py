@@ -1,11 +1,9 @@
 """Ladder: the error falling step by step, down to the noise floor."""
 
-from typing import Any
-
 from nicegui import ui
 
 from rovsim import AXES
-from rovsim.apps.workbench.charts import INK, SOFT
+from rovsim.apps.workbench.charts import INK, SOFT, Options
 from rovsim.apps.workbench.parts import cell, chart, computed, heading, section, table, text
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.reporting.figures.palette import looks
@@ -76,7 +74,7 @@ def _report(bench: Workbench) -> None:
             ui.label(str(path)).classes("soft")
 
 
-def chart_of(ladder: Ladder) -> dict[str, Any]:
+def chart_of(ladder: Ladder) -> Options:
     """Bars from the first step down; the noise floor is a line, for it is a bound and no model."""
     floor = ladder.noise_floor
     shown = [s for s in ladder.models if s.windows_2s is not None]

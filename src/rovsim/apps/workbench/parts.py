@@ -7,6 +7,7 @@ from typing import Any, Callable, Sequence
 
 from nicegui import ui
 
+from rovsim.apps.workbench.charts import Options
 from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 
@@ -96,7 +97,7 @@ def tile_html(title: str, value: float | None, name: str, note: str = "") -> str
 
 
 def chart(
-    options: dict[str, Any], about: str, height: int = 0, on_point_click: Callable | None = None
+    options: Options, about: str, height: int = 0, on_point_click: Callable | None = None
 ) -> ui.echart:
     """An ECharts chart that says what it shows to those who do not see it."""
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}

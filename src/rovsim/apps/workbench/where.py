@@ -7,7 +7,7 @@ import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
-from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
+from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.parts import chart, computed, heading, onward, section, text
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.error_conditions.bins import Table
@@ -176,7 +176,7 @@ def _span(found: Table, k: int) -> str:
     return f"{low:.2g} to {high:.2g} {'°' if unit == 'rad' else unit}".replace("-", "−")
 
 
-def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> dict[str, Any]:
+def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> Options:
     """Means of the bins with two standard errors, from where.json; grey: seen too rarely."""
     colors = [BLUE if yes else GREY for yes in found.judged]
     centers = [f"{c:.2g}".replace("-", "−") for c in found.center]
@@ -213,7 +213,7 @@ WHISKER = (
 )
 
 
-def samples_chart(time, error, inside, run: str, axis: str) -> dict[str, Any]:
+def samples_chart(time, error, inside, run: str, axis: str) -> Options:
     """Errors of one run over time, those inside the bin as large orange dots."""
     pairs = np.round(np.stack([time, error], axis=1), 5)
     return {
