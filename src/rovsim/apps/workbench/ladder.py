@@ -6,10 +6,10 @@ from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, SOFT, Options
 from rovsim.apps.workbench.parts import cell, chart, computed, heading, section, table, text
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.reporting.figures.palette import looks
+from rovsim.reporting.charts import chart_ladder
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import short, significant
-from rovsim.results.base import or_nan
+from rovsim.reporting.wording import significant
+from rovsim.results.base import or_none
 from rovsim.results.ladder import Ladder
 
 TITLE, QUESTION = "Ladder", "How far down does the error go?"
@@ -76,14 +76,13 @@ def _report(bench: Workbench) -> None:
 
 def chart_of(ladder: Ladder) -> Options:
     """Bars from the first step down; the noise floor is a line, for it is a bound and no model."""
-    floor = ladder.noise_floor
-    shown = [s for s in ladder.models if s.windows_2s is not None]
-    style = looks([s.model for s in shown])
-    bars = [{"value": s.windows_2s, "itemStyle": {"color": style[s.model].color}} for s in shown]
+    shown = chart_ladder(ladder)
+    floor = or_none(shown.noise_floor)
+    bars = [{"value": or_none(b.value), "itemStyle": {"color": b.look.color}} for b in shown.bars]
     line = {
         "symbol": "none", "silent": True, "data": [{"xAxis": floor}],
         "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
-        "label": {"formatter": f"noise floor {significant(or_nan(floor))}", "position": "start",
+        "label": {"formatter": f"noise floor {significant(shown.noise_floor)}", "position": "start",
                   "color": INK},
     }  # fmt: skip
     return {
@@ -91,7 +90,7 @@ def chart_of(ladder: Ladder) -> Options:
         "xAxis": {"type": "value", "min": 0, "axisLabel": {"color": SOFT},
                   "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
         "yAxis": {"type": "category", "inverse": True, "axisTick": {"show": False},
-                  "data": [short(s.model, 28) for s in shown], "axisLabel": {"color": INK}},
+                  "data": [bar.label for bar in shown.bars], "axisLabel": {"color": INK}},
         "series": [{
             "type": "bar", "data": bars, "barMaxWidth": 22,
             "label": {"show": True, "position": "right", "color": INK,

@@ -13,6 +13,7 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import SearchedModel
+from rovsim.reporting.charts import chart_bins, chart_conditions
 from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.results.error_conditions import ConditionFinding, ConditionTable
 
@@ -94,16 +95,14 @@ class Where:
         """Share of each axis' error that varies with each condition."""
         section("What the error varies with")
         text("Darker: more of that axis' squared error. Click a field to see its bins.", "soft")
-        axes = [a for a in AXES if self.told.axes[a]]
+        shown = chart_conditions(self.told, MOST)
+        axes, conditions = list(shown.axes), list(reversed(shown.conditions))
         if not axes:
             return
-        tables = self.told.axes
-        best = {c: max(tables[a][c].share_of_error for a in axes) for c in tables[axes[0]]}
-        self.conditions = sorted(best, key=lambda c: -best[c])[:MOST]
         data = [
-            [k, j, tables[a][c].share_of_error]
-            for j, c in enumerate(reversed(self.conditions))
-            for k, a in enumerate(axes)
+            [k, j, float(share)]
+            for j, row in enumerate(shown.share[::-1])
+            for k, share in enumerate(row)
         ]
         chart(
             {
@@ -112,7 +111,7 @@ class Where:
                 "xAxis": {"type": "category", "data": axes, "position": "top",
                           "axisLabel": {"color": INK, "interval": 0},
                           "axisLine": {"show": False}, "axisTick": {"show": False}},
-                "yAxis": {"type": "category", "data": list(reversed(self.conditions)),
+                "yAxis": {"type": "category", "data": conditions,
                           "axisLabel": {"color": INK, "interval": 0, "width": 150,
                                         "overflow": "truncate"},
                           "axisLine": {"show": False}, "axisTick": {"show": False}},
@@ -124,9 +123,9 @@ class Where:
                                                     " (100 * p.value[2]).toFixed(0)"}}],
             },
             "Share of the error by axis and condition, percent",
-            44 + 30 * len(self.conditions),
+            44 + 30 * len(conditions),
             on_point_click=lambda e: self.choose(
-                axes[e.data[0]], list(reversed(self.conditions))[e.data[1]]
+                axes[e.data[0]], conditions[e.data[1]]
             ),
         )  # fmt: skip
 
@@ -178,17 +177,16 @@ def _span(found: Table, k: int) -> str:
 
 def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> Options:
     """Means of the bins with two standard errors, from where.json; grey: seen too rarely."""
-    colors = [BLUE if yes else GREY for yes in found.judged]
-    centers = [f"{c:.2g}".replace("-", "−") for c in found.center]
-    whiskers = [
-        [k, m - 2 * e, m + 2 * e]
-        for k, (m, e) in enumerate(zip(found.mean, found.std_error, strict=True))
-    ]
+    curve = chart_bins(found)
+    colors = [BLUE if yes else GREY for yes in curve.judged]
+    centers = [f"{c:.2g}".replace("-", "−") for c in curve.center]
+    low, high = curve.mean - curve.error, curve.mean + curve.error
+    whiskers = [[k, *ends] for k, ends in enumerate(np.stack([low, high], axis=1).tolist())]
     return {
         "grid": {"left": 64, "right": 16, "top": 30, "bottom": 44},
         "tooltip": {"trigger": "item"},
         "xAxis": {"type": "category", "data": centers, "nameLocation": "middle", "nameGap": 26,
-                  "name": f"{condition} ({found.unit})" if found.unit else condition,
+                  "name": f"{condition} ({curve.unit})" if curve.unit else condition,
                   "nameTextStyle": {"color": SOFT},
                   "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
                   "axisLabel": {"color": SOFT}},

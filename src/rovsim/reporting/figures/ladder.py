@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rovsim.reporting.charts import chart_ladder
 from rovsim.reporting.figures.legends import legend, note, nothing
-from rovsim.reporting.figures.palette import FAMILIES, looks
+from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short, significant
-from rovsim.results.base import or_nan
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 
 SECTION = "ladder"
@@ -27,17 +27,16 @@ FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the mode
 @styled()
 def draw(*, ladder: Ladder) -> Figure:
     """Draw `windows_2s` of `ladder.json` from the first step down, the noise floor as a line."""
-    steps = {step.model: or_nan(step.windows_2s) for step in ladder.models}
-    floor = or_nan(ladder.noise_floor)
-    style = looks(steps)
+    chart = chart_ladder(ladder)
+    steps, floor = {bar.model: bar.value for bar in chart.bars}, chart.noise_floor
     figure = sheet(26 + 7.5 * max(len(steps), 3))
     axes = figure.subplots()
     top = _top(steps, floor)
-    for row, (name, value) in enumerate(steps.items()):
+    for row, bar in enumerate(chart.bars):
         y = len(steps) - 1 - row
-        axes.barh(y, np.nan_to_num(value), 0.66, **style[name].bar())
-        _value(axes, y, value, top)
-    axes.set_yticks(range(len(steps)), [short(n, 28) for n in reversed(steps)])
+        axes.barh(y, np.nan_to_num(bar.value), 0.66, **bar.look.bar())
+        _value(axes, y, bar.value, top)
+    axes.set_yticks(range(len(steps)), [bar.label for bar in reversed(chart.bars)])
     axes.set_ylim(-0.6, max(len(steps), 1) - 0.4)
     axes.set_xlim(0, top)
     axes.tick_params(axis="y", length=0)

@@ -6,7 +6,6 @@ Not a figure of the study, so there is no `draw` here.
 import io
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,7 +18,7 @@ from rovsim import AXES
 from rovsim.core.files import appearing
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.evaluation.error_conditions.bins import Table
-from rovsim.reporting.figures.palette import FAMILIES
+from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import MM, WIDTH, styled
 from rovsim.reporting.units import ACCELERATION_UNITS
 
@@ -29,7 +28,7 @@ COLORS = 64  # in the file: black, orange and greys
 EXCERPT = 20.0  # s
 MISSED, EFFECT = "what the model misses", "what the effect adds to the model"
 BLACK, ORANGE = FAMILIES["measured"].color, FAMILIES["nominal"].color
-LINE: dict[str, Any] = {"color": ORANGE, "linewidth": 1.8}
+LINE: Style = {"color": ORANGE, "linewidth": 1.8}
 
 
 @dataclass(frozen=True, eq=False)

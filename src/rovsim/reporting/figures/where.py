@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rovsim import AXES
+from rovsim.reporting.charts import BinCurve, chart_bins
 from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import Look, looks
 from rovsim.reporting.figures.style import sheet, styled
@@ -59,9 +60,8 @@ def strongest(models: Sequence[Mapping[str, ConditionTable]], count: int = COLUM
 
 def _title(name: str, tables: Sequence[ConditionTable]) -> str:
     shares = ", ".join(f"{100 * t.share_of_error:.0f}" for t in tables)
-    unit = "deg" if tables[0].unit == "rad" else tables[0].unit
     name = name.replace("distance to the nearest", "distance to")
-    return f"{name} ({unit}): {shares} %"
+    return f"{name} ({chart_bins(tables[0]).unit}): {shares} %"
 
 
 def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str, Look]) -> None:
@@ -73,28 +73,28 @@ def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str,
     last = list(tables.values())[-1]
     _counts(axes, last)
     for order, (name, table) in enumerate(tables.items()):
-        _curve(axes, table, style[name], 2 + order)
+        _curve(axes, chart_bins(table), style[name], 2 + order)
     axes.locator_params(axis="x", nbins=5)
-    centers = _scaled(last.center, last)[np.array(last.blocks) > 0]
+    shown = chart_bins(last)
+    centers = shown.center[shown.seen]
     room = 0.08 * max(float(np.ptp(centers)), 1e-9)
     axes.set_xlim(float(centers.min()) - room, float(centers.max()) + room)
 
 
-def _curve(axes: Axes, table: ConditionTable, look: Look, order: int) -> None:
-    x, mean, error = _scaled(table.center, table), np.array(table.mean), np.array(table.std_error)
-    judged, there = np.array(table.judged, bool), np.array(table.blocks) > 0
+def _curve(axes: Axes, curve: BinCurve, look: Look, order: int) -> None:
+    x, mean, judged = curve.center, curve.mean, curve.judged
     axes.plot(x[judged], mean[judged], zorder=order, **look.line())
-    for part, face in ((judged, look.color), (there & ~judged, "white")):
+    for part, face in ((judged, look.color), (curve.seen & ~judged, "white")):
         axes.errorbar(
-            x[part], mean[part], yerr=2 * error[part] if face == look.color else None,
-            fmt="o", markersize=3, color=look.color, markerfacecolor=face, elinewidth=0.8,
+            x[part], mean[part], yerr=curve.error[part] if face == look.color else None, fmt="o",
+             markersize=3, color=look.color, markerfacecolor=face, elinewidth=0.8,
             zorder=order,
         )  # fmt: skip
 
 
 def _counts(axes: Axes, table: ConditionTable) -> None:
     """How many blocks lie in each bin, as grey bars along the lower edge."""
-    count, edges = np.array(table.blocks, float), _scaled(table.edges, table)
+    count, edges = np.array(table.blocks, float), chart_bins(table).edges
     below = axes.twinx()
     below.set_zorder(axes.get_zorder() - 1)
     axes.patch.set_visible(False)
@@ -104,11 +104,6 @@ def _counts(axes: Axes, table: ConditionTable) -> None:
     below.grid(False)
     for spine in below.spines.values():
         spine.set_visible(False)
-
-
-def _scaled(places: Sequence[float], table: ConditionTable) -> np.ndarray:
-    """Places along the condition, in degrees where it is an angle."""
-    return np.degrees(places) if table.unit == "rad" else np.array(places)
 
 
 def _remarks(models: Mapping[str, ModelConditions]) -> Sequence[str]:

@@ -1,10 +1,9 @@
 """The whole search at a glance: share of the error each condition explains on each axis."""
 
-import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from rovsim import AXES
+from rovsim.reporting.charts import chart_conditions
 from rovsim.reporting.figures.legends import note, nothing
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short
@@ -23,21 +22,19 @@ BLUES = LinearSegmentedColormap.from_list("shares", ["#ffffff", "#0072B2"])
 def draw(*, where: ErrorConditions) -> Figure:
     """Draw `share_of_error` of the last model of `where.json`; framed where it is a finding."""
     name, model = list(where.models.items())[-1] if where.models else ("", None)
-    tables = model.axes if model else {}
-    rows = list(next((t for t in tables.values() if t), {}))
+    chart = chart_conditions(model) if model else None
+    rows = chart.conditions if chart else ()
     figure = sheet(30 + 4.6 * max(len(rows), 5))
     axes = figure.subplots()
     axes.grid(False)
-    if model is None or not rows:
+    if model is None or chart is None or not rows:
         nothing(axes, "nothing was searched")
         return figure
-    shares = np.array([[tables[a][r].share_of_error for a in AXES] for r in rows])
-    axes.imshow(shares, cmap=BLUES, vmin=0, vmax=1, aspect="auto")
-    found = {(f.axis, f.condition) for f in model.findings}
+    axes.imshow(chart.share, cmap=BLUES, vmin=0, vmax=1, aspect="auto")
     for y, row in enumerate(rows):
-        for x, axis in enumerate(AXES):
-            _cell(axes, x, y, float(shares[y, x]), (axis, row) in found)
-    axes.set_xticks(range(6), AXES)
+        for x, axis in enumerate(chart.axes):
+            _cell(axes, x, y, float(chart.share[y, x]), (axis, row) in chart.found)
+    axes.set_xticks(range(len(chart.axes)), chart.axes)
     axes.xaxis.tick_top()
     axes.set_yticks(range(len(rows)), rows)
     axes.tick_params(length=0)
