@@ -2,13 +2,16 @@
 
 Inside rovsim the world is NED and the body FRD (Fossen 2021, sec. 2.1). Quaternions are unit,
 scalar first (w, x, y, z), and rotate body vectors into the world: x_world = R(q) x_body.
-Every function takes arrays with any leading axes.
+Every function takes arrays with any leading axes. SciPy turns other forms into quaternions; what
+takes quaternions is computed here, since SciPy refuses those of frames that nobody saw (NaN) and of
+models that diverged, scales all to unit length, and loses their sign.
 """
 
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.spatial.transform import Rotation
 
 WorldAxes = Literal["z_up", "ned"]
 BodyAxes = Literal["flu", "frd"]
@@ -71,23 +74,8 @@ def matrix(q: Array) -> Array:
 
 
 def from_matrix(R: Array) -> Array:
-    """Quaternions (..., 4) with w >= 0 of rotation matrices (..., 3, 3), noise tolerated.
-
-    The nearest rotation's quaternion is the leading eigenvector of Bar-Itzhack's symmetric
-    matrix (J. Guid. Control Dyn. 23(6), 2000, eq. 6).
-    """
-    r = np.moveaxis(R, (-2, -1), (0, 1))
-    K = np.stack(
-        [
-            [r[0, 0] - r[1, 1] - r[2, 2], r[1, 0] + r[0, 1], r[2, 0] + r[0, 2], r[2, 1] - r[1, 2]],
-            [r[1, 0] + r[0, 1], r[1, 1] - r[0, 0] - r[2, 2], r[2, 1] + r[1, 2], r[0, 2] - r[2, 0]],
-            [r[2, 0] + r[0, 2], r[2, 1] + r[1, 2], r[2, 2] - r[0, 0] - r[1, 1], r[1, 0] - r[0, 1]],
-            [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], r[0, 0] + r[1, 1] + r[2, 2]],
-        ]
-    )
-    _, vectors = np.linalg.eigh(np.moveaxis(K, (0, 1), (-2, -1)) / 3.0)
-    q = vectors[..., :, -1][..., [3, 0, 1, 2]]
-    return np.where(q[..., :1] < 0, -q, q)
+    """Quaternions (..., 4) with w >= 0 of the rotations nearest to R (..., 3, 3)."""
+    return Rotation.from_matrix(R).as_quat(canonical=True, scalar_first=True)
 
 
 def continuous(q: Array) -> Array:
@@ -99,16 +87,8 @@ def continuous(q: Array) -> Array:
 
 def from_euler(roll: Array, pitch: Array, yaw: Array) -> Array:
     """Quaternions (..., 4) of the angles R = Rz(yaw) Ry(pitch) Rx(roll) (Fossen 2021, eq. 2.31)."""
-    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
-    return np.stack(
-        [
-            cy * cp * cr + sy * sp * sr,
-            cy * cp * sr - sy * sp * cr,
-            cy * sp * cr + sy * cp * sr,
-            sy * cp * cr - cy * sp * sr,
-        ],
-        axis=-1,
-    )
+    angles = np.stack(np.broadcast_arrays(yaw, pitch, roll), axis=-1)
+    return Rotation.from_euler("ZYX", angles).as_quat(scalar_first=True)
 
 
 def to_euler(q: Array) -> Array:
@@ -122,8 +102,8 @@ def to_euler(q: Array) -> Array:
 
 def exp(rotation: Array) -> Array:
     """Quaternions (..., 4) of rotation vectors (..., 3) in rad."""
-    half = 0.5 * np.linalg.norm(rotation, axis=-1, keepdims=True)
-    return np.concatenate([np.cos(half), 0.5 * rotation * np.sinc(half / np.pi)], axis=-1)
+    # SciPy takes no read-only array
+    return Rotation.from_rotvec(np.array(rotation)).as_quat(scalar_first=True)
 
 
 def log(q: Array) -> Array:
