@@ -13,6 +13,7 @@ from rovsim.dynamics.catalogue import Catalogue
 
 SOURCE = Path(rovsim.__file__).parent
 MODEL = "rovsim.dynamics.model"
+OF_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
 LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning")
 UNRELATED = ("command", "tracking", "timing", "blind", "bench", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch")
@@ -48,9 +49,9 @@ def own_digest(package: str) -> str:
 
 
 def _discovered(modules: set[str]) -> set[str]:
-    """Packages found by looking into their folder; a model may hold any effect."""
+    """Packages found by looking into their folder; a model may hold any effect, and is compiled."""
     found = {package for package in LOOKED_INTO if package in modules}
-    return found | ({"rovsim.dynamics.effects"} if MODEL in modules else set())
+    return found | (set(OF_MODELS) if MODEL in modules else set())
 
 
 @cache

@@ -5,7 +5,7 @@ They stand beside the catalogue in a diagnosis and are never named as effects (i
 
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.effects.parameters import per_axis
-from rovsim.dynamics.engine.vectors import inlined
+from rovsim.dynamics.engine.compiled import inlined
 
 
 @inlined

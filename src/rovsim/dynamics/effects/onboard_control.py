@@ -11,7 +11,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.effects.base import Autopilot, Parameter, Wrench
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.dynamics.engine.vectors import inlined
+from rovsim.dynamics.engine.compiled import inlined
 
 SPEEDS = ("m/s", "rad/s")
 # Where a fit of loops on all axes begins: what this vehicle reaches at full stick (Blue Robotics:

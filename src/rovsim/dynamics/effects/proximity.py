@@ -4,7 +4,7 @@ from math import exp
 
 from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.dynamics.engine.vectors import inlined
+from rovsim.dynamics.engine.compiled import inlined
 
 
 @inlined

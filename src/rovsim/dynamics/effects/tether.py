@@ -6,7 +6,8 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.dynamics.engine.vectors import cross, dot3, inlined, into_body
+from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.engine.vectors import cross, dot3, into_body
 
 ATTACHMENT = tuple(
     Parameter(f"attachment_{axis}", "m", f"{axis}_t", default=x, scale=0.1, fitted=False)

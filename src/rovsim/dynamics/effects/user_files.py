@@ -119,8 +119,8 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     from numba import types
     from numba.core.errors import NumbaError
 
+    from rovsim.dynamics.engine.compiled import inlined
     from rovsim.dynamics.engine.types import EXAMPLE
-    from rovsim.dynamics.engine.vectors import inlined
 
     wrench = inspect.getattr_static(cls, "wrench")
     if not isinstance(wrench, staticmethod):

@@ -1,7 +1,12 @@
-"""Compiled engines: one generated module per list of wrench effects, cached on disk by Numba.
+"""What is compiled is kept on disk, in one folder for each state of the sources.
 
-Closures do not cache, modules do. The module's name is a digest of everything it is compiled from,
-so an edited kernel never meets an old engine.
+Numba keeps a function by its own file, and knows nothing of the functions that it calls. So all
+that is kept lies in a folder named by a digest of everything that can be compiled into it: the
+engine, the kernels of effects and of learned residuals, and Numba's version. Whatever is edited,
+the next run finds an empty folder; nothing in it is ever stale.
+
+An engine is a small module in that folder, written for a list of wrench effects: it names their
+kernels, chains them, and hands the chain to the functions of `integration` and `observer`.
 """
 
 import hashlib
@@ -9,10 +14,11 @@ import importlib.util
 import inspect
 import os
 import sys
+import textwrap
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 import numba
 from filelock import FileLock
@@ -20,13 +26,56 @@ from platformdirs import user_cache_path
 
 from rovsim.core.files import write_text
 
-FOLDER = Path(__file__).parent
-PARTS = "integration", "observer"  # what uses the equation
+MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
+# What makes a function callable from outside takes half of the time that it takes to compile.
+UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+DYNAMICS = Path(__file__).parents[1]
+ROOMS = ("engine", "effects", "learned")  # whose functions are compiled
 
 
 def cache_folder() -> Path:
-    """Where engines are kept: $ROVSIM_CACHE, or the user's cache folder."""
-    return Path(os.environ.get("ROVSIM_CACHE") or user_cache_path("rovsim")) / "engines"
+    """Where what is compiled from these sources is kept: in $ROVSIM_CACHE or the user's cache."""
+    root = Path(os.environ.get("ROVSIM_CACHE") or user_cache_path("rovsim"))
+    return root / "compiled" / _sources_digest()
+
+
+@cache
+def _sources_digest() -> str:
+    files = sorted(file for room in ROOMS for file in DYNAMICS.joinpath(room).glob("*.py"))
+    return _digest(numba.__version__.encode(), *(file.read_bytes() for file in files))
+
+
+def _digest(*parts: bytes) -> str:
+    return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
+
+
+def keep(**options: Any) -> Callable[[Callable], Any]:
+    """Compile a function that Python or a kept function calls, and keep what comes of it.
+
+    What it calls may lie in `ROOMS`, or in the module of a wrench effect.
+    """
+
+    def decorate(function: Callable) -> Any:
+        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())  # type: ignore[attr-defined]
+        try:
+            return numba.njit(cache=True, **options)(function)
+        finally:
+            numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
+
+    return decorate
+
+
+kept = keep(nogil=True, **MATHS)  # what Python calls, from any thread
+# Parts that are the same in every engine.
+inline_shared = keep(forceinline=True, **MATHS)
+inline_internal = keep(forceinline=True, **MATHS, **UNSEEN)  # not called from Python
+internal = keep(**MATHS, **UNSEEN)  # too large or too rare to be inlined
+# Parts that depend on the effects: compiled anew for each engine, and kept as parts of it. What is
+# handed `extra` must be inlined: a call would need its address, which no other process knows.
+inlined = numba.njit(forceinline=True, **MATHS)  # helpers of an effect's kernel
+inline_anew = numba.njit(forceinline=True, **MATHS, **UNSEEN)
+entry = numba.njit(inline="always", **MATHS)  # the body of what an engine keeps
 
 
 def engine(wrenches: Sequence[Any]) -> ModuleType:
@@ -36,64 +85,112 @@ def engine(wrenches: Sequence[Any]) -> ModuleType:
 
 @cache
 def _engine(wrenches: tuple[Any, ...]) -> ModuleType:
-    equation = _replaced("equation", "extra", _chain(wrenches))
-    source = equation + "".join(_replaced(part, "equation", "") for part in PARTS)
-    name = f"rovsim_engine_{_digest(source, wrenches)}"
-    path = cache_folder() / f"{name}.py"
-    with FileLock(_made(path.parent) / f"{name}.lock"):
-        if not path.exists():
-            write_text(path, source)
-        return _imported(name, path, wrenches)
-
-
-def _replaced(template: str, mark: str, text: str) -> str:
-    """A template file in which what stands between two marks is replaced."""
-    before, rest = (FOLDER / f"{template}.py").read_text(encoding="utf-8").split(f"# <{mark}>")
-    return before + text + rest.split(f"# </{mark}>")[1]
-
-
-def _made(folder: Path) -> Path:
+    text = _engine_text(wrenches)
+    files = {str(inspect.getsourcefile(wrench)) for wrench in wrenches}
+    foreign = sorted(f for f in files if not Path(f).is_relative_to(DYNAMICS))
+    name = f"rovsim_engine_{_digest(text.encode(), *(Path(f).read_bytes() for f in foreign))}"
+    folder = cache_folder()
     folder.mkdir(parents=True, exist_ok=True)
-    return folder
+    path = folder / f"{name}.py"
+    with FileLock(path.with_suffix(".lock")):
+        if not path.exists():
+            write_text(path, text)
+        return _imported(name, path)
 
 
-def _imported(name: str, path: Path, wrenches: tuple[Any, ...]) -> ModuleType:
+def _imported(name: str, path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    module.__dict__["WRENCHES"] = wrenches
     sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
 
 
-def _chain(wrenches: tuple[Any, ...]) -> str:
-    """Source of `extra`: every kernel gets its slice of p as a named tuple."""
-    lines, at = [], 0
-    for i, wrench in enumerate(wrenches):
-        count = len(wrench.parameters)
-        values = "".join(f"p[{k}], " for k in range(at, at + count))
-        lines.append(f"    tau = add6(tau, 1.0, kernel_{i}(at, Named_{i}({values})))")
-        at += count
-    names = [
-        f"Named_{i}, kernel_{i} = WRENCHES[{i}].named_parameters(), "
-        f"inline_internal(WRENCHES[{i}].wrench)  # {wrench.id}"
-        for i, wrench in enumerate(wrenches)
-    ]
-    head = ["", *names, "", "", "@inline_internal", "def extra(at, p):"]
-    start = "    tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)"
-    return "\n".join([*head, start, *lines, "    return tau"])
+ENGINE = '''\
+"""The equation of motion with {names}.
+
+Written by rovsim.dynamics.engine.compiled, so that Numba can keep what it compiles.
+"""
+
+{imports}{kernels}
+
+@inline_anew
+def extra(at, p):
+    """Wrench of these effects, each with its part of the parameters p (k,)."""
+    tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+{pushes}    return tau
 
 
-def _digest(source: str, wrenches: tuple[Any, ...]) -> str:
-    """Digest of the engine's source, of all that its kernels may call, and of Numba."""
-    from rovsim.dynamics.learned.predictor import FILES
+@kept
+def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
+    integration.integrate(extra, jobs, h, stride, bodies, inputs, p, data, site, out)
 
-    package = FOLDER.parent
-    files = {*package.glob("engine/*.py"), *package.glob("effects/*.py"), *FILES}
-    files |= {Path(str(inspect.getsourcefile(wrench))) for wrench in wrenches}
-    content = hashlib.sha256(f"{source}{numba.__version__}".encode())
-    for file in sorted(files):
-        content.update(file.read_bytes())
-    return content.hexdigest()[:16]
+
+@kept
+def advance(state, memory, t, h, bodies, inputs, p, data, site):
+    integration.advance(extra, state, memory, t, h, bodies, inputs, p, data, site)
+
+
+@kept
+def heun(state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
+    integration.heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out)
+
+
+@kept
+def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
+    integration.accelerations(extra, times, states, memory, bodies, inputs, p, data, site, out)
+
+
+@kept
+def observe(jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out):
+    observer.observe(
+        extra, jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
+    )
+'''
+IMPORTS = """\
+from rovsim.dynamics.engine import integration, observer
+from rovsim.dynamics.engine.compiled import inline_anew, kept
+from rovsim.dynamics.engine.vectors import add6
+"""
+KERNEL = """
+{id}_wrench = inline_anew({name}.wrench)
+{id}_parameters = {name}.named_parameters()
+"""
+PUSH = """\
+    own = {id}_parameters(
+{values}
+    )
+    tau = add6(tau, 1.0, {id}_wrench(at, own))
+"""
+COLUMNS, MARGIN = 92, " " * 8  # of the parameters in `PUSH`
+
+
+def _engine_text(wrenches: Sequence[Any]) -> str:
+    """Source of the module of an engine; an effect may act in it more than once."""
+    known = list(dict.fromkeys(wrenches))
+    pushes, first = "", 0
+    for wrench in wrenches:
+        after = first + len(wrench.parameters)
+        values = textwrap.fill(", ".join(f"p[{k}]" for k in range(first, after)), COLUMNS)
+        pushes += PUSH.format(id=wrench.id, values=textwrap.indent(values, MARGIN))
+        first = after
+    imports = {f"from {w.__module__} import {w.__name__}{_alias(w, known)}\n" for w in known}
+    return ENGINE.format(
+        names=", ".join(wrench.id for wrench in known) or "no further effects",
+        imports="".join(sorted(imports | set(IMPORTS.splitlines(keepends=True)))),
+        kernels="".join(KERNEL.format(id=w.id, name=_name(w, known)) for w in known),
+        pushes=pushes,
+    )
+
+
+def _name(wrench: Any, known: Sequence[Any]) -> str:
+    """What a class is called in an engine: two of one name go by their ids."""
+    alike = [one for one in known if one.__name__ == wrench.__name__]
+    return wrench.__name__ if len(alike) == 1 else f"{wrench.__name__}_{wrench.id}"
+
+
+def _alias(wrench: Any, known: Sequence[Any]) -> str:
+    name = _name(wrench, known)
+    return "" if name == wrench.__name__ else f" as {name}"

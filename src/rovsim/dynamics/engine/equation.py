@@ -1,7 +1,7 @@
-"""Fossen's equation of motion, compiled by Numba. With `integration` this file is a template.
+"""Fossen's equation of motion, compiled by Numba.
 
-`rovsim.dynamics.engine.compiled` writes a copy of both in which `extra` calls the wrench kernels
-of one model, so that LLVM inlines them and Numba caches the result on disk.
+`extra(at, p)` is the wrench of one model's further effects: a compiled function that is handed down
+to where it is called, so that LLVM inlines the kernels of the effects there.
 
     M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r + g(eta)
         = tau_thrust + tau_extra                                      (Fossen 2021, eq. 6.1, 10.135)
@@ -11,31 +11,19 @@ State: position NED, quaternion body to world, body velocity. SI, float64, FRD a
 
 import numpy as np
 
+from rovsim.dynamics.engine.compiled import inline_anew, inline_internal, internal
 from rovsim.dynamics.engine.types import At, State
 from rovsim.dynamics.engine.vectors import (
     add3,
     add6,
     cross,
     dot3,
-    inline_internal,
-    internal,
     into_body,
     into_world,
     times6,
     vector3,
     vector6,
 )  # fmt: skip
-
-# <extra>
-
-
-@inline_internal
-def extra(at, p):
-    """Wrench of the model's further effects, parameters p (k,)."""
-    return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-
-
-# </extra>
 
 
 @inline_internal
@@ -130,8 +118,8 @@ def thrust_loss(force, advance, B, directions, nu_r):
     return vector6(tau)
 
 
-@inline_internal
-def accelerate(at, body, p, thrust, force):
+@inline_anew
+def accelerate(extra, at, body, p, thrust, force):
     """Body acceleration under a thruster wrench (6,) made of thruster forces (n,)."""
     tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
     tau = add6(tau, -1.0, coriolis(body.M_A, at.nu_r))
@@ -156,8 +144,8 @@ def diagonal(a, b):
     )  # fmt: skip
 
 
-@inline_internal
-def slope(t, x, body, p, step, correction, site):
+@inline_anew
+def slope(extra, t, x, body, p, step, correction, site):
     """Rate of change of the state at time t; `correction` (6,) adds to the acceleration."""
     thrust, force, demand, duration = step
     R = rotation(x.attitude)
@@ -166,5 +154,5 @@ def slope(t, x, body, p, step, correction, site):
     at = At(
         t, duration, x.position, R, x.nu, nu_r, nu_c_dot, drag, inertia, demand, site[0], site[1]
     )
-    nu_dot = add6(accelerate(at, body, p, thrust, force), 1.0, correction)
+    nu_dot = add6(accelerate(extra, at, body, p, thrust, force), 1.0, correction)
     return State(into_world(R, x.nu), quaternion_rate(x.attitude, x.nu), nu_dot)

@@ -1,26 +1,17 @@
-"""Integration of the equation of motion. With `equation` this file is a template.
-
-`rovsim.dynamics.engine.compiled` writes both into one module, where these functions meet the
-`slope` of one model instead of the imported one.
-"""
+"""Integration of the equation of motion; `extra` as in `equation`, which it is handed on to."""
 
 from math import exp, sqrt
 
 import numpy as np
 
-# <equation>
+from rovsim.dynamics.engine.compiled import entry, inline_anew, inline_internal, internal
 from rovsim.dynamics.engine.equation import flow, rotation, slope
-
-# </equation>
 from rovsim.dynamics.engine.types import Constants, State
 from rovsim.dynamics.engine.vectors import (
     add3,
     add4,
     add6,
-    compiled,
     each6,
-    inline_internal,
-    internal,
     matrix6,
     times6,
     vector3,
@@ -50,13 +41,13 @@ def renormalised(x):
     return State(x.position, (w / length, i / length, j / length, k / length), x.nu)
 
 
-@inline_internal
-def runge_kutta(t, x, h, body, p, step, correction, site):
+@inline_anew
+def runge_kutta(extra, t, x, h, body, p, step, correction, site):
     """One classical Runge-Kutta 4 step."""
-    k1 = slope(t, x, body, p, step, correction, site)
-    k2 = slope(t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)
-    k3 = slope(t + 0.5 * h, moved(x, 0.5 * h, k2), body, p, step, correction, site)
-    k4 = slope(t + h, moved(x, h, k3), body, p, step, correction, site)
+    k1 = slope(extra, t, x, body, p, step, correction, site)
+    k2 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)
+    k3 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k2), body, p, step, correction, site)
+    k4 = slope(extra, t + h, moved(x, h, k3), body, p, step, correction, site)
     x = moved(moved(x, h / 6.0, k1), h / 3.0, k2)
     return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
 
@@ -94,10 +85,10 @@ def memory_after(memory, x, after, h, body):
     return lagged(memory, add6(ZERO6, 0.5, mean), h * body.forgets)
 
 
-@internal
-def learned(t, x, body, p, step, push, data, site, features, a_res):
+@inline_anew
+def learned(extra, t, x, body, p, step, push, data, site, features, a_res):
     """Learned acceleration error at x. tau_res = M a_res, so it simply adds to nu_dot."""
-    base = slope(t, x, body, p, step, push, site)
+    base = slope(extra, t, x, body, p, step, push, site)
     assemble_one(data, x.nu, base.nu, step[0], rotation(x.attitude), features)
     evaluate(data, features, a_res)
     return vector6(a_res)
@@ -149,23 +140,23 @@ def site_of(site):
     return walls, vector3(site.axes)
 
 
-@inline_internal
-def stepped(t, x, memory, h, body, own, step, data, place, features, a_res):
+@inline_anew
+def stepped(extra, t, x, memory, h, body, own, step, data, place, features, a_res):
     """State and memory one step later; a learned residual is held over the step."""
     push = ZERO6
     if body.forgets != 0.0:
         push = push_over_step(x, memory, h, body)
     if data.size:
-        a_learned = learned(t, x, body, own, step, push, data, place, features, a_res)
+        a_learned = learned(extra, t, x, body, own, step, push, data, place, features, a_res)
         push = add6(push, 1.0, a_learned)
-    after = runge_kutta(t, x, h, body, own, step, push, place)
+    after = runge_kutta(extra, t, x, h, body, own, step, push, place)
     if body.forgets != 0.0:
         memory = memory_after(memory, x, after, h, body)
     return after, memory
 
 
-@compiled
-def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
+@entry
+def integrate(extra, jobs, h, stride, bodies, inputs, p, data, site, out):
     """Integrate the jobs; after every `stride` steps a state goes into the next row of out."""
     place, features, a_res = site_of(site), np.empty(FEATURES), np.empty(6)
     for job in range(jobs.first.size):
@@ -174,28 +165,30 @@ def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
         memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
         for n in range(jobs.steps[job]):
             step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
-            x, memory = stepped(t, x, memory, h, body, own, step, data, place, features, a_res)
+            x, memory = stepped(
+                extra, t, x, memory, h, body, own, step, data, place, features, a_res
+            )
             left -= 1
             if left == 0:
                 store(x, out[row])
                 row, left = row + 1, stride
 
 
-@compiled
-def advance(state, memory, t, h, bodies, inputs, p, data, site):
+@entry
+def advance(extra, state, memory, t, h, bodies, inputs, p, data, site):
     """Move state (13,) and memory (6,) on over all steps of the inputs, in place."""
     x, body, place, m = state_of(state), constants_of(bodies, 0), site_of(site), vector6(memory)
     features, a_res = np.empty(FEATURES), np.empty(6)
     for n in range(inputs.duration.size):
         step = step_of(inputs, 0, n)
-        x, m = stepped(t + n * h, x, m, h, body, p[0], step, data, place, features, a_res)
+        x, m = stepped(extra, t + n * h, x, m, h, body, p[0], step, data, place, features, a_res)
     store(x, state)
     for i in range(6):
         memory[i] = m[i]
 
 
-@compiled
-def heun(state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
+@entry
+def heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
     """Heun's method over the steps of the inputs, each with an extra acceleration pushes (k, 6).
 
     For the synthetic tank, whose truth must not share the replay's integrator. What the water
@@ -207,12 +200,16 @@ def heun(state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
         step, now, push = step_of(inputs, 0, n), t + n * h, vector6(pushes[n])
         if data.size:
             recalled = memory_push(body, m)
-            a_learned = learned(now, x, body, p, step, recalled, data, place, features, a_res)
+            a_learned = learned(
+                extra, now, x, body, p, step, recalled, data, place, features, a_res
+            )
             push = add6(push, 1.0, a_learned)
-        k1 = slope(now, x, body, p, step, add6(push, 1.0, memory_push(body, m)), place)
+        k1 = slope(extra, now, x, body, p, step, add6(push, 1.0, memory_push(body, m)), place)
         m1 = add6(through_water(x, body), -1.0, m)
         x1, ahead = moved(x, h, k1), add6(m, h * body.forgets, m1)
-        k2 = slope(now + h, x1, body, p, step, add6(push, 1.0, memory_push(body, ahead)), place)
+        k2 = slope(
+            extra, now + h, x1, body, p, step, add6(push, 1.0, memory_push(body, ahead)), place
+        )
         m2 = add6(through_water(x1, body), -1.0, ahead)
         x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
         m = add6(m, 0.5 * h * body.forgets, add6(m1, 1.0, m2))
@@ -221,8 +218,8 @@ def heun(state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
         memory[i] = m[i]
 
 
-@compiled
-def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
+@entry
+def accelerations(extra, times, states, memory, bodies, inputs, p, data, site, out):
     """nu_dot (n, 6) of parameter set 0 at each state (n, 13) under the commands of step n.
 
     `memory` (n, 6) is what the water remembers then; empty: nothing.
@@ -234,8 +231,10 @@ def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
         if memory.size:
             push = memory_push(body, vector6(memory[n]))
         if data.size:
-            a_learned = learned(times[n], x, body, own, step, push, data, place, features, a_res)
+            a_learned = learned(
+                extra, times[n], x, body, own, step, push, data, place, features, a_res
+            )
             push = add6(push, 1.0, a_learned)
-        nu_dot = slope(times[n], x, body, own, step, push, place).nu
+        nu_dot = slope(extra, times[n], x, body, own, step, push, place).nu
         for i in range(6):
             out[n, i] = nu_dot[i]

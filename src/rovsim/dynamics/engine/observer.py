@@ -1,13 +1,11 @@
 """One-step prediction errors: a model that runs along a measurement and is corrected by it.
 
-A part of the engine's template, like `integration`.
-
     x_dot = f(x, u) + a,   a_dot = -a / T + white noise,   reading = pose or mean velocity + noise
 
 A steady-state Kalman filter per axis; its innovations are what the model could not foresee.
 """
 
-# <equation>
+from rovsim.dynamics.engine.compiled import entry, inline_internal
 from rovsim.dynamics.engine.equation import rotation
 from rovsim.dynamics.engine.integration import (
     ZERO6,
@@ -20,15 +18,11 @@ from rovsim.dynamics.engine.integration import (
     state_of,
     step_of,
 )
-
-# </equation>
 from rovsim.dynamics.engine.types import State
 from rovsim.dynamics.engine.vectors import (
     add3,
     add6,
-    compiled,
     each6,
-    inline_internal,
     into_body,
     into_world,
     vector6,
@@ -82,8 +76,10 @@ def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
     return State(position, turned(x.attitude, k[3:]), nu)
 
 
-@compiled
-def observe(jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out):
+@entry
+def observe(
+    extra, jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
+):
     """Innovations of the jobs: each from reading `first`, over the `steps` readings that follow.
 
     `ends` (k,) steps at which the readings (r, k, 13) end, `row` (m,) which of them belong to each
@@ -103,7 +99,9 @@ def observe(jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay,
                 t, before, push = start + (n - ends[first]) * h, x, a
                 if body.forgets != 0.0:
                     push = add6(a, 1.0, push_over_step(x, memory, h, body))
-                x = runge_kutta(t, x, h, body, own, step_of(inputs, inputs.row[m], n), push, place)
+                x = runge_kutta(
+                    extra, t, x, h, body, own, step_of(inputs, inputs.row[m], n), push, place
+                )
                 if body.forgets != 0.0:
                     memory = memory_after(memory, before, x, h, body)
                 mean = add6(add6(mean, 0.5 / count, before.nu), 0.5 / count, x.nu)

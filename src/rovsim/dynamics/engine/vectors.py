@@ -1,52 +1,39 @@
 """Small vectors as tuples of floats: they live in registers, where arrays would be counted."""
 
-from typing import Any
-
-from numba import njit
-
-MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
-# What makes a function callable from outside takes half of the time that it takes to compile.
-UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-
-inlined = njit(cache=True, forceinline=True, **MATHS)  # helpers of kernels
-inline_internal = njit(
-    cache=True, forceinline=True, **MATHS, **UNSEEN
-)  # the same, not called from Python
-internal = njit(cache=True, **MATHS, **UNSEEN)  # too large or too rare to be inlined
-compiled = njit(cache=True, nogil=True, **MATHS)  # what Python calls, from any thread
+from rovsim.dynamics.engine.compiled import inline_shared
 
 
-@inlined
+@inline_shared
 def cross(a, b):
     """Cross product of 3-vectors."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@inlined
+@inline_shared
 def dot3(a, b):
     """Scalar product of 3-vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@inlined
+@inline_shared
 def dot6(a, b):
     """Scalar product of 6-vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
 
 
-@inlined
+@inline_shared
 def add3(a, h, b):
     """a + h b."""
     return a[0] + h * b[0], a[1] + h * b[1], a[2] + h * b[2]
 
 
-@inlined
+@inline_shared
 def add4(a, h, b):
     """a + h b."""
     return a[0] + h * b[0], a[1] + h * b[1], a[2] + h * b[2], a[3] + h * b[3]
 
 
-@inlined
+@inline_shared
 def add6(a, h, b):
     """a + h b."""
     return (
@@ -55,13 +42,13 @@ def add6(a, h, b):
     )  # fmt: skip
 
 
-@inlined
+@inline_shared
 def each6(a, b):
     """Products of the elements."""
     return a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3], a[4] * b[4], a[5] * b[5]
 
 
-@inlined
+@inline_shared
 def times6(M, v):
     """Matrix (six rows) times 6-vector."""
     return (
@@ -69,7 +56,7 @@ def times6(M, v):
     )  # fmt: skip
 
 
-@inlined
+@inline_shared
 def into_body(R, x):
     """R' x: a world vector in body axes."""
     return (
@@ -79,25 +66,25 @@ def into_body(R, x):
     )
 
 
-@inlined
+@inline_shared
 def into_world(R, x):
     """R x: a body vector in world axes."""
     return dot3(R[0], x), dot3(R[1], x), dot3(R[2], x)
 
 
-@inlined
+@inline_shared
 def vector3(a):
     """Tuple of an array (3,)."""
     return a[0], a[1], a[2]
 
 
-@inlined
+@inline_shared
 def vector6(a):
     """Tuple of an array (6,)."""
     return a[0], a[1], a[2], a[3], a[4], a[5]
 
 
-@inlined
+@inline_shared
 def matrix6(a):
     """Rows of an array (6, 6)."""
     return vector6(a[0]), vector6(a[1]), vector6(a[2]), vector6(a[3]), vector6(a[4]), vector6(a[5])

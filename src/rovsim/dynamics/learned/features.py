@@ -72,7 +72,7 @@ def assemble(
     return np.concatenate([blocks[block] for block in settings.blocks], axis=1)
 
 
-@njit(cache=True)
+@njit
 def _append(values, x, at):
     """Write values into x from `at` on; returns where the next block starts."""
     for i in range(len(values)):
@@ -80,7 +80,7 @@ def _append(values, x, at):
     return at + len(values)
 
 
-@njit(cache=True)
+@njit
 def assemble_one(data, nu, nu_dot, wrench, R, x):
     """Write the features of one sample into x (at least d long), as `assemble` would.
 
