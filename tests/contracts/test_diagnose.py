@@ -83,7 +83,7 @@ def test_nothing_selected_adds_nothing(diagnosed, capsys):
     [
         (["out=taken"], "taken: is not a folder"),
         (["out=taken/deeper"], "taken: is not a folder"),
-        (["out=o", "model=[nominal,zero_acceleration]"], "cannot diagnose nominal"),
+        (["out=o", "model=[nominal,zero_acceleration]"], "2 models (nominal, zero_acceleration)"),
         (["out=o", "model=zero_acceleration"], "cannot diagnose zero_acceleration"),
         (["out=o", "model=corrected.yaml"], "without a trained residual"),
         (["out=o", "serach.draws=3"], "Did you mean 'search.draws'"),

@@ -13,7 +13,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 from scipy.spatial import cKDTree
 
-from rovsim.dynamics.learned.checks import OUTPUT_AXES
+from rovsim import AXES
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
 from rovsim.learning.posterior_variance import PosteriorVariance, rbf
@@ -92,7 +92,7 @@ def modules(Z: Array, outputs: int) -> tuple[Any, Any, Any]:
     kernel.base_kernel.lengthscale = torch.as_tensor(start).expand(*batch, 1, d)
     # its noise stays above 1e-4 of the targets' variance: 1 % of their size, and well conditioned
     likelihood = GaussianLikelihood(batch_shape=batch)
-    return ConstantMean(batch_shape=torch.Size([OUTPUT_AXES])), kernel, likelihood
+    return ConstantMean(batch_shape=torch.Size([len(AXES)])), kernel, likelihood
 
 
 def optimise(

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 from scipy.linalg import eigh
 
-from rovsim.dynamics.learned.checks import OUTPUT_AXES
+from rovsim import AXES
 from rovsim.dynamics.learned.layout import MOST_POINTS
 from rovsim.learning import gaussian
 from rovsim.learning.cross_validation import noise_factor
@@ -105,9 +105,7 @@ def _model(Z: Array, T: Array, settings: GpSettings) -> Any:
     from gpytorch.distributions import MultivariateNormal
     from gpytorch.models import ExactGP
 
-    mean, kernel, likelihood = gaussian.modules(
-        Z, 1 if settings.kernel == "shared" else OUTPUT_AXES
-    )
+    mean, kernel, likelihood = gaussian.modules(Z, 1 if settings.kernel == "shared" else len(AXES))
 
     class Model(ExactGP):
         def __init__(self) -> None:
@@ -137,7 +135,7 @@ def _tune(model: Any, settings: GpSettings, progress: Progress) -> float:
         K = prior.lazy_covariance_matrix.add_diagonal(model.likelihood.noise)
         error = (T - prior.mean).mT
         square, determinant = K.inv_quad_logdet(error, logdet=True)
-        return 0.5 * (square + OUTPUT_AXES * determinant) / len(Z)
+        return 0.5 * (square + len(AXES) * determinant) / len(Z)
 
     loss = shared if settings.kernel == "shared" else independent
     rounds, rate = settings.iterations, settings.learning_rate

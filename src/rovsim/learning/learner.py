@@ -10,10 +10,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 import rovsim.learning
+from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.extras import require
 from rovsim.core.schema import Section, checked
-from rovsim.dynamics.learned.checks import OUTPUT_AXES, checked_rows, posterior
+from rovsim.dynamics.learned.checks import checked_rows, posterior
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.learned.predictor import evaluate_many
 from rovsim.dynamics.learned.residual import Control, Residual
@@ -165,11 +166,11 @@ def train(
     """
     require("learn", by=f"residual={settings.kind}")
     X, Y = checked_rows(X, settings.features, finite=True), np.asarray(Y, dtype=np.float64)
-    if Y.shape != (len(X), OUTPUT_AXES) or not np.isfinite(Y).all():
+    if Y.shape != (len(X), len(AXES)) or not np.isfinite(Y).all():
         raise BadInput(
             f"residual accelerations of shape {Y.shape}, {np.sum(~np.isfinite(Y))} not finite",
             where="training pairs",
-            expected=f"finite numbers of shape {(len(X), OUTPUT_AXES)}",
+            expected=f"finite numbers of shape {(len(X), len(AXES))}",
             remedy="Train on usable samples only.",
         )
     return learner(settings.kind).fit(X, Y, settings, seed, progress)

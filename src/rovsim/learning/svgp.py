@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim.dynamics.learned.checks import OUTPUT_AXES
+from rovsim import AXES
 from rovsim.dynamics.learned.layout import MOST_POINTS
 from rovsim.learning import gaussian
 from rovsim.learning.determinism import seeded_torch
@@ -97,11 +97,11 @@ def _model(centres: Array) -> Any:
     from gpytorch.models import ApproximateGP
     from gpytorch.variational import CholeskyVariationalDistribution, VariationalStrategy
 
-    mean, kernel, likelihood = gaussian.modules(centres, OUTPUT_AXES)
+    mean, kernel, likelihood = gaussian.modules(centres, len(AXES))
 
     class Model(ApproximateGP):
         def __init__(self) -> None:
-            q = CholeskyVariationalDistribution(len(centres), batch_shape=torch.Size([OUTPUT_AXES]))
+            q = CholeskyVariationalDistribution(len(centres), batch_shape=torch.Size([len(AXES)]))
             super().__init__(VariationalStrategy(self, torch.as_tensor(centres), q))
             self.mean, self.covar, self.likelihood = mean, kernel, likelihood
 

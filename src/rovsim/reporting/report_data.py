@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import Result
-from rovsim.results.comparison import Comparison
+from rovsim.results.comparison import OPEN_LOOP, Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
@@ -19,7 +19,7 @@ from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.quality import Quality
 from rovsim.results.timing import Timing
-from rovsim.simulation.prediction import OPEN_LOOP, Replay
+from rovsim.simulation.prediction import Replay
 
 SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
 R = TypeVar("R", bound=Result)

@@ -9,8 +9,6 @@ from numpy import ndarray as Array
 from rovsim.core.files import read_arrays, write_arrays
 from rovsim.core.run import RunInfo
 
-OPEN_LOOP = "open_loop"
-
 
 @dataclass(frozen=True, eq=False)
 class Prediction:

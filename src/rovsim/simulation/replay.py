@@ -14,11 +14,12 @@ from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.comparison import OPEN_LOOP
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import drive_by_log
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import as_true, interpolate_state
-from rovsim.simulation.prediction import OPEN_LOOP, Prediction, Replay
+from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.windows import find_whole, find_windows

@@ -22,10 +22,10 @@ from rovsim.dynamics.model_file import describe_model, read_model, write_model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_conditions
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scores import subtract, summarize
-from rovsim.results.comparison import Metrics
+from rovsim.results.comparison import OPEN_LOOP, Metrics
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import EFFECTS, Ladder, Step
-from rovsim.simulation.prediction import OPEN_LOOP, Prediction, Replay
+from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import replay
 
 KEPT = 200  # replays; one of a minute takes 2 MB

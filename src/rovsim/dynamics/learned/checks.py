@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.features import FeatureSettings, blocks_code, feature_names
 from rovsim.dynamics.learned.layout import (
@@ -29,8 +30,6 @@ from rovsim.dynamics.learned.layout import (
     tree_levels,
 )
 from rovsim.dynamics.learned.predictor import posterior_many
-
-OUTPUT_AXES = 6  # surge, sway, heave, roll, pitch, yaw
 
 
 def check_exported(data: Any, features: FeatureSettings, where: object) -> Array:
@@ -60,7 +59,7 @@ def _fault(data: Any, features: FeatureSettings) -> str | None:
         return "the exported residual has an unknown format"
     if header[BLOCKS] != blocks_code(features) or header[WIDTH] != len(feature_names(features)):
         return "the exported residual sees other features than named"
-    if header[OUTPUTS] != OUTPUT_AXES or data.size != _size(*header):
+    if header[OUTPUTS] != len(AXES) or data.size != _size(*header):
         return f"the exported residual's sizes do not fit its {data.size} numbers"
     return None
 
