@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from rovsim.application.pipeline.recordings import load_campaign_vehicle
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.of_campaign import Runs
+from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_runs
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
+from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings, differentiated, filtered, resampled
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
@@ -22,5 +22,5 @@ def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[O
     campaign = load_campaign(folder / "raw")
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    runs = Runs({"a": motion}, {"a": stage}).prepare("train", ReplaySettings(), built_in())
+    runs = prepare_runs(Runs({"a": motion}, {"a": stage}), "train", ReplaySettings(), built_in())
     return nominal(load_campaign_vehicle(campaign)), runs

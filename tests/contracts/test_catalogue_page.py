@@ -28,7 +28,7 @@ def short(cls):
 
 @pytest.fixture(scope="module")
 def conditions():
-    motion = fly(short(built_in()["thruster_gain"]))
+    motion = fly(short(built_in()["thruster_gain"]), built_in())
     model = nominal(load_vehicle("bluerov2_heavy"))
     return average_blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
 
@@ -57,7 +57,7 @@ def test_the_page_is_what_the_effects_declare():
 
 
 def test_the_page_does_not_depend_on_the_order_of_imports():
-    assert page(dict(reversed(built_in().items()))) == page(built_in())
+    assert page(dict(reversed(list(built_in().items())))) == page(built_in())
 
 
 def test_a_condition_that_does_not_exist_is_refused(conditions):

@@ -49,7 +49,7 @@ def test_lists_of_models_keep_commas_that_belong_to_files(tmp_path):
 
 @pytest.mark.parametrize(
     ("command", "extra"),
-    [("train", "learn"), ("ui", "workbench"), ("fmu", "fmi"), ("bench", "benchmark,learn"),
+    [("train", "learn,tracking"), ("ui", "workbench"), ("fmu", "fmi"), ("bench", "benchmark,learn"),
      ("blind", "benchmark")],
 )  # fmt: skip
 def test_a_command_without_its_extra_says_what_to_install(command, extra, capsys, monkeypatch):

@@ -284,7 +284,7 @@ def test_a_model_that_diverges_has_no_score_rather_than_that_of_its_first_second
     run = replace(simulated(), binned=binned, end=10.0)
     wild = model(QuadraticDamping(surge=-5e4, sway=-5e4, heave=-5e4))
     found = score(run, replay(wild, run, OPEN, ReplaySettings())).open_loop
-    assert found["velocity_rmse"]["surge"] is None
-    assert found["velocity_mae"]["surge"] is None
-    assert found["acceleration_rmse"]["surge"] is None
-    assert found["position_rmse_m"] is None
+    assert found.velocity_rmse["surge"] is None
+    assert found.velocity_mae["surge"] is None
+    assert found.acceleration_rmse["surge"] is None
+    assert found.position_rmse_m is None

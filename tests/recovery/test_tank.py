@@ -39,7 +39,7 @@ def recorded(tmp_path, **settings):
     """Settings, campaign and cleaned motion of one 30 s run."""
     chosen = TankSettings(**{"runs": (RUN,), "duration": 30.0, **settings})
     make_campaign(chosen, tmp_path / "raw", built_in())
-    campaign = load_campaign(tmp_path / "raw", built_in())
+    campaign = load_campaign(tmp_path / "raw")
     recording, anomalies = read_run(campaign, RUN.id)
     return chosen, recording, anomalies, clean(recording, SignalSettings())
 

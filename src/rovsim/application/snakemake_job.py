@@ -6,21 +6,21 @@ import sys
 import traceback
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any, Iterator
+from typing import TYPE_CHECKING, Any, Iterator
 
-from rovsim.application.pipeline.recordings import load_campaign_vehicle
 from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
 from rovsim.core.schema import S, checked
-from rovsim.diagnosis.of_campaign import Runs
-from rovsim.dynamics.catalogue import Catalogue, load_catalogue
-from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import load_model, read_model
-from rovsim.dynamics.vehicle import Vehicle
-from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.prediction import Replay
+
+if TYPE_CHECKING:  # a study has a hundred jobs: each imports what it uses, where it uses it
+    from rovsim.dynamics.catalogue import Catalogue
+    from rovsim.dynamics.model import Model
+    from rovsim.dynamics.vehicle import Vehicle
+    from rovsim.measurement.runs import Runs
+    from rovsim.simulation.prediction import Replay
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,15 @@ class Job:
     """One job of a rule, in the library's terms; `snakemake` is what Snakemake gives a script."""
 
     snakemake: Any
-    catalogue: Catalogue
+
+    @cached_property
+    def catalogue(self) -> "Catalogue":
+        """Effects that models can have, those of the user's files among them."""
+        from rovsim.dynamics.catalogue import load_catalogue
+
+        return load_catalogue(
+            [Path(name) for name in self.snakemake.config.get("effects_file", [])]
+        )
 
     @property
     def params(self) -> Any:
@@ -78,26 +86,37 @@ class Job:
         return [Motion.read(path) for path in self.paths(name)]
 
     @property
-    def vehicle(self) -> Vehicle:
+    def vehicle(self) -> "Vehicle":
         """That of the input `campaign`."""
+        from rovsim.application.pipeline.recordings import load_campaign_vehicle
+        from rovsim.measurement.campaign import load_campaign
+
         return load_campaign_vehicle(load_campaign(self.path("campaign")))
 
-    def model(self, name: str) -> Model:
+    def model(self, name: str) -> "Model":
         """The input `model`, or a built-in model, under a name."""
+        from rovsim.dynamics.model_file import load_model
+
         spec = str(self.path("model")) if self.paths("model") else name
         return load_model(spec, self.vehicle, self.catalogue).called(name)
 
-    def models(self) -> list[Model]:
+    def models(self) -> "list[Model]":
         """The input `models`, each called by its folder."""
+        from rovsim.dynamics.model_file import read_model
+
         files = self.paths("models")
         return [read_model(path, self.catalogue).called(path.parent.name) for path in files]
 
-    def runs(self) -> Runs:
+    def runs(self) -> "Runs":
         """The usable ones of the input `motions`, with their poses before the filter."""
+        from rovsim.measurement.runs import Runs
+
         return Runs.read(self.paths("motions"), self.paths("stages"))
 
-    def replays(self) -> dict[str, dict[str, Replay]]:
+    def replays(self) -> "dict[str, dict[str, Replay]]":
         """The input `replays` by model and run, in the order of the rule."""
+        from rovsim.simulation.prediction import Replay
+
         found: dict[str, dict[str, Replay]] = {}
         for replay in map(Replay.read, self.paths("replays")):
             found.setdefault(replay.model, {})[replay.run.id] = replay
@@ -111,9 +130,8 @@ def job(snakemake: Any) -> Iterator[Job]:
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s")
     logging.info("rule %s %s", snakemake.rule, dict(snakemake.wildcards))
     try:
-        files = [Path(name) for name in snakemake.config.get("effects_file", [])]
         with heard_by():
-            yield Job(snakemake, load_catalogue(files))
+            yield Job(snakemake)
     except RovsimError as error:
         logging.error("%s", error)
         print(f"rovsim: {error}", file=sys.stderr)

@@ -10,8 +10,8 @@ models that diverged, scales all to unit length, and loses their sign.
 from typing import Literal, NamedTuple
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.spatial.transform import Rotation
 
 WorldAxes = Literal["z_up", "ned"]
 BodyAxes = Literal["flu", "frd"]
@@ -75,7 +75,9 @@ def matrix(q: Array) -> Array:
 
 def from_matrix(R: Array) -> Array:
     """Quaternions (..., 4) with w >= 0 of the rotations nearest to R (..., 3, 3)."""
-    return Rotation.from_matrix(R).as_quat(canonical=True, scalar_first=True)
+    return scipy.spatial.transform.Rotation.from_matrix(R).as_quat(
+        canonical=True, scalar_first=True
+    )
 
 
 def continuous(q: Array) -> Array:
@@ -88,7 +90,7 @@ def continuous(q: Array) -> Array:
 def from_euler(roll: Array, pitch: Array, yaw: Array) -> Array:
     """Quaternions (..., 4) of the angles R = Rz(yaw) Ry(pitch) Rx(roll) (Fossen 2021, eq. 2.31)."""
     angles = np.stack(np.broadcast_arrays(yaw, pitch, roll), axis=-1)
-    return Rotation.from_euler("ZYX", angles).as_quat(scalar_first=True)
+    return scipy.spatial.transform.Rotation.from_euler("ZYX", angles).as_quat(scalar_first=True)
 
 
 def to_euler(q: Array) -> Array:
@@ -103,7 +105,9 @@ def to_euler(q: Array) -> Array:
 def exp(rotation: Array) -> Array:
     """Quaternions (..., 4) of rotation vectors (..., 3) in rad."""
     # SciPy takes no read-only array
-    return Rotation.from_rotvec(np.array(rotation)).as_quat(scalar_first=True)
+    return scipy.spatial.transform.Rotation.from_rotvec(np.array(rotation)).as_quat(
+        scalar_first=True
+    )
 
 
 def log(q: Array) -> Array:

@@ -1,11 +1,10 @@
 """A model and a campaign's runs in, everything that `rovsim diagnose` reports out."""
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Callable, Mapping, Sequence
+from typing import Callable
 
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
-from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
+from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_runs
 from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
 from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -15,44 +14,14 @@ from rovsim.dynamics.model_file import describe_model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import search_conditions
 from rovsim.evaluation.ladder import score_step
-from rovsim.measurement.signals.chain import Stage, read_stage
-from rovsim.measurement.signals.motion import Motion
+from rovsim.measurement.runs import Runs
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step
 from rovsim.simulation.replay import replay
-from rovsim.simulation.settings import ReplaySettings
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
-
-
-@dataclass(frozen=True, eq=False)
-class Runs:
-    """Usable runs by id: as motions, and their poses before the filter."""
-
-    motions: Mapping[str, Motion]
-    stages: Mapping[str, Stage]
-
-    @staticmethod
-    def read(motions: Sequence[Path], stages: Sequence[Path]) -> "Runs":
-        """Runs from what the signal chain wrote, in the same order; unusable ones are left out."""
-        pairs = zip(map(Motion.read, motions), map(read_stage, stages), strict=True)
-        usable = [(motion, stage) for motion, stage in pairs if motion.usable.any()]
-        return Runs(
-            {motion.run.id: motion for motion, _ in usable},
-            {motion.run.id: stage for motion, stage in usable},
-        )
-
-    def prepare(
-        self, split: str, settings: ReplaySettings, catalogue: Catalogue
-    ) -> list[ObservedRun]:
-        """The runs of one split as the observer sees them."""
-        chosen = {run: m for run, m in self.motions.items() if m.run.split == split}
-        return [
-            prepare_run(self.stages[run], motion, settings, catalogue)
-            for run, motion in chosen.items()
-        ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +41,9 @@ def diagnose_campaign(
 ) -> Diagnosed:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
-    train, test = (runs.prepare(split, settings.replay, catalogue) for split in ("train", "test"))
+    train, test = (
+        prepare_runs(runs, split, settings.replay, catalogue) for split in ("train", "test")
+    )
     found = diagnose(
         base, train, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
     )

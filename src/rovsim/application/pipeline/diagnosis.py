@@ -2,10 +2,11 @@
 
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import staged
-from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, Runs, diagnose_campaign
+from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, diagnose_campaign
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
+from rovsim.measurement.runs import Runs
 
 
 def diagnose(

@@ -7,12 +7,12 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
-from rovsim.diagnosis.of_campaign import Runs
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
 from rovsim.measurement.quality import report_quality, usable_reason
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import (
     SignalSettings,
     Stage,

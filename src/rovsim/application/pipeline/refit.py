@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
-from rovsim.diagnosis.of_campaign import Runs
+from rovsim.diagnosis.observer.observed_run import prepare_runs
 from rovsim.diagnosis.selection.nominal_refit import refit_nominal
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import write_model
+from rovsim.measurement.runs import Runs
 from rovsim.simulation.settings import ReplaySettings
 
 
@@ -14,7 +15,7 @@ def refit(
     runs: Runs, base: Model, settings: ReplaySettings, catalogue: Catalogue, out: Path
 ) -> Model:
     """Refit a model's own parameters on the train runs, and write it as a model file."""
-    train = runs.prepare("train", settings, catalogue)
+    train = prepare_runs(runs, "train", settings, catalogue)
     model = refit_nominal(base, train)
     story = {"base": base.name, "train_runs": [one.motion.run.id for one in train]}
     write_model(model, out, provenance=story)

@@ -10,6 +10,7 @@ from numpy import ndarray as Array
 from rovsim.dynamics.actuation import Between, ThrustPath
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
+from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.simulation.settings import ReplaySettings
@@ -93,6 +94,17 @@ class ObservedRun:
         lost = (steps > GAP * np.median(steps)) & (change > JUMP * np.quantile(change, USUAL))
         at = self.edges[0] + path.arrival(commands.time - self.edges[0])
         return np.column_stack([at[:-1][lost], at[1:][lost]])
+
+
+def prepare_runs(
+    runs: Runs, split: str, settings: ReplaySettings, catalogue: Catalogue
+) -> list[ObservedRun]:
+    """The runs of one split as the observer sees them. See `prepare_run`."""
+    chosen = {name: motion for name, motion in runs.motions.items() if motion.run.split == split}
+    return [
+        prepare_run(runs.stages[name], motion, settings, catalogue)
+        for name, motion in chosen.items()
+    ]
 
 
 def prepare_run(

@@ -43,7 +43,8 @@ effect adds to the model. Left: over the condition that shows it best. Right: ov
 Several pictures are alike. One run shows that something is missing; what it is, and not something
 that imitates it, often takes a manoeuvre of its own. Each entry names that one.
 
-This page is written by `make catalogue` from the declarations in `src/rovsim/dynamics/effects/`: edit those.
+This page is written by `make catalogue` from the declarations in `src/rovsim/dynamics/effects/`:
+edit those.
 """
 
 
