@@ -13,7 +13,8 @@ from rovsim.measurement.signals.motion import Motion
 
 TICK = 0.1  # s between two pictures of a playback
 SPEED = 2  # times as fast as it was
-PIECES = 200  # bent tubes that a path is drawn with at most
+PIECES = 80  # bent tubes that a path is drawn with at most: about one a second
+PICTURES = 10  # a second: a machine that draws without a graphics card must keep up
 THIN = 0.0012  # radius of a tube of width 1, over the size of the room
 SPOT = 0.01  # radius of a vehicle, likewise
 EYE = np.array([-0.25, -0.9, 0.5])  # from the middle to the eye, over the size of the room
@@ -59,7 +60,9 @@ class Path:
         middle, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
         look = styles(list(self.paths))
         camera = ui.scene.perspective_camera(fov=40, near=0.01 * size, far=10 * size)
-        scene = ui.scene(grid=False, background_color="#ffffff", camera=camera, click_events=[])
+        scene = ui.scene(
+            grid=False, background_color="#ffffff", camera=camera, click_events=[], fps=PICTURES
+        )
         scene.classes("path").props('role="img" aria-label="Path in the tank"')
         with scene:
             wide, long, tall = (high - low).tolist()
