@@ -51,9 +51,14 @@ class Tab:
         self.page, self.address, self.complaints = page, address, []
         page.on("console", self._console)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        page.on("requestfailed", lambda r: self.complaints.append(f"failed: {r.url}"))
+        page.on("requestfailed", self._failed)
         page.on("request", self._request)
         page.on("response", self._response)
+
+    def _failed(self, request) -> None:
+        """A page that is left while a part of it still loads has not failed."""
+        if request.failure != "net::ERR_ABORTED":
+            self.complaints.append(f"failed: {request.url}")
 
     def _console(self, message) -> None:
         if message.type in ("error", "warning"):
