@@ -9,7 +9,7 @@ if __name__ == "__main__":
     with job(snakemake) as rule:
         (motion,) = rule.motions("motion")
         found = score_held_out(
-            models=[*map(rule.model, BASELINES), *rule.models().values()],
+            models=[*map(rule.model, BASELINES), *rule.models()],
             motion=motion,
             settings=rule.section(SimulationSettings),
         )
