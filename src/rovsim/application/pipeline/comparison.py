@@ -5,10 +5,11 @@ from typing import Sequence
 from rovsim.application.pipeline.error_conditions import find_error_conditions
 from rovsim.application.pipeline.forces import balance_run
 from rovsim.application.pipeline.recordings import Measured
-from rovsim.application.pipeline.replays import measure_growth, replay_models, score_replays
+from rovsim.application.pipeline.replays import measure_growth, replay_models
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
+from rovsim.evaluation.scores import score_all
 from rovsim.reporting.report_data import ReportData
 
 
@@ -26,7 +27,7 @@ def compare(data: Measured, models: Sequence[Model], settings: SimulationSetting
         replays=replays,
         budgets=forces,
         quality=data.quality,
-        comparison=score_replays(motions, replays),
+        comparison=score_all(motions, replays),
         growth=grown,
         where=where,
     )

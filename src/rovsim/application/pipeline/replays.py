@@ -6,9 +6,8 @@ from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.ladder import score_step
-from rovsim.evaluation.scores import score_all, trace_growth
+from rovsim.evaluation.scores import trace_growth
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import Comparison
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
@@ -28,11 +27,6 @@ def replay_models(
             model, motion, settings.signals, settings.replay
         )
     return replays
-
-
-def score_replays(motions: Sequence[Motion], replays: Replays) -> Comparison:
-    """Errors by model and run."""
-    return score_all(motions, replays)
 
 
 def measure_growth(motions: Sequence[Motion], replays: Replays) -> Growth:

@@ -9,7 +9,7 @@ residual.k=1,3,5 control=3dof,6dof. Needs the extra rovsim[learn].
 
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
-from rovsim.application.pipeline.replays import replay_models, score_replays
+from rovsim.application.pipeline.replays import replay_models
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
@@ -19,6 +19,7 @@ from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import require
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.evaluation.scores import score_all
 
 
 class Settings(TrainingSettings, CampaignSettings):
@@ -40,7 +41,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     out = choose_folder(settings, f"results/{data.campaign.name}/trained/{name}")
     file, story = out / "model.yaml", provenance(settings, catalogue)
     corrected = train(motions, base, settings, catalogue, file, story)
-    found = score_replays(motions, replay_models([base, corrected], motions, settings))
+    found = score_all(motions, replay_models([base, corrected], motions, settings))
     found.write(out / "comparison.json")
     with reported("logging to MLflow"):
         track(
