@@ -12,7 +12,7 @@ from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, some, sticks, tank
 
-# contract, section 2
+# contract, sections 2 and 6
 PUBLIC = {
     "net_buoyancy", "buoyancy_center", "payload", "constant_wrench", "linear_damping",
     "quadratic_damping", "coupled_damping", "added_mass", "added_mass_coupling", "lift",
@@ -20,6 +20,8 @@ PUBLIC = {
     "surface_proximity", "thruster_lag", "input_delay", "clock_drift", "thruster_deadband",
     "thruster_gain", "thrust_asymmetry", "voltage_sag", "advance_loss", "propeller_torque",
     "onboard_control", "marker_offset", "marker_misalignment", "world_tilt",
+    # section 6
+    "cubic_damping", "dry_friction",
 }  # fmt: skip
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))
 

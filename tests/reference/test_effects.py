@@ -11,7 +11,8 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.added_mass import AddedMassCoupling
 from rovsim.dynamics.effects.coupled_damping import CoupledDamping
 from rovsim.dynamics.effects.current import Current
-from rovsim.dynamics.effects.damping import LinearDamping
+from rovsim.dynamics.effects.damping import CubicDamping, LinearDamping
+from rovsim.dynamics.effects.dry_friction import DryFriction
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
 from rovsim.dynamics.effects.lift import Lift
 from rovsim.dynamics.effects.onboard_control import OnboardControl
@@ -26,7 +27,7 @@ from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion
 
-# parameters of contract, section 2, where they are not one per axis
+# parameters of contract, sections 2 and 6, where they are not one per axis
 NAMES = {
     "net_buoyancy": ["force"],
     "buoyancy_center": ["x", "y", "z"],
@@ -63,7 +64,15 @@ NAMES |= {
     "world_tilt": ["roll", "pitch"],
 }
 NAMES |= dict.fromkeys(
-    ["constant_wrench", "linear_damping", "quadratic_damping", "added_mass"], AXES
+    [
+        "constant_wrench",
+        "linear_damping",
+        "quadratic_damping",
+        "cubic_damping",
+        "dry_friction",
+        "added_mass",
+    ],
+    AXES,
 )
 COMMAND = np.array([0.4, -0.3, 0.5, 0.2, -0.4, 0.3, 0.1, -0.2])
 
@@ -149,6 +158,18 @@ def test_a_current_carries_a_resting_vehicle_along(axis):
     found = push(model(water), state) - push(model(), state)
     along = matrix(state[3:7]) @ found[:3]
     assert along[axis] > 1.0
+
+
+@pytest.mark.parametrize(
+    ("cls", "law"), [(CubicDamping, lambda v: v**3), (DryFriction, lambda v: np.tanh(v / 0.01))]
+)
+def test_further_laws_of_drag_act_axis_by_axis_on_the_velocity_through_the_water(cls, law, tilted):
+    coefficient, water = np.array([5.0, 4.0, 0.0, 0.3, 0.2, 0.1]), Current(north=0.1, east=0.2)
+    nu_r = tilted[7:].copy()
+    nu_r[:3] -= matrix(tilted[3:7]).T @ [0.1, 0.2, 0.0]
+    effect = cls(**dict(zip(AXES, coefficient, strict=True)))
+    found = push(model(water, effect), tilted) - push(model(water), tilted)
+    np.testing.assert_allclose(found, -coefficient * law(nu_r), atol=1e-9)
 
 
 WALLS = np.array([[-3.0, 3.0], [-3.0, 2.0], [-1.6, 2.0]])  # NED: the surface is at -1.6

@@ -2,7 +2,7 @@
 
 observer      the model runs along the train runs, corrected by a filter: what it could not foresee
 selection     which effects explain that: candidates, search, fits, what else they could be
-checks        what is asked of the answer: structure left, imitation, what is known, noise floor
+checks        what is asked of the answer: structure left, what is known, noise floor
 procedure     these, in order
 advice        what to record next
 result        what is written of it

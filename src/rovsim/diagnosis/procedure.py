@@ -15,7 +15,6 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from rovsim.diagnosis.checks.imitation import drop_imitations
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.observer.filter_bank import FilterBank
@@ -103,8 +102,8 @@ def diagnose(
     stage("searching")
     selection = search(workspace, nothing, seed)
     stage("checking")
-    selection, imitated = _check(selection, base, usable)
-    found, structures = _settle(selection, imitated)
+    selection = _check(selection, base, usable)
+    found, structures = _settle(selection)
     rivals = selection.named_rivals
     return TrainDiagnosis(
         base, usable.still, usable.seconds, found,
@@ -131,19 +130,17 @@ def _observe(
     return SearchWorkspace(close.redesign(base, noise), sensitivities, noise, settings)
 
 
-def _check(
-    selection: Selection, base: Model, usable: UsableRuns
-) -> tuple[Selection, list[Structure]]:
-    """What of a selection stands, and the laws without a name that it only imitated."""
+def _check(selection: Selection, base: Model, usable: UsableRuns) -> Selection:
+    """What of a selection stands; all that could be wrong, where it came to no end."""
     if selection.complete:
-        return drop_imitations(drop_idle(selection))
-    return fit_jointly(selection.workspace, base, usable.moved), []
+        return drop_idle(selection)
+    return fit_jointly(selection.workspace, base, usable.moved)
 
 
-def _settle(selection: Selection, imitated: Sequence[Structure]) -> tuple[Fit, list[Structure]]:
+def _settle(selection: Selection) -> tuple[Fit, list[Structure]]:
     """The final values, and all that they leave unexplained."""
     found, bank = _polish(selection)
-    structures = [*imitated, *find_structure(found, bank)]
+    structures = find_structure(found, bank)
     if structures and found.hypothesis.terms:
         found = fit_to_replays(found, bank)
     return found, structures

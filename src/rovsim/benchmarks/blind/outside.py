@@ -1,8 +1,7 @@
 """Physics that no entry of the catalogue describes, in the same form as effects.
 
 They are not listed: no model file can name them and no diagnosis can select them. What is right to
-say of them is that something is left that nothing known explains. None is a drag law that a
-diagnosis tries beside the catalogue (`rovsim.diagnosis.observer.unlisted_drag`).
+say of them is that something is left that nothing known explains.
 """
 
 from math import cos, exp, floor, pi, sin, tanh

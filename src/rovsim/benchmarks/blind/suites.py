@@ -38,8 +38,8 @@ DEVIATING = ("linear_damping", "quadratic_damping", "added_mass")
 FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"net_buoyancy", "payload", "constant_wrench", "buoyancy_center", "tether_tension",
                "world_tilt", "current"}),
-    frozenset({"linear_damping", "quadratic_damping", "lift", "fluid_memory", "tether_drag",
-               "wall_proximity", "surface_proximity"}),
+    frozenset({"linear_damping", "quadratic_damping", "cubic_damping", "dry_friction", "lift",
+               "fluid_memory", "tether_drag", "wall_proximity", "surface_proximity"}),
     frozenset({"coupled_damping"}),
     frozenset({"added_mass"}),
     frozenset({"added_mass_coupling", "marker_offset", "marker_misalignment"}),

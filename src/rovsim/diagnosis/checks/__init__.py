@@ -1,6 +1,5 @@
 """What is asked of an answer.
 
-imitation            does a name stand for a law that the catalogue does not have?
 residual_structure   does what is left vary with something? (residual, regressors,
                      spectral_lines, sudden_pushes)
 identifiability      which values are known only together?

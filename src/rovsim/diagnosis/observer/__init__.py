@@ -11,5 +11,4 @@ hypothesis      a base model and terms, whose parameters may be free
 evidence        errors of a hypothesis, and how they change with its parameters
 least_squares   any of many columns, from their inner products
 windows         errors in windows of 2 s: what users see of a model
-unlisted_drag   laws that the catalogue does not have, but that its drag imitates
 """

@@ -8,7 +8,6 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.noise import Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.unlisted_drag import UNLISTED_DRAG
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
@@ -68,7 +67,7 @@ def drive_all(models: Sequence[Model], run: ObservedRun) -> list[Drive]:
 
 def _slots(models: Sequence[Model], known: Sequence[type[Wrench]]) -> list[type[Wrench]]:
     """Wrench effects of the one engine that serves all candidates, some perhaps twice."""
-    most: Counter[type[Wrench]] = Counter([*known, *UNLISTED_DRAG])
+    most: Counter[type[Wrench]] = Counter(known)
     for model in models:
         most |= Counter(type(w) for w in model.wrenches)
     return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]

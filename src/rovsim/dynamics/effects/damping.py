@@ -1,7 +1,7 @@
 """Water resistance, axis by axis."""
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients
+from rovsim.dynamics.effects.base import Coefficients, Wrench
 from rovsim.dynamics.effects.parameters import Signature, per_axis
 
 
@@ -51,3 +51,31 @@ class QuadraticDamping(Coefficients):
     def enter(self, body: Body) -> None:
         """Add to the quadratic damping coefficients."""
         body.quadratic += self.values
+
+
+class CubicDamping(Wrench):
+    """Drag that grows with the third power of the speed, beyond the usual two terms."""
+
+    id = "cubic_damping"
+    equation = r"\tau_i = -c_i\,\nu_{r,i}^3"
+    neglects = "coupling between axes"
+    source = "Abkowitz 1964 (odd terms of a Taylor expansion)"
+    cause = (
+        "The drag was fitted at low speed and used at a higher one, or waves and ventilation add "
+        "to it near the surface."
+    )
+    revealed_by = (
+        "Hold a quarter, half and all of the highest speed on one axis, 5 s each, and coast from "
+        "each: doubling the speed takes eight times the drag, with quadratic drag four times."
+    )
+    signature = Signature({"sway": 400.0}, "sway", "sway speed")
+    parameters = per_axis("N s3/m3", "N m s3", "c", scales=(50.0, 0.5))
+
+    @staticmethod
+    def wrench(at, p):
+        """Against the motion of each axis."""
+        u, v, w, a, b, c = at.nu_r
+        return (
+            -p.surge * u * u * u, -p.sway * v * v * v, -p.heave * w * w * w,
+            -p.roll * a * a * a, -p.pitch * b * b * b, -p.yaw * c * c * c,
+        )  # fmt: skip

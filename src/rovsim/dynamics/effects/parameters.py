@@ -32,13 +32,17 @@ class Parameter:
 
 
 def per_axis(
-    translation: str, rotation: str, symbol: str, *, scales: tuple[float, float]
+    translation: str,
+    rotation: str,
+    symbol: str,
+    *,
+    scales: tuple[float, float],
+    low: float = -np.inf,
 ) -> tuple[Parameter, ...]:
     """Six parameters named surge ... yaw; units and scales of the two kinds of axes."""
+    units = (translation, rotation)
     return tuple(
-        Parameter(
-            axis, (translation, rotation)[i // 3], rf"{symbol}_{{{axis}}}", scale=scales[i // 3]
-        )
+        Parameter(axis, units[i // 3], rf"{symbol}_{{{axis}}}", low, scale=scales[i // 3])
         for i, axis in enumerate(AXES)
     )
 

@@ -1,0 +1,43 @@
+"""Friction of solids: the same force against every motion, however slow."""
+
+from math import tanh
+
+from rovsim.dynamics.effects.base import Wrench
+from rovsim.dynamics.effects.parameters import Signature, per_axis
+from rovsim.dynamics.engine.compiled import inlined
+
+SMOOTH = 0.01  # m/s or rad/s, contract, section 6
+
+
+@inlined
+def rub(c, v):
+    """Friction against a velocity; what is absent costs nothing."""
+    return -c * tanh(v / SMOOTH) if c != 0.0 else 0.0
+
+
+class DryFriction(Wrench):
+    """Something rubs along: the same force against every motion, however slow."""
+
+    id = "dry_friction"
+    equation = r"\tau_i = -c_i \tanh(\nu_{r,i} / 0.01)"
+    neglects = "sticking, and a force that changes with the load"
+    source = "Coulomb's law, smoothed as by Andersson et al. 2007, Tribology International 40"
+    cause = (
+        "The tether slides over the edge of the tank or along its floor, or the vehicle along a "
+        "rail or a wall."
+    )
+    revealed_by = (
+        "Let it coast from several speeds on one axis: with dry friction it loses the same speed "
+        "in every second and then stops, with drag of water it slows ever more slowly."
+    )
+    signature = Signature({"surge": 4.0}, "surge", "surge speed")
+    parameters = per_axis("N", "N m", "c", scales=(1.0, 0.1), low=0.0)
+
+    @staticmethod
+    def wrench(at, p):
+        """Against the motion of each axis."""
+        u, v, w, a, b, c = at.nu_r
+        return (
+            rub(p.surge, u), rub(p.sway, v), rub(p.heave, w),
+            rub(p.roll, a), rub(p.pitch, b), rub(p.yaw, c),
+        )  # fmt: skip
