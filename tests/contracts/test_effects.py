@@ -21,7 +21,7 @@ PUBLIC = {
     "thruster_gain", "thrust_asymmetry", "voltage_sag", "advance_loss", "propeller_torque",
     "onboard_control", "marker_offset", "marker_misalignment", "world_tilt",
     # section 6
-    "cubic_damping", "dry_friction",
+    "cubic_damping", "dry_friction", "force_curve",
 }  # fmt: skip
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))
 

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
 from rovsim.dynamics.effects.clocks import ClockDrift, InputDelay
+from rovsim.dynamics.effects.force_curve import ForceCurve
 from rovsim.dynamics.effects.thrusters import (
     AdvanceLoss,
     PropellerTorque,
@@ -113,8 +114,30 @@ def test_gain_asymmetry_sag_and_deadband():
     np.testing.assert_allclose(dead[:, 1], force(commands=small)[:, 1])
 
 
+@given(exponent=st.floats(0.2, 4.0))
+def test_a_bent_curve_keeps_its_ends_and_its_sign(exponent):
+    path = model(ForceCurve(exponent=exponent)).thrust_path
+    command = np.repeat(np.linspace(-1.0, 1.0, 21)[:, None], 8, axis=1)
+    nominal = path.thrusters.static_force(command)
+    found, full = path.static(command, np.zeros(21), 1.0), nominal[-1]
+    np.testing.assert_allclose(found[[0, 10, -1]], [-full, 0.0 * full, full], atol=1e-12)
+    # contract, section 6, written out
+    by_hand = np.sign(nominal) * full * (np.abs(nominal) / full) ** exponent
+    np.testing.assert_allclose(found, by_hand, atol=1e-9)
+
+
+def test_a_curve_of_unequal_ends_is_bent_about_each_of_them():
+    force, full = np.array([[-8.0, 4.0]]), np.array([[-16.0, -16.0], [40.0, 40.0]])
+    expected = [-16.0 * 0.5**2, 40.0 * 0.1**2]
+    np.testing.assert_allclose(ForceCurve(exponent=2.0).bent(force, full)[0], expected)
+    assert ForceCurve(exponent=2.0).bent(force, 0.0 * full).tolist() == [[0.0, 0.0]]
+
+
 def test_the_order_of_stages_is_fixed():
-    effects = [ThrusterGain(all=-0.8), ThrustAsymmetry(ratio=0.6), VoltageSag(fraction=0.1)]
+    effects = [
+        ForceCurve(exponent=1.3), ThrusterGain(all=-0.8), ThrustAsymmetry(ratio=0.6),
+        VoltageSag(fraction=0.1),
+    ]  # fmt: skip
     np.testing.assert_allclose(force(*effects), force(*reversed(effects)))
 
 

@@ -38,6 +38,7 @@ NAMES = {
     "input_delay": ["delay"],
     "clock_drift": ["rate"],
     "thruster_deadband": ["width"],
+    "force_curve": ["exponent"],
     "thruster_gain": [*(f"t{i}" for i in range(1, 9)), "all"],
     "thrust_asymmetry": ["ratio"],
     "voltage_sag": ["fraction"],

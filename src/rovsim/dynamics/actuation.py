@@ -5,6 +5,7 @@ asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happe
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal, Sequence
 
 import numpy as np
@@ -12,7 +13,15 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Commands
-from rovsim.dynamics.effects.base import Autopilot, Clock, Effect, Response, Shaping, Strength
+from rovsim.dynamics.effects.base import (
+    Autopilot,
+    Clock,
+    Curve,
+    Effect,
+    Response,
+    Shaping,
+    Strength,
+)
 from rovsim.dynamics.vehicle import Thrusters
 
 Between = Literal["held", "linear"]
@@ -36,6 +45,7 @@ class ThrustPath:
         self.clocks = [e for e in ranked if isinstance(e, Clock)]
         self.autopilots = [e for e in ranked if isinstance(e, Autopilot)]
         self.shapings = [e for e in ranked if isinstance(e, Shaping)]
+        self.curves = [e for e in ranked if isinstance(e, Curve)]
         self.strengths = [e for e in ranked if isinstance(e, Strength)]
         self.responses = [e for e in ranked if isinstance(e, Response)]
 
@@ -43,7 +53,7 @@ class ThrustPath:
     def key(self) -> tuple:
         """Equal where the same commands make the same thrust, whatever autopilots do beside it."""
         left = [autopilot.mixed(np.eye(6)).tobytes() for autopilot in self.autopilots]
-        acting = (*self.clocks, *self.shapings, *self.strengths, *self.responses)
+        acting = (*self.clocks, *self.shapings, *self.curves, *self.strengths, *self.responses)
         return (*left, *((e.id, e.values.tobytes()) for e in acting))
 
     def arrival(self, time: Array) -> Array:
@@ -64,9 +74,17 @@ class ThrustPath:
         for shaping in self.shapings:
             command = shaping.shaped(command)
         force = self.thrusters.static_force(command)
+        for curve in self.curves:
+            force = curve.bent(force, self.full_force)
         for strength in self.strengths:
             force = strength.scaled(force, t, duration)
         return force
+
+    @cached_property
+    def full_force(self) -> Array:
+        """Nominal static forces (2, n) in N at full command backwards and forwards."""
+        forwards = np.ones((1, len(self.thrusters.spin)))
+        return self.thrusters.static_force(np.concatenate([-forwards, forwards]))
 
     def respond(self, force: Array, h: float, states: list | None) -> tuple[Array, list]:
         """Dynamic mean forces over steps, and the states to go on from."""

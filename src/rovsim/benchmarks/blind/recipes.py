@@ -75,6 +75,7 @@ RECIPES: Mapping[str, Recipe] = {
     "input_delay": Recipe(_each("delay"), (1.5, 4.0), 1),
     "clock_drift": Recipe(_each("rate"), (1.0, 3.0)),
     "thruster_deadband": Recipe(_each("width"), (1.5, 3.0), 1),  # ESCs stop at 0.06
+    "force_curve": Recipe(_each("exponent"), (1.5, 3.0)),
     "thruster_gain": Recipe(_each("all", *(f"t{i}" for i in range(1, 9))), (1.5, 4.0), -1),
     "thrust_asymmetry": Recipe(_each("ratio"), (1.5, 3.0), -1),  # T200: 4.1 against 5.2 kgf
     "voltage_sag": Recipe(_each("fraction"), (1.5, 3.0), 1),

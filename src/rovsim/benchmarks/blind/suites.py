@@ -44,8 +44,8 @@ FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"added_mass"}),
     frozenset({"added_mass_coupling", "marker_offset", "marker_misalignment"}),
     frozenset({"thruster_lag", "input_delay", "clock_drift"}),
-    frozenset({"thruster_deadband", "thruster_gain", "thrust_asymmetry", "voltage_sag",
-               "advance_loss"}),
+    frozenset({"thruster_deadband", "force_curve", "thruster_gain", "thrust_asymmetry",
+               "voltage_sag", "advance_loss"}),
     frozenset({"propeller_torque"}),
     frozenset({"onboard_control"}),
 )  # fmt: skip

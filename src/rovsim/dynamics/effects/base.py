@@ -9,6 +9,7 @@ method. Effects are immutable and add: a model is a list of them.
     Clock           when a logged command takes effect         arrival(time) -> time
     Autopilot       the demand before the mixer                mixed(demand) -> demand; asked(...)
     Shaping         the thruster command                       shaped(command) -> command
+    Curve           the shape of the static force curve        bent(force, full) -> force
     Strength        the static thruster force                  scaled(force, t, duration) -> force
     Response        the dynamic thruster force                 respond(force, h, state) -> ...
     Sensing         what the motion capture reports            transforms() -> two rigid transforms
@@ -175,6 +176,14 @@ class Shaping(Effect):
     @abstractmethod
     def shaped(self, command: Array) -> Array:
         """Commands (m, n) in [-1, 1] as the propellers see them."""
+
+
+class Curve(Effect):
+    """Changes the shape of the static force curve."""
+
+    @abstractmethod
+    def bent(self, force: Array, full: Array) -> Array:
+        """Forces (m, n) in N of nominal ones; `full` (2, n) at full command backwards, forwards."""
 
 
 class Strength(Effect):

@@ -10,6 +10,7 @@ from rovsim.dynamics.effects.base import (
     Autopilot,
     Clock,
     Coefficients,
+    Curve,
     Effect,
     Parameter,
     Response,
@@ -24,7 +25,7 @@ PAGE, PICTURES = "catalogue.md", "images/effects"
 LONG = 8  # rows of a table that is folded away
 KINDS = {
     "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wrench),
-    "From a logged command to a thruster's force": (Clock, Shaping, Strength, Response),
+    "From a logged command to a thruster's force": (Clock, Shaping, Curve, Strength, Response),
     "What the motion capture reports": (Sensing,),
 }
 INTRODUCTION = """\
