@@ -83,6 +83,20 @@ def test_unusable_steps_are_refused(command, dt):
         Stepper(model()).step(at_rest(), command, dt)
 
 
+def test_a_sag_per_run_needs_a_run_and_one_per_second_does_not():
+    per_run, per_second = model(VoltageSag(fraction=0.4)), model(VoltageSag(rate=0.2))
+    with pytest.raises(BadInput, match="voltage_sag is given per run"):
+        Stepper(per_run)
+    with pytest.raises(BadInput, match="voltage_sag is given per run"):
+        rollouts([model(), per_run], at_rest()[None], sticks(), 0.01, "thruster")
+    stepped = np.tile(at_rest(), (2, 1))
+    for k, one in enumerate((Stepper(per_run, duration=2.0), Stepper(per_second))):
+        for command in sticks(3, 50):
+            stepped[k] = one.step(stepped[k], command, 0.01)
+    np.testing.assert_allclose(stepped[0], stepped[1], rtol=0, atol=1e-12)
+    assert np.abs(stepped[0] - at_rest()).max() > 1e-3
+
+
 def test_what_cannot_be_stepped_is_refused():
     with pytest.raises(BadInput, match="before they are given"):
         Stepper(model(InputDelay(delay=-0.1)))

@@ -108,6 +108,10 @@ def test_gain_asymmetry_sag_and_deadband():
     fading = force(VoltageSag(fraction=0.2), commands=held)[:, 0]
     middle = 0.5 * (EDGES[1:] + EDGES[:-1])
     np.testing.assert_allclose(fading / force(commands=held)[:, 0], 1 - 0.2 * middle / 2.0)
+    emptied = force(VoltageSag(fraction=0.5, rate=0.4), commands=held)[:, 0]
+    left = np.maximum(0.0, 1 - 0.5 * middle / 2.0 - 0.4 * middle)
+    np.testing.assert_allclose(emptied / force(commands=held)[:, 0], left, atol=1e-12)
+    assert left[-1] == 0.0
     small = Commands(np.array([0.0]), np.tile([0.05, 0.051], (1, 4)), "thruster")
     dead = force(ThrusterDeadband(width=0.05), commands=small)
     assert np.all(dead[:, 0] == 0)

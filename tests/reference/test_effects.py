@@ -41,7 +41,7 @@ NAMES = {
     "force_curve": ["exponent"],
     "thruster_gain": [*(f"t{i}" for i in range(1, 9)), "all"],
     "thrust_asymmetry": ["ratio"],
-    "voltage_sag": ["fraction"],
+    "voltage_sag": ["fraction", "rate"],
     "advance_loss": ["coefficient"],
     "propeller_torque": ["ratio"],
 }

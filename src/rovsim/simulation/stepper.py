@@ -34,7 +34,7 @@ class Stepper:
         kind: what commands are. `thruster` [-1, 1] per thruster, `demand` [-1, 1] per axis, or
             `wrench` N and N m per axis.
         site: walls of the tank, where an effect needs them.
-        duration: of the whole run in s, where an effect (a sagging battery) needs it.
+        duration: of the whole run in s, where an effect is given per run (a sagging battery).
 
     Raises:
         BadInput: an effect lacks what it needs, or acts on commands before they are given.
@@ -50,6 +50,7 @@ class Stepper:
         site = site or Site.unknown()
         model.check(site, kind)
         _refuse_foresight(model)
+        _refuse_unknown_duration(model, duration)
         self.model, self.kind, self.duration = model, kind, duration
         self.columns = len(model.body.directions) if kind == "thruster" else 6
         self._batch = Batch([model], site)
@@ -118,6 +119,19 @@ def _refuse_foresight(model: Model) -> None:
     )
 
 
+def _refuse_unknown_duration(model: Model, duration: float) -> None:
+    """Refuse effects whose values are of a whole run where nobody says how long it is."""
+    names = [effect.id for effect in model.effects if effect.needs_duration()]
+    if not names or duration < inf:
+        return
+    raise BadInput(
+        f"{', '.join(names)} is given per run, and the duration of the run is not known",
+        where=f"model {model.name}",
+        expected="Stepper(…, duration=…), or values that hold for any run",
+        remedy="Give voltage_sag a rate: its fraction divided by the duration of the runs in s.",
+    )
+
+
 def rollouts(
     models: Sequence[Model], states: Array, commands: Array, dt: float, kind: CommandKind
 ) -> Array:
@@ -134,8 +148,10 @@ def rollouts(
         kind: what commands are; see `Stepper`.
 
     Raises:
-        BadInput: models that do not go together, or a dt that does not fit.
+        BadInput: models that do not go together or are given per run, or a dt that does not fit.
     """
+    for model in models:
+        _refuse_unknown_duration(model, inf)
     if not 0.0 < dt <= LONGEST:
         raise BadInput(
             f"dt {dt}",

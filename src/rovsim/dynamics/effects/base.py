@@ -121,6 +121,10 @@ class Effect(ABC):
             BadInput: no tank is known, or the commands are of another kind.
         """
 
+    def needs_duration(self) -> bool:
+        """Whether its values are of a whole run, and say nothing unless its duration is known."""
+        return False
+
 
 class Coefficients(Effect):
     """Changes the constants of Fossen's equation: inertia, damping, buoyancy, current, …"""

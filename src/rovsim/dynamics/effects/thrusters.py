@@ -84,11 +84,15 @@ class ThrustAsymmetry(Strength):
 
 
 class VoltageSag(Strength):
-    """The battery empties: thrust fades over the run."""
+    """The battery empties: thrust fades over the run.
+
+    `fraction` is lost by the end of a run, however long it is; `rate` in every second. Fitted to
+    runs of T seconds, a fraction is the rate fraction / T, which holds for runs of any length.
+    """
 
     id = "voltage_sag"
     rank = 2
-    equation = r"F \to F\,(1 - s\,t/T_\text{run})"
+    equation = r"F \to F\,\max(0,\ 1 - s\,t/T_\text{run} - r\,t)"
     neglects = "recovery at rest and sag under load"
     source = "definition"
     cause = "The battery empties during the run, and nothing corrects the commands for it."
@@ -98,11 +102,20 @@ class VoltageSag(Strength):
         "shows while coasting."
     )
     signature = Signature({"fraction": 0.4}, "sway", "time in the run", size=True)
-    parameters = (Parameter("fraction", "1", "s", high=1.0, scale=0.1),)
+    parameters = (
+        Parameter("fraction", "1", "s", high=1.0, scale=0.1),
+        # a tenth in a minute; in runs of one length it cannot be told from the fraction
+        Parameter("rate", "1/s", "r", scale=0.1 / 60.0, fitted=False),
+    )
+
+    def needs_duration(self) -> bool:
+        """A fraction is of a run."""
+        return self["fraction"] != 0.0
 
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
         """Forces that fade linearly with time."""
-        return force * (1.0 - self["fraction"] * t / duration)[:, None]
+        lost = self["fraction"] * t / duration + self["rate"] * t
+        return force * np.maximum(0.0, 1.0 - lost)[:, None]
 
 
 class ThrusterLag(Response):
