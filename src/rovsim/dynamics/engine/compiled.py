@@ -1,18 +1,11 @@
-"""What is compiled is kept on disk, in one folder for each state of the sources.
+"""What is compiled, and kept on disk (`rovsim.dynamics.engine.cache`).
 
-Numba keeps a function by its own file, and knows nothing of the functions that it calls. So all
-that is kept lies in a folder named by a digest of everything that can be compiled into it: the
-engine, the kernels of effects and of learned residuals, and Numba's version. Whatever is edited,
-the next run finds an empty folder; nothing in it is ever stale.
-
-An engine is a small module in that folder, written for a list of wrench effects: it names their
+An engine is a small module among what is kept, written for a list of wrench effects: it names their
 kernels, chains them, and hands the chain to the functions of `integration` and `observer`.
 """
 
-import hashlib
 import importlib.util
 import inspect
-import os
 import sys
 import textwrap
 from functools import cache
@@ -22,38 +15,19 @@ from typing import Any, Callable, Sequence
 
 import numba
 from filelock import FileLock
-from platformdirs import user_cache_path
 
 from rovsim.core.files import write_text
+from rovsim.dynamics.engine.cache import DYNAMICS, cache_folder, digest
 
 MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
 # What makes a function callable from outside takes half of the time that it takes to compile.
 UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
-DYNAMICS = Path(__file__).parents[1]
-ROOMS = ("engine", "effects", "learned")  # whose functions are compiled
-
-
-def cache_folder() -> Path:
-    """Where what is compiled from these sources is kept: in $ROVSIM_CACHE or the user's cache."""
-    root = Path(os.environ.get("ROVSIM_CACHE") or user_cache_path("rovsim"))
-    return root / "compiled" / _sources_digest()
-
-
-@cache
-def _sources_digest() -> str:
-    files = sorted(file for room in ROOMS for file in DYNAMICS.joinpath(room).glob("*.py"))
-    return _digest(numba.__version__.encode(), *(file.read_bytes() for file in files))
-
-
-def _digest(*parts: bytes) -> str:
-    return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
-
 
 def keep(**options: Any) -> Callable[[Callable], Any]:
     """Compile a function that Python or a kept function calls, and keep what comes of it.
 
-    What it calls may lie in `ROOMS`, or in the module of a wrench effect.
+    What it calls may lie in `cache.ROOMS`, or in the module of a wrench effect.
     """
 
     def decorate(function: Callable) -> Any:
@@ -88,10 +62,8 @@ def _engine(wrenches: tuple[Any, ...]) -> ModuleType:
     text = _engine_text(wrenches)
     files = {str(inspect.getsourcefile(wrench)) for wrench in wrenches}
     foreign = sorted(f for f in files if not Path(f).is_relative_to(DYNAMICS))
-    name = f"rovsim_engine_{_digest(text.encode(), *(Path(f).read_bytes() for f in foreign))}"
-    folder = cache_folder()
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{name}.py"
+    name = f"rovsim_engine_{digest(text.encode(), *(Path(f).read_bytes() for f in foreign))}"
+    path = cache_folder() / f"{name}.py"
     with FileLock(path.with_suffix(".lock")):
         if not path.exists():
             write_text(path, text)

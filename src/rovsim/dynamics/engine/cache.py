@@ -1,0 +1,55 @@
+"""Where compiled code is kept: one folder for each state of the sources.
+
+Numba keeps a function by its own file, and knows nothing of the functions that it calls. So all
+that is kept lies in a folder named by a digest of everything that can be compiled into it: the
+engine, the kernels of effects and of learned residuals, and Numba's version. Whatever is edited,
+the next run finds an empty folder; nothing in it is ever stale. Each process marks its folder as
+used when it starts, and removes those that no process marked for a month.
+"""
+
+import hashlib
+import os
+import shutil
+import time
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+import numba
+from platformdirs import user_cache_path
+
+DYNAMICS = Path(__file__).parents[1]
+ROOMS = ("engine", "effects", "learned")  # whose functions are compiled
+# s, 30 days; our choice. A process that outlives it loses nothing: Numba compiles what it misses.
+UNUSED = 30 * 86400.0
+
+
+@cache
+def cache_folder() -> Path:
+    """Folder of what is compiled from these sources: in $ROVSIM_CACHE or the user's cache."""
+    root = Path(os.environ.get("ROVSIM_CACHE") or user_cache_path("rovsim"))
+    folder = root / "compiled" / _digest_sources()
+    with suppress(OSError):  # where nothing can be written, Numba says so
+        folder.mkdir(parents=True, exist_ok=True)
+        os.utime(folder)
+        prune(folder.parent)
+    return folder
+
+
+def prune(folders: Path) -> None:
+    """Remove the folders in `folders` that nobody marked as used for `UNUSED` seconds."""
+    oldest = time.time() - UNUSED
+    for folder in folders.iterdir():
+        with suppress(OSError):  # another process may have removed it
+            if folder.stat().st_mtime < oldest:
+                shutil.rmtree(folder)
+
+
+def _digest_sources() -> str:
+    files = sorted(file for room in ROOMS for file in DYNAMICS.joinpath(room).glob("*.py"))
+    return digest(numba.__version__.encode(), *(file.read_bytes() for file in files))
+
+
+def digest(*parts: bytes) -> str:
+    """A short name for these bytes."""
+    return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]

@@ -1,0 +1,56 @@
+"""Laws of what compiled code leaves on disk."""
+
+import os
+import shutil
+import time
+
+import pytest
+
+from rovsim.dynamics.engine.cache import UNUSED, cache_folder, prune
+
+DAY = 86400.0
+
+
+@pytest.fixture
+def folders(tmp_path):
+    """Folders of compiled code by their age in days, a file in each."""
+
+    def make(*ages):
+        for age in ages:
+            folder = tmp_path / f"{age:g}"
+            folder.mkdir()
+            (folder / "engine.py").touch()
+            os.utime(folder, (then := time.time() - age * DAY, then))
+        return tmp_path
+
+    return make
+
+
+def test_only_folders_that_nobody_used_for_a_month_are_removed(folders):
+    root = folders(0, 1, 29.9, 30.1, 400)
+    prune(root)
+    assert sorted(folder.name for folder in root.iterdir()) == ["0", "1", "29.9"]
+
+
+def test_what_another_process_removes_first_is_no_error(folders, monkeypatch):
+    def remove_twice(folder, rmtree=shutil.rmtree):
+        rmtree(folder)
+        rmtree(folder)
+
+    monkeypatch.setattr("rovsim.dynamics.engine.cache.shutil.rmtree", remove_twice)
+    root = folders(1, 40, 50)
+    prune(root)
+    assert [folder.name for folder in root.iterdir()] == ["1"]
+
+
+def test_a_process_marks_its_folder_as_used(folders, monkeypatch):
+    monkeypatch.setenv("ROVSIM_CACHE", str(folders()))
+    cache_folder.cache_clear()
+    try:
+        folder = cache_folder()
+        os.utime(folder, (0.0, 0.0))
+        cache_folder.cache_clear()
+        assert cache_folder() == folder
+        assert time.time() - folder.stat().st_mtime < UNUSED / 30
+    finally:
+        cache_folder.cache_clear()
