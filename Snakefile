@@ -12,7 +12,7 @@ try:
     study.check()
     folds.check()
     # What the jobs are told: also files of effects that the configuration names.
-    config["effects_file"] = [str(path) for path in study.settings.effect_files]
+    config["effects_file"] = [str(path) for path in study.catalogue.files]
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)

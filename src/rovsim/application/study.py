@@ -178,8 +178,7 @@ class Study:
         """Look at all that can be wrong with what was given, before anything is planned.
 
         Raises:
-            BadInput: a campaign or file of effects that cannot be used, no train or no test run,
-                or an unknown residual.
+            BadInput: a campaign that cannot be used, no train or no test run, an unknown residual.
         """
         for split in ("train", "test"):
             if not self.runs(split):
@@ -193,7 +192,6 @@ class Study:
             learner(kind, "study.residuals")
         for name in self.settings.study.on_effects:
             learner(name.rpartition("_")[0], "study.on_effects")
-        load_catalogue(self.settings.effect_files)
 
     def figures(self) -> list[str]:
         """Figures of single runs, as `figure-run`."""
