@@ -5,6 +5,7 @@ import io
 import re
 from html import unescape
 from html.parser import HTMLParser
+from statistics import geometric_mean
 
 import pytest
 
@@ -18,8 +19,9 @@ from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.html.verdict import explain
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
+from rovsim.reporting.wording import significant
 from rovsim.results.comparison import Comparison
-from rovsim.results.diagnosis import DiagnosisErrors, Unexplained
+from rovsim.results.diagnosis import DiagnosisErrors, FittedEffect, FittedValue, Unexplained
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import MissedCell
 from synthetic_study import study
@@ -178,6 +180,34 @@ def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
     assert f"{one.below} of {one.cells}" in row
     cells = [c for c in found.cells if c.metric == "velocity_mae"]
     assert text.split("### Velocity MAE")[1].split("###")[0].count("| 3dof-2 |") == len(cells) / 2
+
+
+def test_theirs_and_ours_are_set_against_one_simulator(content):
+    found = content["published_errors"]
+    text = "\n".join(published_errors.write_markdown(found)).split("### On one baseline")[1]
+    rows = {line.split(" | ")[0].strip("| "): line for line in text.split("###")[0].splitlines()}
+    assert rows["published zero_shot"] == "| published zero_shot | 1.00 | 1.00 | 1.00 |"
+    ratios = [
+        cell.errors["gp_6dof"] / cell.errors["published zero_shot"]
+        for cell in found.cells if cell.metric == "velocity_mae"
+    ]  # fmt: skip
+    assert rows["gp_6dof"].split(" | ")[2] == significant(geometric_mean(ratios))
+    ours = {name: one for name, one in found.models.items() if "zero_shot" not in name}
+    alone = published_errors.write_markdown(found.model_copy(update={"models": ours}))
+    assert "baseline" not in "\n".join(alone)
+
+
+def test_a_fitted_number_is_known_where_its_interval_leaves_zero_out(content):
+    def fold(**values):
+        fitted = {name: FittedValue(value=v, std=s) for name, (v, s) in values.items()}
+        selected = (FittedEffect(effect="current", parameters=fitted),)
+        return content["diagnosis"].model_copy(update={"selected": selected})
+
+    folds = {"a": fold(north=(-0.2, 0.1), east=(0.1, 0.1), down=(0.3, None)),
+             "b": fold(north=(0.2, 0.1), east=(0.1, 0.01))}  # fmt: skip
+    said = leave_one_run_out.tell_known(folds)
+    assert "leaves zero out: 1 of 3 without a, 2 of 2 without b;" in said
+    assert "in every fold current north." in said
 
 
 def test_effects_and_residual_are_said_cell_by_cell(content):

@@ -5,6 +5,7 @@ python -m rovsim.reporting.html.leave_one_run_out results/kth_tank_2025 docs/the
 
 import argparse
 import sys
+from itertools import chain
 from pathlib import Path
 from typing import Iterator, Mapping, Sequence
 
@@ -12,8 +13,8 @@ from rovsim.core.errors import RovsimError
 from rovsim.reporting.html.marked import replace_tables, table
 from rovsim.reporting.html.published_errors import tell_pitfalls, write_markdown
 from rovsim.reporting.html.speed import timing_sentences
-from rovsim.reporting.html.verdict import interval
-from rovsim.results.diagnosis import Diagnosis
+from rovsim.reporting.html.verdict import differs_from_zero, interval
+from rovsim.results.diagnosis import Diagnosis, FittedValue
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import Timing
@@ -21,16 +22,35 @@ from rovsim.results.timing import Timing
 
 def tabulate_selected(diagnoses: Mapping[str, Diagnosis]) -> str:
     """What the diagnosis chose while each run was held out: a row a parameter, a column a run."""
-    values = {run: dict(_values(one)) for run, one in diagnoses.items()}
+    values = {
+        run: {name: interval(value) for name, value in _fitted(one)}
+        for run, one in diagnoses.items()
+    }
     names = dict.fromkeys(name for own in values.values() for name in own)
     rows = [[name, *(own.get(name, "–") for own in values.values())] for name in names]
     return table(["parameter", *(f"without {run}" for run in values)], rows)
 
 
-def _values(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
+def _fitted(diagnosis: Diagnosis) -> Iterator[tuple[str, FittedValue]]:
     for one in diagnosis.selected:
         for name, value in one.parameters.items():
-            yield f"{one.effect} {name}", interval(value)
+            yield f"{one.effect} {name}", value
+
+
+def tell_known(diagnoses: Mapping[str, Diagnosis]) -> str:
+    """How many of the fitted numbers the train runs tell from zero, and which in every fold."""
+    values = {run: dict(_fitted(one)) for run, one in diagnoses.items()}
+    known = {
+        run: [n for n, v in own.items() if differs_from_zero(v)] for run, own in values.items()
+    }
+    counts = (f"{len(known[run])} of {len(values[run])} without {run}" for run in values)
+    always = [
+        n for n in dict.fromkeys(chain(*known.values())) if all(n in k for k in known.values())
+    ]
+    return (
+        f"Fitted numbers whose 95 % interval leaves zero out: {', '.join(counts)}; in every fold "
+        f"{', '.join(always) or 'none'}. The others predict together, and are no measured physics."
+    )
 
 
 def tabulate_together(diagnoses: Mapping[str, Diagnosis]) -> str:
@@ -52,6 +72,7 @@ def describe_folds(results: Path) -> str:
     parts = [
         *write_markdown(published_errors),
         "### What was found while each run was held out",
+        tell_known(diagnoses),
         tabulate_selected(diagnoses),
         tabulate_together(diagnoses),
         "### Time of a prediction",

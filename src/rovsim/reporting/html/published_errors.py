@@ -3,13 +3,15 @@
 from typing import Mapping
 
 from rovsim.evaluation.held_out.pitfalls import PITFALLS
-from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED
+from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED, stand
 from rovsim.reporting.html.marked import table
 from rovsim.reporting.tables import QUANTITIES
 from rovsim.reporting.wording import significant
 from rovsim.results.ladder import EFFECTS
 from rovsim.results.pitfalls import Cost, Pitfalls
 from rovsim.results.published_errors import ModelStanding, PublishedErrors
+
+SIMULATOR = f"{PUBLISHED}zero_shot"  # theirs without a residual: what any gain is measured from
 
 
 def tell_standings(published_errors: PublishedErrors) -> list[str]:
@@ -49,6 +51,7 @@ def write_markdown(published_errors: PublishedErrors) -> list[str]:
     """Paragraphs of Markdown of `published_errors.json`."""
     lacking = published_errors.without_published
     parts = [*tell_standings(published_errors), _standings(published_errors)]
+    parts += _on_one_baseline(published_errors)
     parts += [part for metric in METRICS for part in _cells(published_errors, metric)]
     return parts + ([f"Nothing is published for {', '.join(lacking)}."] if lacking else [])
 
@@ -62,6 +65,29 @@ def _standings(published_errors: PublishedErrors) -> str:
         for name, found in published_errors.models.items()
     ]  # fmt: skip
     return table(head, rows)
+
+
+def _on_one_baseline(published_errors: PublishedErrors) -> list[str]:
+    """Every model against the same errors, those of the authors' simulator, if it is there."""
+    if SIMULATOR not in published_errors.models:
+        return []
+    rows = [
+        [name, *(_number(_against_simulator(published_errors, name, metric)) for metric in METRICS)]
+        for name in published_errors.models
+    ]
+    return [
+        "### On one baseline",
+        "Theirs and ours divided by the smallest published `zero_shot` error of each cell, "
+        "geometric means. Others' residuals are at the better of their variants, cell by cell, and "
+        "learned from other runs than ours.",
+        table(["model", *(QUANTITIES[metric][0] for metric in METRICS)], rows),
+    ]
+
+
+def _against_simulator(published_errors: PublishedErrors, name: str, metric: str) -> float | None:
+    cells = [c for c in published_errors.cells if c.metric == metric and name in c.ratios]
+    errors = [(c.errors[name], c.errors[SIMULATOR]) for c in cells]
+    return stand([None if e is None or not base else e / base for e, base in errors]).geometric_mean
 
 
 def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:

@@ -84,6 +84,11 @@ def interval(value: FittedValue) -> str:
     return f"{or_nan(value.value):.{places}f} ± {half:.{places}f} {unit}".strip()
 
 
+def differs_from_zero(value: FittedValue) -> bool:
+    """Whether a fitted value's 95 % interval leaves zero out; False where it has none."""
+    return abs(or_nan(value.value)) > INTERVAL * or_nan(value.std) > 0.0
+
+
 def percent(share: float | None) -> str:
     """A share as a whole number of percent."""
     return "an unknown share" if share is None else f"{100 * share:.0f}\u202f%"
