@@ -32,7 +32,9 @@ def model(*effects: Effect) -> Model:
 
 def some(cls: type[Effect]) -> Effect:
     """An effect whose values differ from the defaults, inside every range."""
-    return cls(**{p.name: p.default + 0.1 for p in cls.parameters if np.isfinite(p.default)})
+    known = [p for p in cls.parameters if np.isfinite(p.default)]
+    more = {p.name: p.default + 0.1 for p in known if p.default + 0.1 <= p.high}
+    return cls(**cls.starts[0] | more)
 
 
 def motion(

@@ -82,12 +82,13 @@ def test_seeds_of_the_two_ranges_are_disjoint_and_cases_repeatable():
 
 def test_weaker_cases_hide_the_same_but_less():
     cases = {c.id: c for c in suite("full", "development")}
-    for name in ("thruster_lag", "quadratic_damping", "thruster_gain", "payload"):
+    for name in ("thruster_lag", "quadratic_damping", "thruster_gain", "payload", "pose_filter"):
         full, tenth = cases[f"single/{name}/0"], cases[f"weak 0.1/{name}/0"]
         strong, weak = (build_effect(one.hidden[0], built_in()) for one in (full, tenth))
         for p, a, b in zip(strong.parameters, strong.values, weak.values, strict=True):
             kept = p.name in RECIPES[name].fixed
-            assert b == pytest.approx(a if kept else p.default + 0.1 * (a - p.default), rel=1e-3)
+            expected = a if kept else p.combine(p.absence, a, 0.1)
+            assert b == pytest.approx(expected, rel=1e-3)
 
 
 def test_sets_hold_effects_of_different_families():

@@ -21,7 +21,7 @@ PUBLIC = {
     "thruster_gain", "thrust_asymmetry", "voltage_sag", "advance_loss", "propeller_torque",
     "onboard_control", "marker_offset", "marker_misalignment", "world_tilt",
     # section 6
-    "cubic_damping", "dry_friction", "force_curve",
+    "cubic_damping", "dry_friction", "force_curve", "pose_filter",
 }  # fmt: skip
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))
 
@@ -33,7 +33,7 @@ def driven(world):
     value, kind = (sticks(1)[:, :6], "demand") if demands else (sticks(1), "thruster")
     run = motion(value, kind, seconds=1.0, start=start, site=tank())
     path = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
-    return world.mocap_view.states(path)
+    return world.mocap_view.report(path, 0.01)
 
 
 @EVERY

@@ -9,7 +9,11 @@ from rovsim.dynamics.effects.base import Autopilot
 from rovsim.evaluation.budget import RESTORING, Budget, balance_forces
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
+from rovsim.simulation.measured_states import (
+    accelerate_as_measured,
+    as_true,
+    drive_as_measured,
+)
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, some, sticks, tank
 
@@ -32,8 +36,9 @@ def made(world, found=None):
 @pytest.mark.parametrize("cls", built_in().values(), ids=lambda cls: cls.id)
 def test_the_parts_add_up_to_the_models_inertia_force(cls):
     world, measured = model(some(cls)), run("demand" if issubclass(cls, Autopilot) else "thruster")
-    at = drive_as_measured(world, measured, ReplaySettings())
-    expected = accelerate_as_measured(world, measured, at) @ world.body.M.T
+    true = as_true(world, measured)
+    at = drive_as_measured(world, true, ReplaySettings())
+    expected = accelerate_as_measured(world, true, at) @ world.body.M.T
     parts = made(world, measured).parts
     np.testing.assert_allclose(sum(parts.values()), expected, atol=1e-9)
     assert f"+{cls.id}" in parts

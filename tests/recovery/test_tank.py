@@ -72,6 +72,7 @@ NEW = [
     entry("clock_drift", rate=0.006),
     entry("clock_drift", rate=-0.006),
     entry("input_delay", delay=-0.15),
+    entry("pose_filter", cutoff=2.0),
 ]
 
 

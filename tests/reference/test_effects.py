@@ -60,6 +60,7 @@ NAMES |= {
     "tether_drag": ["coefficient", *ANCHOR],
     "wall_proximity": ["gain", "length_scale"],
     "surface_proximity": ["gain", "length_scale"],
+    "pose_filter": ["cutoff"],
     "marker_offset": ["x", "y", "z"],
     "marker_misalignment": ["roll", "pitch", "yaw"],
     "world_tilt": ["roll", "pitch"],

@@ -1,6 +1,6 @@
-"""What the motion capture reports of a true motion: another body point, other axes."""
+"""What the motion capture reports of a true motion: another body point, other axes, smoothed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Iterable
 
@@ -9,42 +9,45 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import Rigid, matrix, multiply, rotate
 from rovsim.dynamics.body import cross_matrix
+from rovsim.dynamics.low_pass import LowPass, in_body, in_world, unit
 
 
 @dataclass(frozen=True, eq=False)
 class MocapView:
-    """Reported pose = world o true pose o body, with two constant rigid transforms.
+    """Seen pose = world o true pose o body, with two constant rigid transforms; then smoothed.
 
-    The inverse turns what was reported into what was true. Where both transforms are identities,
-    arrays come back as they are.
+    `poses`, `twists`, `states` and the inverse are those of the transforms alone, at one instant;
+    what has to do with the low-pass takes a whole series. Where nothing is changed, arrays come
+    back as they are.
     """
 
     world: Rigid
     body: Rigid
+    low_pass: LowPass
 
     @staticmethod
-    def through(parts: Iterable[tuple[Rigid, Rigid]]) -> "MocapView":
+    def through(parts: Iterable[tuple[Rigid, Rigid]], low_pass: LowPass) -> "MocapView":
         """All parts in order, the first one next to the vehicle."""
         world, body = Rigid.by(), Rigid.by()
         for outer, inner in parts:
             world, body = outer.after(world), body.after(inner)
-        return MocapView(world, body)
+        return MocapView(world, body, low_pass)
 
     @cached_property
     def identity(self) -> bool:
-        """Whether nothing is changed."""
+        """Whether the transforms change nothing."""
         none = np.concatenate(Rigid.by())
         return all(np.array_equal(np.concatenate(one), none) for one in (self.world, self.body))
 
     @cached_property
     def key(self) -> bytes:
         """The same for equal views."""
-        return np.concatenate([*self.world, *self.body]).tobytes()
+        return np.concatenate([*self.world, *self.body, self.low_pass.time_constants]).tobytes()
 
     @cached_property
     def inverse(self) -> "MocapView":
-        """From reported to true."""
-        return MocapView(self.world.inverse, self.body.inverse)
+        """From seen to true."""
+        return replace(self, world=self.world.inverse, body=self.body.inverse)
 
     def poses(self, eta: Array) -> Array:
         """Poses (..., 7) as this view shows them."""
@@ -73,3 +76,28 @@ class MocapView:
         if self.identity:
             return state
         return np.concatenate([self.poses(state[..., :7]), self.twists(state[..., 7:])], axis=-1)
+
+    def report(
+        self, state: Array, dt: float, first: Array | None = None, straight: bool = False
+    ) -> Array:
+        """States (..., n, 13) of a true motion, dt s apart, as they are reported.
+
+        `first` (stages, ..., 14) and `straight`: see `LowPass.smooth`.
+        """
+        seen = self.states(state)
+        if not self.low_pass.time_constants:
+            return seen
+        with np.errstate(invalid="ignore", over="ignore"):  # of a model that diverged
+            channels = in_world(seen[..., :7], seen[..., 7:])
+            smoothed = self.low_pass.smooth(channels, dt, first, straight)
+            return np.concatenate(in_body(smoothed), axis=-1)
+
+    def smooth(self, eta: Array, dt: float) -> Array:
+        """Poses (..., n, 7) that were seen, dt s apart, as they are reported; first still."""
+        smoothing = self.low_pass.time_constants
+        return unit(self.low_pass.smooth(eta, dt)) if smoothing else eta
+
+    def sharpen(self, eta: Array, dt: float) -> Array:
+        """Poses (n, 7) that were seen, of reported ones at the full rate, dt s apart."""
+        smoothing = self.low_pass.time_constants
+        return unit(self.low_pass.stages(eta, dt)[0]) if smoothing else eta

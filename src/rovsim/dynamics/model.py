@@ -10,10 +10,11 @@ from numpy import ndarray as Array
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.body import Body, packed
-from rovsim.dynamics.effects.base import Coefficients, Effect, Sensing, Wrench
+from rovsim.dynamics.effects.base import Coefficients, Effect, Sensing, Smoothing, Wrench
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual
+from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.mocap_view import MocapView
 from rovsim.dynamics.vehicle import Thrusters, Vehicle
 
@@ -86,7 +87,9 @@ class Model:
     def mocap_view(self) -> MocapView:
         """What the motion capture makes of the true motion."""
         sensing = sorted((e for e in self.effects if isinstance(e, Sensing)), key=lambda e: e.rank)
-        return MocapView.through(e.transforms() for e in sensing)
+        smoothing = [e for e in self.effects if isinstance(e, Smoothing)]
+        low_pass = LowPass(tuple(T for e in smoothing for T in e.time_constants()))
+        return MocapView.through((e.transforms() for e in sensing), low_pass)
 
     def check(self, site: Site, kind: CommandKind) -> None:
         """Refuse a run that lacks what an effect needs.

@@ -24,7 +24,11 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis
 from rovsim.results.budget import BudgetTotals, RunBudget
 from rovsim.simulation.drive import Drive
-from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
+from rovsim.simulation.measured_states import (
+    accelerate_as_measured,
+    as_true,
+    drive_as_measured,
+)
 from rovsim.simulation.settings import ReplaySettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
@@ -83,7 +87,7 @@ def balance_forces(
     """Budget of one model over one run, of which `found` are the samples."""
     parts: dict[str, Array] = {}
     before = np.zeros((len(motion.time), 6))
-    for name, force in _cumulative(model, motion, settings):
+    for name, force in _cumulative(model, as_true(model, motion), settings):
         parts[name] = parts.get(name, 0.0) + force - before
         before = force
     missing = np.full((len(motion.time), 6), np.nan)

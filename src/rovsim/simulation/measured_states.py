@@ -12,12 +12,13 @@ from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive, drive_by_log
 from rovsim.simulation.initial_memory import measured_memory
 from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.sharpened import sharpen
 from rovsim.simulation.step_grid import StepGrid
 
 
 def as_true(model: Model, motion: Motion) -> Motion:
     """The motion behind the reported one, if the motion capture sees as the model says."""
-    back = model.mocap_view.inverse
+    motion, back = sharpen(model, motion), model.mocap_view.inverse
     return motion if back.identity else replace(
         motion, eta=back.poses(motion.eta), nu=back.twists(motion.nu),
         nu_dot=back.twists(motion.nu_dot), state_nu=back.twists(motion.state_nu),
@@ -26,11 +27,16 @@ def as_true(model: Model, motion: Motion) -> Motion:
 
 def interpolate_state(motion: Motion, time: float) -> Array:
     """State (13,) between two samples or bin starts, linearly."""
-    k = int(np.clip(np.searchsorted(motion.time, time) - 1, 0, len(motion.time) - 2))
-    share = (time - motion.time[k]) / (motion.time[k + 1] - motion.time[k])
-    state = (1.0 - share) * motion.state[k] + share * motion.state[k + 1]
+    state = interpolate(motion.time, motion.state, time)
     state[3:7] = normalized(state[3:7])
     return state
+
+
+def interpolate(times: Array, values: Array, time: float) -> Array:
+    """Value (..., c) between two of `values` (..., n, c) at `times` (n,), linearly."""
+    k = int(np.clip(np.searchsorted(times, time) - 1, 0, len(times) - 2))
+    share = (time - times[k]) / (times[k + 1] - times[k])
+    return (1.0 - share) * values[..., k, :] + share * values[..., k + 1, :]
 
 
 def accelerate_as_measured(model: Model, motion: Motion, drive: Drive) -> Array:

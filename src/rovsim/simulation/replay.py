@@ -18,9 +18,10 @@ from rovsim.results.comparison import OPEN_LOOP
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import drive_by_log
 from rovsim.simulation.initial_memory import remembered_at
-from rovsim.simulation.measured_states import as_true, interpolate_state
+from rovsim.simulation.measured_states import as_true, interpolate, interpolate_state
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.sharpened import stage_outputs
 from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.windows import find_whole, find_windows
 
@@ -39,13 +40,12 @@ def replay(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    true = as_true(model, motion)
     spans: dict[str, Spans] = {OPEN_LOOP: find_whole(motion)} if open_loop else {}
     for seconds in settings.horizons:
         spans[f"{seconds:g}"] = list(find_windows(motion, seconds))
     predict = _predict_bins if motion.binned else _predict_samples
     horizons = {
-        name: predict(model, true, found, signals, settings) for name, found in spans.items()
+        name: predict(model, motion, found, signals, settings) for name, found in spans.items()
     }
     return Replay(model.name, motion.run, motion.time, horizons)
 
@@ -87,12 +87,14 @@ def _predict_samples(
     found = Prediction.empty(len(motion.time))
     if not spans:
         return found
-    stride, state = StepGrid.over(motion, settings.step).stride, motion.state
+    true, stride = as_true(model, motion), StepGrid.over(motion, settings.step).stride
+    state, period = true.state, float(motion.time[1] - motion.time[0])
     starts = [(a * stride, b - a, state[a]) for a, b in spans]
-    paths = model.mocap_view.states(np.stack(simulate(model, motion, starts, settings)))
+    paths = np.stack(simulate(model, true, starts, settings))
+    begins = stage_outputs(model, motion)[1:, [a for a, _ in spans], :14]
+    paths = model.mocap_view.report(paths, period, begins)
     nu, nu_dot = np.full((2, *paths.shape[:-1], 6), np.inf)
     stayed = np.isfinite(paths).all(axis=(1, 2))
-    period = float(motion.time[1] - motion.time[0])
     if stayed.any():
         nu[stayed], nu_dot[stayed] = velocities(paths[stayed, :, :7], period, signals)
     for i, (a, b) in enumerate(spans):
@@ -107,21 +109,22 @@ def _predict_bins(
 ) -> Prediction:
     """Means over the measurement's own bins, of a trajectory on fine steps; nothing is filtered."""
     found = Prediction.empty(len(motion.time))
-    grid = StepGrid.over(motion, settings.step)
+    true, grid = as_true(model, motion), StepGrid.over(motion, settings.step)
+    outputs, view = stage_outputs(model, motion)[1:], model.mocap_view
     bins, ends = np.append(motion.time, motion.end), len(grid.edges) - 1
     first = [min(round((bins[a] - bins[0]) / grid.h), ends - 1) for a, _ in spans]
     last = [min(int(np.ceil((bins[b] - bins[0]) / grid.h)), ends) for _, b in spans]
     starts = [
-        (k, max(e - k, 1), interpolate_state(motion, grid.edges[k]))
+        (k, max(e - k, 1), interpolate_state(true, grid.edges[k]))
         for k, e in zip(first, last, strict=True)
     ]
     for (a, b), (k, count, _), path in zip(
-        spans, starts, simulate(model, motion, starts, settings), strict=True
+        spans, starts, simulate(model, true, starts, settings), strict=True
     ):
         fine = grid.edges[k : k + count + 1]
-        means = bin_means(
-            fine, model.mocap_view.states(path), np.clip(bins[a : b + 1], fine[0], fine[-1])
-        )
+        begin = interpolate(motion.time, outputs, grid.edges[k])
+        shown = view.report(path, grid.h, begin, straight=True)
+        means = bin_means(fine, shown, np.clip(bins[a : b + 1], fine[0], fine[-1]))
         found.eta[a:b] = np.hstack([means[:, :3], normalized(means[:, 3:7])])
         found.nu[a:b] = means[:, 7:]
         found.nu_dot[a:b] = backward_difference(means[:, 7:], motion.time[a:b])

@@ -10,7 +10,7 @@ from rovsim.benchmarks.blind.outside import OUTSIDE
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
@@ -81,10 +81,10 @@ class Case(Section):
 
 def _shrunk(entry: EffectEntry) -> EffectEntry:
     """An entry whose first parameters, those a recipe sizes, are closer to their defaults."""
-    defaults = {p.name: p.default for p in built_in()[entry.effect].parameters}
+    known = {p.name: p for p in built_in()[entry.effect].parameters}
     fixed = RECIPES[entry.effect].fixed
     values = {
-        k: v if k in fixed else Value(value=_closer(v.value, defaults[k]))
+        k: v if k in fixed else Value(value=_closer(v.value, known[k]))
         for k, v in entry.parameters.items()
     }
     return EffectEntry(effect=entry.effect, parameters=values)
@@ -92,12 +92,12 @@ def _shrunk(entry: EffectEntry) -> EffectEntry:
 
 def _shrunk_outside(one: Unlisted) -> Unlisted:
     first = OUTSIDE[one.name].parameters[0]
-    smaller = {first.name: _closer(one.parameters[first.name], first.default)}
+    smaller = {first.name: _closer(one.parameters[first.name], first)}
     return Unlisted(name=one.name, parameters=one.parameters | smaller)
 
 
-def _closer(value: float, default: float) -> float:
-    return float(f"{default + WEAKER * (value - default):.4g}")
+def _closer(value: float, parameter: Parameter) -> float:
+    return float(f"{parameter.combine(parameter.absence, value, WEAKER):.4g}")
 
 
 def seed_of(case_id: str, seeds: Range) -> int:

@@ -86,6 +86,7 @@ RECIPES: Mapping[str, Recipe] = {
         1, {"gain_yaw": (1.0, 1.8), "gain_roll": (0.5, 0.8), "gain_pitch": (0.5, 0.8)},
         {"log": {"kind": "demand"}}, weak=False,
     ),
+    "pose_filter": Recipe(_each("cutoff"), (994.0, 997.0), -1),  # from 1000 Hz down to 3 to 6 Hz
     "marker_offset": Recipe(_each("x", "y", "z"), (1.0, 3.0)),
     "marker_misalignment": Recipe(_each("roll", "pitch", "yaw"), (1.5, 4.0)),
     "world_tilt": Recipe(_each("roll", "pitch"), (2.0, 4.0)),
@@ -103,15 +104,15 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
     values = {k: _rounded(random.uniform(*r)) for k, r in recipe.fixed.items()}
     sign = recipe.sign or random.choice([-1, 1])
     for k in chosen:
-        size = float(random.uniform(*recipe.sizes)) * (strength if recipe.weak else 1.0)
-        values[k] = _moved(known[k], sign * size)
+        change = sign * float(random.uniform(*recipe.sizes))
+        values[k] = _moved(known[k], change, strength if recipe.weak else 1.0)
     values = {k: v for k, v in values.items() if _used(name, k, chosen)}
     return EffectEntry(effect=name, parameters={k: Value(value=v) for k, v in values.items()})
 
 
-def _moved(p: Parameter, scales: float) -> float:
-    """The parameter's default moved by some of its scales, inside its range, to four digits."""
-    return _rounded(np.clip(p.default + scales * p.scale, p.low, p.high))
+def _moved(p: Parameter, scales: float, strength: float) -> float:
+    """A share of the change of a parameter by some of its scales, inside its range, rounded."""
+    return _rounded(p.combine(p.absence, p.absence + scales * p.scale, strength))
 
 
 def _rounded(value: float) -> float:

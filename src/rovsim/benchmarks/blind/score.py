@@ -114,5 +114,5 @@ def _parameter(declared: Parameter, truth: float, answer: FittedEffect) -> Param
     value, std = (fitted.value, fitted.std) if fitted else (declared.default, None)
     miss = abs(or_nan(value) - truth)
     covered = None if std is None else miss <= SURE * std
-    size = max(abs(truth - declared.default), 1e-9)
+    size = max(declared.size(truth), 1e-9)
     return ParameterScore(answer.effect, declared.name, miss / size, covered)

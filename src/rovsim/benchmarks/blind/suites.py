@@ -43,7 +43,7 @@ FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"coupled_damping"}),
     frozenset({"added_mass"}),
     frozenset({"added_mass_coupling", "marker_offset", "marker_misalignment"}),
-    frozenset({"thruster_lag", "input_delay", "clock_drift"}),
+    frozenset({"thruster_lag", "input_delay", "clock_drift", "pose_filter"}),
     frozenset({"thruster_deadband", "force_curve", "thruster_gain", "thrust_asymmetry",
                "voltage_sag", "advance_loss"}),
     frozenset({"propeller_torque"}),

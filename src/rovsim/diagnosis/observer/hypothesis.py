@@ -65,8 +65,8 @@ class Term:
     def merged(self, more: "Term") -> "Term":
         """This term with the changes of another of the same effect added."""
         given, added = self.effect.given(), more.effect.given()
-        defaults = {p.name: p.default for p in self.effect.parameters}
-        values = {k: given.get(k, defaults[k]) + v - defaults[k] for k, v in added.items()}
+        known = {p.name: p for p in self.effect.parameters}
+        values = {k: known[k].combine(given.get(k, known[k].absence), v) for k, v in added.items()}
         free = (*self.free, *(name for name in more.free if name not in self.free))
         return replace(self, effect=self.effect.with_values(values), free=free)
 

@@ -13,6 +13,7 @@ method. Effects are immutable and add: a model is a list of them.
     Strength        the static thruster force                  scaled(force, t, duration) -> force
     Response        the dynamic thruster force                 respond(force, h, state) -> ...
     Sensing         what the motion capture reports            transforms() -> two rigid transforms
+    Smoothing       what its software makes of that            time_constants() -> of low-passes
 """
 
 from abc import ABC, abstractmethod
@@ -215,3 +216,11 @@ class Sensing(Effect):
     @abstractmethod
     def transforms(self) -> tuple[Rigid, Rigid]:
         """World side and body side: measured pose = world o true pose o body."""
+
+
+class Smoothing(Effect):
+    """Smooths the poses that the motion capture reports, after all `Sensing`."""
+
+    @abstractmethod
+    def time_constants(self) -> tuple[float, ...]:
+        """Time constants in s of first-order low-passes one after the other; none: as they are."""

@@ -17,7 +17,7 @@ class Parameter:
     A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
     change worth looking for: a fit works in multiples of it. `grain`: changes much smaller than
     this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`: only
-    when asked for.
+    when asked for. `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
     """
 
     name: str
@@ -29,6 +29,24 @@ class Parameter:
     scale: float = field(kw_only=True)
     grain: float = field(default=0.0, kw_only=True)
     fitted: bool = field(default=True, kw_only=True)
+    reciprocal: bool = field(default=False, kw_only=True)
+
+    @property
+    def absence(self) -> float:
+        """The value that changes nothing; zero where the site would decide."""
+        return self.default if np.isfinite(self.default) else 0.0
+
+    def combine(self, value: float, other: float, share: float = 1.0) -> float:
+        """A value with a share of the change from absence to another on top, inside the range."""
+        if self.reciprocal:
+            both = 1.0 / (1.0 / value + share * (1.0 / other - 1.0 / self.absence))
+        else:
+            both = value + share * (other - self.absence)
+        return float(np.clip(both, self.low, self.high))
+
+    def size(self, value: float) -> float:
+        """How large a change from absence is, in the parameter's unit."""
+        return abs(value) if self.reciprocal else abs(value - self.absence)
 
 
 def per_axis(

@@ -16,6 +16,7 @@ from rovsim.dynamics.effects.base import (
     Response,
     Sensing,
     Shaping,
+    Smoothing,
     Strength,
     Wrench,
 )
@@ -26,7 +27,7 @@ LONG = 8  # rows of a table that is folded away
 KINDS = {
     "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wrench),
     "From a logged command to a thruster's force": (Clock, Shaping, Curve, Strength, Response),
-    "What the motion capture reports": (Sensing,),
+    "What the motion capture reports": (Sensing, Smoothing),
 }
 INTRODUCTION = """\
 # The catalogue of effects

@@ -23,7 +23,7 @@ def export_poses(
     """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras."""
     stride = round(1.0 / (camera.rate * (truth.time[1] - truth.time[0])))
     time, state = truth.time[:-1:stride], truth.state[:-1:stride]
-    position, attitude = _measure(view.poses(state[:, :7]), camera, random)
+    position, attitude = _measure(state[:, :7], camera, view, random)
     rows = _format_rows(position, attitude, random)
     rows[_lose_frames(len(time), camera, random)] = [0.0] * 6 + [-1.0] + [0.0] * 9
     text = io.StringIO()
@@ -34,11 +34,18 @@ def export_poses(
     return text.getvalue()
 
 
-def _measure(eta: Array, camera: Camera, random: np.random.Generator) -> tuple[Array, Array]:
-    """Noisy poses in the MoCap's own axes, of poses (n, 7) of what it calls the body."""
-    n, flip = len(eta), np.concatenate([[1.0], HALF_TURN_X])
+def _measure(
+    eta: Array, camera: Camera, view: MocapView, random: np.random.Generator
+) -> tuple[Array, Array]:
+    """Noisy poses in the MoCap's own axes, of true poses (n, 7).
+
+    Its software smooths the noise as well; markers are swapped behind it.
+    """
+    n, flip, eta = len(eta), np.concatenate([[1.0], HALF_TURN_X]), view.poses(eta)
     attitude = multiply(eta[:, 3:7], exp(camera.attitude_noise * random.normal(size=(n, 3))))
     position = eta[:, :3] + camera.position_noise * random.normal(size=(n, 3))
+    reported = view.smooth(np.hstack([position, attitude]), 1.0 / camera.rate)
+    position, attitude = reported[:, :3], reported[:, 3:]
     for k in np.flatnonzero(random.random(n) < camera.outliers_per_minute / (60 * camera.rate)):
         direction = random.normal(size=3)
         size = random.uniform(*camera.outlier_size)

@@ -1,0 +1,39 @@
+"""Motion capture software that smooths what it reports."""
+
+from math import pi
+
+from rovsim.dynamics.effects.base import Parameter, Smoothing
+from rovsim.dynamics.effects.parameters import Signature
+
+NONE = 1e3  # Hz, ten times what cameras see: no filter at all
+
+
+class PoseFilter(Smoothing):
+    """The software of the motion capture smooths the poses it reports, and so reports them late.
+
+    Position and attitude pass two equal first-order low-passes; a cutoff of 1000 Hz means none.
+    """
+
+    id = "pose_filter"
+    equation = r"y_k = a\,y_{k-1} + (1 - a)\,x_k \text{ twice},\quad a = e^{-2 \pi f_c\,\Delta t}"
+    neglects = (
+        "that it begins anew after frames in which the body was not found, and filters that look "
+        "ahead"
+    )
+    source = "definition (exponential smoothing at the rate of the poses)"
+    cause = "A smoothing or a low latency filter is switched on in the software or in its driver."
+    revealed_by = (
+        "Turn the vehicle by hand to and fro, faster and faster, with a gyroscope on board: the "
+        "reported turns grow smaller and later than the measured ones. An input delay only shows "
+        "under thrust."
+    )
+    signature = Signature({"cutoff": 2.0}, "surge", "change of surge thrust")
+    parameters = (
+        Parameter("cutoff", "Hz", "f_c", 0.1, NONE, default=NONE, scale=1.0, reciprocal=True),
+    )
+    starts = ({"cutoff": 10.0}, {"cutoff": 4.0})
+
+    def time_constants(self) -> tuple[float, ...]:
+        """Of the two low-passes, s."""
+        cutoff = self["cutoff"]
+        return () if cutoff >= NONE else 2 * (1.0 / (2.0 * pi * cutoff),)

@@ -1,0 +1,76 @@
+"""The motion that a smoothing motion capture saw, behind the one it reports."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.dynamics.low_pass import LowPass, in_body, in_world
+from rovsim.dynamics.model import Model
+from rovsim.measurement.signals.binned import backward_difference
+from rovsim.measurement.signals.clock import find_stretches, time_step
+from rovsim.measurement.signals.motion import Motion
+
+
+def sharpen(model: Model, motion: Motion) -> Motion:
+    """The motion as it was seen, before the software smoothed it as the model says.
+
+    Its filter and ours commute, so derivatives are turned back like the poses.
+    """
+    if not model.mocap_view.low_pass.time_constants:
+        return motion
+    seen = stage_outputs(model, motion)[0]
+    return _of_bins(motion, seen) if motion.binned else _of_samples(motion, seen)
+
+
+def stage_outputs(model: Model, motion: Motion) -> Array:
+    """What entered the first low-pass, and what left each (stages + 1, n, c), in world axes.
+
+    Channels are those of `low_pass.in_world`: 21 of a sampled motion, 14 of a binned one. NaN where
+    the motion is not known.
+    """
+    low_pass = model.mocap_view.low_pass
+    rates = (motion.state_nu,) if motion.binned else (motion.nu, motion.nu_dot)
+    channels = in_world(motion.eta, *rates)
+    found = np.full((len(low_pass.time_constants) + 1, *channels.shape), np.nan)
+    for a, b in find_stretches(np.isfinite(channels).all(axis=1)):
+        if motion.binned:
+            found[:, a:b] = _stages_of_bins(low_pass, channels[a:b], motion.time[a:b])
+        else:
+            found[:, a:b] = low_pass.stages(channels[a:b], time_step(motion.time))
+    return found
+
+
+def _stages_of_bins(low_pass: LowPass, channels: Array, time: Array) -> Array:
+    """The same (stages + 1, n, 14) at the starts of bins, which are farther apart than the frames.
+
+    The third derivative is the last that is taken from them.
+    """
+    eta, first = channels[:, :7], channels[:, 7:]
+    second = _differentiate(first, time)
+    orders = np.stack([eta, first, second, _differentiate(second, time)])
+    found = low_pass.stages_of_derivatives(orders)
+    return np.concatenate([found[:, 0], found[:, 1]], axis=-1)
+
+
+def _differentiate(values: Array, time: Array) -> Array:
+    return np.gradient(values, time, axis=0) if len(time) > 1 else np.zeros_like(values)
+
+
+def _of_samples(motion: Motion, seen: Array) -> Motion:
+    """A sampled motion with what was seen (n, 21), where it is known."""
+    known = np.isfinite(seen).all(axis=1)[:, None]
+    old = (motion.eta, motion.nu, motion.nu_dot)
+    eta, nu, nu_dot = (np.where(known, x, y) for x, y in zip(in_body(seen), old, strict=True))
+    return replace(motion, eta=eta, nu=nu, nu_dot=nu_dot, state_nu=nu)
+
+
+def _of_bins(motion: Motion, seen: Array) -> Motion:
+    """A binned motion with what was seen (n, 14); means change as the bin's ends do on average."""
+    known = np.isfinite(seen).all(axis=1)[:, None]
+    old = (motion.eta, motion.state_nu)
+    eta, state_nu = (np.where(known, x, y) for x, y in zip(in_body(seen), old, strict=True))
+    change = np.where(known, state_nu - motion.state_nu, 0.0)
+    nu = motion.nu + 0.5 * (change + np.concatenate([change[1:], change[-1:]]))
+    nu_dot = backward_difference(nu, motion.time)
+    return replace(motion, eta=eta, nu=nu, nu_dot=nu_dot, state_nu=state_nu)
