@@ -96,6 +96,23 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     assert not reading & touched
 
 
+@pytest.mark.slow
+def test_a_fold_that_holds_out_the_test_run_finds_what_the_study_found(study):
+    results = study / "results" / "tank-tiny"
+    folds = f"{OVERRIDES} folds.leave_one_run_out=true folds.residuals=[knn] folds.controls=[6dof]"
+    held_out = results / "folds" / "6dof-2"
+    target = str((held_out / "comparison.json").relative_to(study))
+    snakemake(study, target, "--config", f"overrides={folds}")
+    assert (held_out / "diagnosis.json").read_text() == (results / "diagnosis.json").read_text()
+    whole, fold = (
+        json.loads((folder / "comparison.json").read_text())["models"]
+        for folder in (results, held_out)
+    )
+    assert list(fold) == list(whole)
+    for name, model in fold.items():
+        assert model["runs"] == {"6dof-2": whole[name]["runs"]["6dof-2"]}, name
+
+
 def tracked(folder: Path, path: Path) -> list[str]:
     """Names of the study's MLflow runs; all of them exist."""
     from mlflow.tracking import MlflowClient
