@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
+from rovsim.core.rotations import log, multiply
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry
@@ -124,6 +125,22 @@ def test_the_exports_hold_the_stated_noise_and_faults(tmp_path):
     assert noise.position_m == pytest.approx(camera.position_noise, rel=0.1)
     assert noise.attitude_rad == pytest.approx(camera.attitude_noise, rel=0.1)
     assert all(axis.excited for axis in report.excitation.values())
+
+
+def test_coloured_errors_last_and_leave_the_white_ones_alone(tmp_path):
+    colour = Camera(colour_noise=0.02, colour_attitude=0.05, colour_time=0.5)
+    plain, coloured = (
+        recorded(tmp_path / name, seed=3, camera=camera)[1]
+        for name, camera in (("plain", Camera()), ("coloured", colour))
+    )
+    seen = plain.found & coloured.found
+    assert np.array_equal(plain.found, coloured.found)  # the same frames are lost
+    shift = (coloured.position - plain.position)[seen]
+    turn = log(multiply(plain.attitude * [1, -1, -1, -1], coloured.attitude))[seen]
+    for error, size in ((shift, colour.colour_noise), (turn, colour.colour_attitude)):
+        assert error.std() == pytest.approx(size, rel=0.3)  # 60 time constants of three axes
+        lasts = np.mean(error[25:] * error[:-25]) / np.mean(error**2)
+        assert lasts == pytest.approx(np.exp(-0.5), abs=0.2)
 
 
 def test_without_noise_the_measured_velocity_is_the_true_one(tmp_path):

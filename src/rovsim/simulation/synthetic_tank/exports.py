@@ -11,6 +11,7 @@ from rovsim.dynamics.mocap_view import MocapView
 from rovsim.simulation.synthetic_tank.description import BODY
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
+from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
 COLUMNS = (
     "X Y Z Roll Pitch Yaw Residual Rot[0] Rot[1] Rot[2] Rot[3] Rot[4] Rot[5] Rot[6] Rot[7] Rot[8]"
@@ -42,8 +43,10 @@ def _measure(
     Its software smooths the noise as well; markers are swapped behind it.
     """
     n, flip, eta = len(eta), np.concatenate([[1.0], HALF_TURN_X]), view.poses(eta)
-    attitude = multiply(eta[:, 3:7], exp(camera.attitude_noise * random.normal(size=(n, 3))))
-    position = eta[:, :3] + camera.position_noise * random.normal(size=(n, 3))
+    turn, shift = _draw_colour(n, camera, random)
+    turn += camera.attitude_noise * random.normal(size=(n, 3))
+    shift += camera.position_noise * random.normal(size=(n, 3))
+    attitude, position = multiply(eta[:, 3:7], exp(turn)), eta[:, :3] + shift
     reported = view.smooth(np.hstack([position, attitude]), 1.0 / camera.rate)
     position, attitude = reported[:, :3], reported[:, 3:]
     for k in np.flatnonzero(random.random(n) < camera.outliers_per_minute / (60 * camera.rate)):
@@ -52,6 +55,13 @@ def _measure(
         position[k] += size * direction / np.linalg.norm(direction)
     # R_raw = S R S with S = diag(1, -1, -1): the quaternion's y and z change sign
     return position * HALF_TURN_X, attitude * flip
+
+
+def _draw_colour(n: int, camera: Camera, random: np.random.Generator) -> tuple[Array, Array]:
+    """Errors that last: turns (n, 3) rad and shifts (n, 3) m, from a generator of their own."""
+    (own,) = random.spawn(1)  # what else is drawn stays the same
+    lasting = draw_gauss_markov(n, 1.0 / (camera.rate * camera.colour_time), own)
+    return camera.colour_attitude * lasting[:, 3:], camera.colour_noise * lasting[:, :3]
 
 
 def _format_rows(position: Array, attitude: Array, random: np.random.Generator) -> Array:

@@ -33,6 +33,11 @@ class Camera(Section):
     rate: PositiveFloat = 100.0  # Hz, the usual setting for slow vehicles
     position_noise: NonNegativeFloat = 0.7e-3  # m, as in the practice exports
     attitude_noise: NonNegativeFloat = 2.0e-3  # rad, the same over a marker spread of 0.4 m
+    # an error that lasts (Gauss-Markov): a calibration that differs from place to place, a marker
+    # that comes and goes; standard deviations m and rad of each axis, and how long it lasts
+    colour_noise: NonNegativeFloat = 0.0
+    colour_attitude: NonNegativeFloat = 0.0
+    colour_time: PositiveFloat = 0.5  # s, in which a slow vehicle moves by a marker's distance
     bursts_per_minute: NonNegativeFloat = 3.0  # bubbles and legs of the frame hide markers
     longest_burst: Annotated[int, Field(ge=1)] = 35  # frames
     outliers_per_minute: NonNegativeFloat = 3.0  # swapped markers, one frame each

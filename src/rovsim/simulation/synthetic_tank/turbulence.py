@@ -1,4 +1,4 @@
-"""What pushes the true vehicle and nobody logs."""
+"""What pushes the true vehicle and nobody logs, and other noise that lasts."""
 
 import numpy as np
 from numpy import ndarray as Array
@@ -11,10 +11,15 @@ def draw_turbulence(
 ) -> Array:
     """Gauss-Markov wrench (steps, 6) in body axes over steps of h s, stationary from the start."""
     level = np.repeat([settings.force, settings.moment], 3)
-    a = np.exp(-h / settings.time_constant)
+    return draw_gauss_markov(steps, h / settings.time_constant, random) * level
+
+
+def draw_gauss_markov(steps: int, step: float, random: np.random.Generator) -> Array:
+    """Six channels (steps, 6) of unit variance, stationary; `step` in time constants."""
+    a = np.exp(-step)
     kicks = random.normal(size=(steps, 6)) * np.sqrt(1.0 - a * a)
-    wrench, x = np.empty((steps, 6)), random.normal(size=6)
-    for row, kick in zip(wrench, kicks, strict=True):
+    found, x = np.empty((steps, 6)), random.normal(size=6)
+    for row, kick in zip(found, kicks, strict=True):
         x = a * x + kick
         row[:] = x
-    return wrench * level
+    return found
