@@ -52,8 +52,8 @@ RECIPES: Mapping[str, Recipe] = {
     "constant_wrench": Recipe((*_each(*TRANSLATION, "pitch", "yaw"), LEVEL), (0.6, 1.5)),
     "linear_damping": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (0.8, 2.0), 1),
     "quadratic_damping": Recipe((*_each(*TRANSLATION), LEVEL), (1.5, 3.0), 1),
-    "cubic_damping": Recipe((*_each(*TRANSLATION), LEVEL), (4.0, 10.0), 1),
-    "dry_friction": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (1.0, 2.5), 1),
+    "cubic_damping": Recipe((*_each(*TRANSLATION), LEVEL), (6.0, 12.0), 1),
+    "dry_friction": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (2.0, 4.0), 1),
     "coupled_damping": Recipe(
         _each("yaw_from_sway", "pitch_from_surge", "roll_from_sway", "sway_from_yaw_quadratic")
         + _each("pitch_from_heave", "yaw_from_sway_quadratic", "pitch_from_surge_quadratic"),
