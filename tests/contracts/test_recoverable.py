@@ -19,8 +19,9 @@ from rovsim.dynamics.model_file import build_effect
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 
 
-UNSEEN = pytest.mark.xfail(strict=True, reason="the observer does not undo a pose filter yet")
-EVERY = [pytest.param(n, marks=UNSEEN if n == "pose_filter" else ()) for n in built_in()]
+UNSEEN = pytest.mark.xfail(strict=True, reason="the observer does not know of it yet")
+LATER = ("current_drift", "pose_filter")
+EVERY = [pytest.param(n, marks=UNSEEN if n in LATER else ()) for n in built_in()]
 
 
 @pytest.mark.parametrize("name", EVERY)

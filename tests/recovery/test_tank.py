@@ -6,6 +6,7 @@ import pytest
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import log, multiply
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry
 from rovsim.evaluation.scores import rms, subtract
@@ -125,6 +126,23 @@ def test_the_exports_hold_the_stated_noise_and_faults(tmp_path):
     assert noise.position_m == pytest.approx(camera.position_noise, rel=0.1)
     assert noise.attitude_rad == pytest.approx(camera.attitude_noise, rel=0.1)
     assert all(axis.excited for axis in report.excitation.values())
+
+
+def test_a_drifting_current_is_a_random_walk_of_the_water_alone(tmp_path):
+    walks = [
+        CurrentDrift(rate=0.02).draw(500, 0.04, np.random.default_rng(k))[-1] for k in range(200)
+    ]
+    expected = [0.02 * np.sqrt(20.0)] * 2 + [0.0]
+    assert np.std(walks, axis=0) == pytest.approx(expected, rel=0.15)
+    hidden = (entry("current_drift", rate=0.02),)
+    still, drifting = (
+        recorded(tmp_path / str(len(effects)), seed=3, effects=effects)[1]
+        for effects in ((), hidden)
+    )
+    assert np.array_equal(still.found, drifting.found)  # what else is drawn stays the same
+    apart = np.linalg.norm(drifting.position - still.position, axis=1)[still.found]
+    assert apart[:50].max() < 0.01
+    assert apart.max() > 0.05
 
 
 def test_coloured_errors_last_and_leave_the_white_ones_alone(tmp_path):

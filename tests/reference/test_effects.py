@@ -34,6 +34,7 @@ NAMES = {
     "payload": ["mass", "x", "y", "z"],
     "lift": ["coefficient"],
     "current": ["north", "east", "down"],
+    "current_drift": ["rate"],
     "thruster_lag": ["time_constant"],
     "input_delay": ["delay"],
     "clock_drift": ["rate"],

@@ -64,6 +64,7 @@ RECIPES: Mapping[str, Recipe] = {
     "lift": Recipe(_each("coefficient"), (1.5, 3.0), 1),
     "fluid_memory": Recipe(_each("coefficient"), (2.0, 5.0), 1, {"time_constant": (0.3, 1.5)}),
     "current": Recipe((("north", "east"), *_each("north", "east")), (0.7, 1.5)),
+    "current_drift": Recipe(_each("rate"), (1.0, 2.5), 1),
     "tether_tension": Recipe(
         _each("stiffness"), (0.8, 1.5), 1,
         {"slack_length": (0.3, 1.0), "anchor_x": (3, 7), "anchor_y": (1, 4), "anchor_z": (3, 3)},

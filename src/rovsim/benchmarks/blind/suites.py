@@ -37,7 +37,7 @@ DEVIATING = ("linear_damping", "quadratic_damping", "added_mass")
 # Effects of one family push much alike, so that a set with two of them has no single answer.
 FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"net_buoyancy", "payload", "constant_wrench", "buoyancy_center", "tether_tension",
-               "world_tilt", "current"}),
+               "world_tilt", "current", "current_drift"}),
     frozenset({"linear_damping", "quadratic_damping", "cubic_damping", "dry_friction", "lift",
                "fluid_memory", "tether_drag", "wall_proximity", "surface_proximity"}),
     frozenset({"coupled_damping"}),

@@ -6,6 +6,7 @@ method. Effects are immutable and add: a model is a list of them.
     base class      acts on                                    method
     Coefficients    the constants of Fossen's equation         enter(body)
     Wrench          the forces at one instant (compiled)       wrench(at, p) -> 6 numbers
+    Wander          the water, at random                       draw(ticks, dt, random) -> current
     Clock           when a logged command takes effect         arrival(time) -> time
     Autopilot       the demand before the mixer                mixed(demand) -> demand; asked(...)
     Shaping         the thruster command                       shaped(command) -> command
@@ -150,6 +151,14 @@ class Wrench(Effect):
     def named_parameters(cls) -> type:
         """The named tuple type in which the compiled kernel gets its parameters."""
         return namedtuple(f"{cls.__name__}Parameters", [p.name for p in cls.parameters])
+
+
+class Wander(Effect):
+    """Moves the water at random: the tank draws it, and a model has its mean, still water."""
+
+    @abstractmethod
+    def draw(self, ticks: int, dt: float, random: np.random.Generator) -> Array:
+        """Current (ticks, 3) m/s in NED that it adds during each tick of dt s."""
 
 
 class Clock(Effect):

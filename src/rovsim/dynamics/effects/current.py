@@ -1,7 +1,10 @@
 """Moving water."""
 
+import numpy as np
+from numpy import ndarray as Array
+
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Wander
 from rovsim.dynamics.effects.parameters import Signature
 
 
@@ -26,3 +29,32 @@ class Current(Coefficients):
     def enter(self, body: Body) -> None:
         """Add to the velocity of the water."""
         body.current += self.values
+
+
+class CurrentDrift(Wander):
+    """The current wanders, from still water on, north and east.
+
+    A model has the mean of it, which is still water, so it adds nothing to a replay. The synthetic
+    tank draws one of the many ways it may go.
+    """
+
+    id = "current_drift"
+    equation = (
+        r"v_c(t + \Delta t) = v_c(t) + r \sqrt{\Delta t}\,\xi,\quad \xi \sim \mathcal{N}(0, 1)"
+    )
+    neglects = "that water calms down again, the vertical, and the force of water that accelerates"
+    source = "limit of the Gauss-Markov process of Fossen 2021, sec. 10.3, without decay"
+    cause = "A pump that is switched, circulation that vehicles stir up, or tides, wind and waves."
+    revealed_by = (
+        "Drift without commands for 20 s at the start, in the middle and at the end of a long "
+        "run: each time the water carries the vehicle elsewhere, a steady current always alike."
+    )
+    signature = Signature({"rate": 0.012}, "surge", "time in the run", size=True)
+    parameters = (  # the scale grows to that of a current, 0.05 m/s, in a minute
+        Parameter("rate", "m/s per sqrt(s)", "r", low=0.0, scale=0.006),
+    )
+
+    def draw(self, ticks: int, dt: float, random: np.random.Generator) -> Array:
+        """A random walk in the plane."""
+        steps = self["rate"] * np.sqrt(dt) * random.normal(size=(ticks, 3))
+        return np.cumsum(steps * [1.0, 1.0, 0.0], axis=0)

@@ -18,6 +18,7 @@ from rovsim.dynamics.effects.base import (
     Shaping,
     Smoothing,
     Strength,
+    Wander,
     Wrench,
 )
 from rovsim.dynamics.effects.parameters import Signature
@@ -25,7 +26,7 @@ from rovsim.dynamics.effects.parameters import Signature
 PAGE, PICTURES = "catalogue.md", "images/effects"
 LONG = 8  # rows of a table that is folded away
 KINDS = {
-    "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wrench),
+    "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wander, Wrench),
     "From a logged command to a thruster's force": (Clock, Shaping, Curve, Strength, Response),
     "What the motion capture reports": (Sensing, Smoothing),
 }

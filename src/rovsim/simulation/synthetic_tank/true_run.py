@@ -13,12 +13,13 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import CommandKind, Commands, Site
 from rovsim.dynamics.actuation import Thrust
+from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.synthetic_tank.pilot import Pilot
 from rovsim.simulation.synthetic_tank.settings import TankSettings
-from rovsim.simulation.synthetic_tank.turbulence import draw_turbulence
+from rovsim.simulation.synthetic_tank.turbulence import draw_currents, draw_turbulence
 
 FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact to a nanosecond
 
@@ -52,6 +53,7 @@ def fly_run(
     pilot = Pilot(control, tank, ticks, tick, random)
     pushes = draw_turbulence(settings.turbulence, ticks * per_tick, h, random)
     pushes = np.ascontiguousarray(pushes @ model.constants.M_inv[0].T)
+    currents = draw_currents(model, ticks, tick, random)
     vehicle = _TrueVehicle(model, tank, settings, tick)
     states = np.empty((ticks * per_tick + 1, 13))
     states[0] = pilot.choose_start(random)
@@ -59,6 +61,7 @@ def fly_run(
         first = k * per_tick
         command = vehicle.log(pilot.steer(k, states[first]))
         rows = slice(first, first + per_tick)
+        vehicle.carry(currents[k])
         states[first + 1 :][:per_tick] = vehicle.advance(k, command, states[first], pushes[rows])
         _stay_inside(states[first + per_tick], tank, (k + 1) * tick)
     time = np.arange(len(states)) * h
@@ -77,7 +80,13 @@ class _TrueVehicle:
         self.times, self.commands = np.empty(0), np.empty((0, columns))
         self.lag: list | None = None
         self.memory = np.zeros(6)
-        self.batch = Batch([model], site)
+        self.site, self.batch = site, Batch([model], site)
+
+    def carry(self, current: Array) -> None:
+        """Let the water move by this (3,) m/s in NED on top of what the model knows."""
+        if current.any():
+            water = Current(north=current[0], east=current[1], down=current[2])
+            self.batch = Batch([self.model + water], self.site)
 
     def log(self, demand: Array) -> Array:
         """What a demand (6,) leaves in the log: itself, or thruster PWM in whole microseconds."""

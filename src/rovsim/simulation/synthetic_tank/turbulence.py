@@ -3,6 +3,8 @@
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.dynamics.effects.base import Wander
+from rovsim.dynamics.model import Model
 from rovsim.simulation.synthetic_tank.settings import Turbulence
 
 
@@ -12,6 +14,15 @@ def draw_turbulence(
     """Gauss-Markov wrench (steps, 6) in body axes over steps of h s, stationary from the start."""
     level = np.repeat([settings.force, settings.moment], 3)
     return draw_gauss_markov(steps, h / settings.time_constant, random) * level
+
+
+def draw_currents(model: Model, ticks: int, dt: float, random: np.random.Generator) -> Array:
+    """Current (ticks, 3) m/s in NED that wanders, drawn by generators of its own."""
+    wandering = [effect for effect in model.effects if isinstance(effect, Wander)]
+    found = np.zeros((ticks, 3))
+    for effect, own in zip(wandering, random.spawn(len(wandering)), strict=True):
+        found += effect.draw(ticks, dt, own)
+    return found
 
 
 def draw_gauss_markov(steps: int, step: float, random: np.random.Generator) -> Array:
