@@ -1,4 +1,4 @@
-"""Compiled engines survive between test sessions; drawn examples are the same every time."""
+"""Compiled engines survive between sessions, drawn examples are the same, a test uses one core."""
 
 import os
 from pathlib import Path
@@ -6,6 +6,11 @@ from pathlib import Path
 from hypothesis import settings
 
 os.environ.setdefault("ROVSIM_CACHE", str(Path(__file__).parents[1] / ".pytest_cache" / "rovsim"))
+
+# The matrices are small: waiting for its siblings costs a BLAS thread more than it computes. Read
+# when NumPy and torch are loaded, so it stands before every import of them; jobs inherit it.
+for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")
 
 # No deadline: the first call may compile, and nothing here is a timed test.
 settings.register_profile("rovsim", deadline=None, derandomize=True)
