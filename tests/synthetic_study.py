@@ -1,6 +1,8 @@
 """A small made-up study: the inputs of every figure, table and report, by argument name."""
 
+from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -31,7 +33,16 @@ def study(
     models: tuple[str, ...] = MODELS, runs: dict[str, str] = RUNS, duration: float = 40.0,
     seed: int = 0,
 ) -> dict[str, Any]:  # fmt: skip
-    """Everything a figure may ask for by argument name."""
+    """Everything a figure may ask for by argument name; the caller's own to change."""
+    return deepcopy(_study(models, tuple(runs.items()), duration, seed))
+
+
+@cache
+def _study(
+    models: tuple[str, ...], splits: tuple[tuple[str, str], ...], duration: float, seed: int
+) -> dict[str, Any]:
+    """The search for conditions takes a second, and a hundred tests ask for the same study."""
+    runs = dict(splits)
     rng = np.random.default_rng(seed)
     motion = _motion(duration, rng)
     ladder = _ladder(models, rng)
