@@ -68,7 +68,7 @@ def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
     out = np.empty((len(jobs.first) * steps, 13))
     how(
         engine([]).integrate, jobs, h, 1, packed(bodies), inputs, np.empty((len(bodies), 0)),
-        np.empty(0), Place(np.full((3, 2), np.nan), np.ones(3)), out,
+        None, Place(np.full((3, 2), np.nan), np.ones(3)), out,
     )  # fmt: skip
     return out.reshape(-1, steps, 13)
 

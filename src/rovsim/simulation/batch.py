@@ -81,12 +81,12 @@ class Batch:
         self, models: Sequence[Model], site: Site, slots: Sequence[type[Wrench]] | None = None
     ) -> None:
         first = models[0]
-        self._residual = np.empty(0)
+        self._residual: Array | None = None
         if slots is None:
             _refuse_unlike(models)
             self._engine = first.engine
             self._parameters = np.stack([m.wrench_parameters() for m in models])
-            self._residual = first.residual.data if first.residual else self._residual
+            self._residual = first.residual.data if first.residual else None
         else:
             self._engine = engine(slots)
             self._parameters = np.stack([_slotted(m, slots) for m in models])

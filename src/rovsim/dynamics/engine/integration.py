@@ -1,4 +1,8 @@
-"""Integration of the equation of motion; `extra` as in `equation`, which it is handed on to."""
+"""Integration of the equation of motion; `extra` as in `equation`, which it is handed on to.
+
+`data` is an exported residual, or None: then Numba compiles nothing of what evaluates one, which
+takes longer than all the rest.
+"""
 
 from math import exp, sqrt
 
@@ -146,7 +150,7 @@ def stepped(extra, t, x, memory, h, body, own, step, data, place, features, a_re
     push = ZERO6
     if body.forgets != 0.0:
         push = push_over_step(x, memory, h, body)
-    if data.size:
+    if data is not None:
         a_learned = learned(extra, t, x, body, own, step, push, data, place, features, a_res)
         push = add6(push, 1.0, a_learned)
     after = runge_kutta(extra, t, x, h, body, own, step, push, place)
@@ -198,7 +202,7 @@ def heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out)
     features, a_res, m = np.empty(FEATURES), np.empty(6), vector6(memory)
     for n in range(pushes.shape[0]):
         step, now, push = step_of(inputs, 0, n), t + n * h, vector6(pushes[n])
-        if data.size:
+        if data is not None:
             recalled = memory_push(body, m)
             a_learned = learned(
                 extra, now, x, body, p, step, recalled, data, place, features, a_res
@@ -230,7 +234,7 @@ def accelerations(extra, times, states, memory, bodies, inputs, p, data, site, o
         x, step, push = state_of(states[n]), step_of(inputs, inputs.row[0], n), ZERO6
         if memory.size:
             push = memory_push(body, vector6(memory[n]))
-        if data.size:
+        if data is not None:
             a_learned = learned(
                 extra, times[n], x, body, own, step, push, data, place, features, a_res
             )
