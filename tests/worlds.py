@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.base import Autopilot, Effect, Wrench
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.signals.motion import Motion
@@ -28,6 +29,18 @@ def model(*effects: Effect) -> Model:
     for effect in effects:
         found = found + effect
     return found
+
+
+def beside_others(effect: Effect) -> Model:
+    """The nominal BlueROV2 with an effect, and every other wrench effect at its defaults.
+
+    They change nothing, and one engine serves all such models; loops need a log of their own.
+    """
+    known = built_in().values()
+    shared = [c for c in known if issubclass(c, Wrench) and not issubclass(c, Autopilot)]
+    if type(effect) not in shared:
+        return model(effect)
+    return model(*(effect if type(effect) is cls else cls() for cls in shared))
 
 
 def some(cls: type[Effect]) -> Effect:

@@ -10,7 +10,7 @@ from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wander, Wrench
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
-from worlds import at_rest, model, motion, some, sticks, tank
+from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 
 # contract, sections 2 and 6
 PUBLIC = {
@@ -72,8 +72,8 @@ def test_the_catalogue_is_the_public_one():
 def test_defaults_change_nothing_and_values_do(cls):
     plain = driven(model())
     if not issubclass(cls, Autopilot):  # which needs another log
-        np.testing.assert_allclose(driven(model(cls())), plain, atol=1e-12)
-    changed = np.abs(driven(model(some(cls))) - plain).max() > 1e-6
+        np.testing.assert_allclose(driven(beside_others(cls())), plain, atol=1e-12)
+    changed = np.abs(driven(beside_others(some(cls))) - plain).max() > 1e-6
     assert changed != issubclass(cls, Wander)  # of which a model has the mean
 
 
@@ -89,7 +89,7 @@ def test_bad_values_are_refused_with_the_nearest_name(cls):
 
 @EVERY
 def test_a_model_file_keeps_it(cls, tmp_path):
-    world = model(some(cls))
+    world = beside_others(some(cls))
     write_model(world, tmp_path / "m.yaml")
     again = read_model(tmp_path / "m.yaml", built_in())
     assert again.name == "m"

@@ -15,7 +15,7 @@ from rovsim.simulation.measured_states import (
     drive_as_measured,
 )
 from rovsim.simulation.settings import ReplaySettings
-from worlds import at_rest, model, motion, some, sticks, tank
+from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 
 
 def run(kind="thruster"):
@@ -35,7 +35,10 @@ def made(world, found=None):
 
 @pytest.mark.parametrize("cls", built_in().values(), ids=lambda cls: cls.id)
 def test_the_parts_add_up_to_the_models_inertia_force(cls):
-    world, measured = model(some(cls)), run("demand" if issubclass(cls, Autopilot) else "thruster")
+    world, measured = (
+        beside_others(some(cls)),
+        run("demand" if issubclass(cls, Autopilot) else "thruster"),
+    )
     true = as_true(world, measured)
     at = drive_as_measured(world, true, ReplaySettings())
     expected = accelerate_as_measured(world, true, at) @ world.body.M.T
