@@ -53,8 +53,14 @@ def normalized(q: Array) -> Array:
 def rotate(q: Array, x: Array) -> Array:
     """Rotate vectors x (..., 3) from body to world."""
     w, v = q[..., :1], q[..., 1:]
-    t = 2.0 * np.cross(v, x)
-    return x + w * t + np.cross(v, t)
+    t = 2.0 * _cross(v, x)
+    return x + w * t + _cross(v, t)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Cross product (..., 3): that of NumPy, which takes twice as long."""
+    (x, y, z), (u, v, w) = (a[..., 0], a[..., 1], a[..., 2]), (b[..., 0], b[..., 1], b[..., 2])
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
 def unrotate(q: Array, x: Array) -> Array:
