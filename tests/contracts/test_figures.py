@@ -9,7 +9,7 @@ from matplotlib.patches import Rectangle
 
 from rovsim.core.errors import BadInput
 from rovsim.reporting.figures import SECTIONS, kind, kinds
-from rovsim.reporting.figures.style import save
+from rovsim.reporting.figures.style import save, styled
 from rovsim.reporting.report_data import ONCE, PER_RUN
 from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
@@ -27,6 +27,12 @@ def drawn(name, content):
     draw = kind(name).draw
     wanted = inspect.signature(draw).parameters
     return draw(**{key: value for key, value in content.items() if key in wanted})
+
+
+@styled()
+def show(figure):
+    """Lay it out and draw it, into no file."""
+    figure.draw_without_rendering()
 
 
 @EVERY
@@ -52,8 +58,8 @@ def test_it_says_where_it_belongs_and_what_it_shows(name):
 
 @EVERY
 @pytest.mark.parametrize("models", [("nominal",), MODELS[:3], ("nominal", "a_model of mine")])
-def test_it_takes_any_models(name, models, tmp_path):
-    save(drawn(name, study(models=models)), tmp_path, name)
+def test_it_takes_any_models(name, models):
+    show(drawn(name, study(models=models)))
 
 
 EMPTY = {
@@ -65,12 +71,12 @@ EMPTY = {
 
 
 @EVERY
-def test_nothing_measured_is_said_not_crashed(name, tmp_path):
+def test_nothing_measured_is_said_not_crashed(name):
     content = study()
     content |= EMPTY
     for key in ("nu", "nu_dot", "eta", "missing"):
         content[key] = np.full_like(content[key], np.nan)
-    save(drawn(name, content), tmp_path, name)
+    show(drawn(name, content))
 
 
 def test_the_bars_of_the_ladder_are_its_numbers():
