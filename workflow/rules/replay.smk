@@ -1,15 +1,15 @@
 rule replay:
-    "Drive one model with the logged commands of one run: open loop and windows."
+    "Drive one model with the logged commands of all runs: open loop and windows."
     input:
-        motion=f"{R}/motions/{{run}}.npz",
+        motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
         campaign=lambda w: study.campaign_file,
         model=model_files,
     output:
-        f"{R}/replay/{{model}}/{{run}}.npz",
+        expand(f"{R}/replay/{{{{model}}}}/{{run}}.npz", run=study.runs()),
     log:
-        f"{R}/logs/replay/{{model}}/{{run}}.log",
+        f"{R}/logs/replay/{{model}}.log",
     benchmark:
-        f"{R}/benchmarks/replay/{{model}}/{{run}}.tsv"
+        f"{R}/benchmarks/replay/{{model}}.tsv"
     params:
         settings=study.section(SimulationSettings),
         code=study.code("simulation.replay", "dynamics.effects"),

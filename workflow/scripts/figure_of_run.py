@@ -1,6 +1,6 @@
 """Draw one figure of one run."""
 
-from rovsim.application.pipeline.presentation import draw_run
+from rovsim.application.pipeline.drawing import draw_run
 from rovsim.application.snakemake_job import job
 from rovsim.evaluation.budget import Budget
 from rovsim.simulation.prediction import Replay

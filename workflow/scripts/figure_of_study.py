@@ -1,6 +1,6 @@
 """Draw one figure of the study."""
 
-from rovsim.application.pipeline.presentation import STUDY, draw_study
+from rovsim.application.pipeline.drawing import STUDY, draw_study
 from rovsim.application.snakemake_job import job
 
 if __name__ == "__main__":

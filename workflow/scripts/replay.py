@@ -1,4 +1,4 @@
-"""Replay one run through one model."""
+"""Replay all runs through one model."""
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
@@ -6,8 +6,6 @@ from rovsim.simulation.replay import replay
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
-        (motion,) = rule.motions("motion")
-        settings = rule.section(SimulationSettings)
-        replay(rule.model(rule.wildcards.model), motion, settings.signals, settings.replay).write(
-            rule.output()
-        )
+        settings, model = rule.section(SimulationSettings), rule.model(rule.wildcards.model)
+        for k, motion in enumerate(rule.motions()):
+            replay(model, motion, settings.signals, settings.replay).write(rule.output(k))

@@ -9,6 +9,8 @@ diagnosis         which effects a model lacks
 refit             the nominal model's own parameters, fitted
 training          a learned residual on top of a model; how long its predictions take
 comparison        replays, scores, conditions and forces of some models, together
+drawing           figures of a study
+presentation      tables and report of a study
 summary           the study's scores, ladder and growth in one place
 held_out          a held-out run: scored, beside published errors, with pitfalls
 """
