@@ -24,11 +24,16 @@ LATER = ("current_drift", "pose_filter")
 EVERY = [pytest.param(n, marks=UNSEEN if n in LATER else ()) for n in built_in()]
 
 
+@pytest.fixture(scope="module")
+def settings():
+    """What a diagnosis runs by."""
+    return compose([])
+
+
 @pytest.mark.parametrize("name", EVERY)
-def test_a_tank_that_hides_it_gives_it_back(name, tmp_path):
+def test_a_tank_that_hides_it_gives_it_back(name, settings, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
-    settings = compose([f"campaign='{tmp_path / 'raw'}'"])
-    data = measure(open_campaign(settings.campaign), settings.signals)
+    data = measure(open_campaign(str(tmp_path / "raw")), settings.signals)
     base, runs = (
         nominal(data.vehicle),
         prepare_runs(data.runs, "train", settings.replay, built_in()),
