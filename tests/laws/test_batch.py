@@ -15,7 +15,7 @@ from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.tether import TetherTension
 from rovsim.dynamics.effects.thrusters import VoltageSag
-from rovsim.evaluation.budget import balance_forces
+from rovsim.evaluation.force_balance import balance_forces
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Poses

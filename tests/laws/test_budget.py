@@ -6,7 +6,8 @@ import pytest
 from rovsim.core.rotations import exp
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot
-from rovsim.evaluation.budget import RESTORING, Budget, balance_forces
+from rovsim.evaluation.budget import Budget
+from rovsim.evaluation.force_balance import RESTORING, balance_forces
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.measured_states import (

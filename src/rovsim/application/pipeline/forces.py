@@ -2,7 +2,8 @@
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.budget import Budget, balance_forces
+from rovsim.evaluation.budget import Budget
+from rovsim.evaluation.force_balance import balance_forces
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.motion import Motion
 

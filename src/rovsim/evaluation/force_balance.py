@@ -1,0 +1,100 @@
+"""Who pushes how much, when: every effect's share of the generalized force, and what is missing.
+
+The force of a part is what the right-hand side of the equation of motion gains when the part is put
+in, one part after the other; so a new effect shows up by itself, and the parts add up to M nu_dot:
+
+    M nu_dot = Coriolis + weight and buoyancy + added-mass Coriolis + damping + thrusters + effects
+
+Inertia stands on the left, so of an effect that changes it only Coriolis and weight are seen here.
+Where two effects multiply (a current and a damping), the later one is charged with the product.
+"""
+
+from dataclasses import replace
+from typing import Iterator, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model
+from rovsim.evaluation.budget import Budget
+from rovsim.learning.pairs import Samples
+from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.drive import Drive
+from rovsim.simulation.measured_states import (
+    accelerate_as_measured,
+    as_true,
+    drive_as_measured,
+)
+from rovsim.simulation.settings import ReplaySettings
+
+CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
+RESIDUAL = "learned residual"
+NOMINAL = {  # parts of the vehicle's own effects, in the order in which they are put in
+    "net_buoyancy": RESTORING,
+    "buoyancy_center": RESTORING,
+    "added_mass": "added-mass Coriolis",
+    "linear_damping": "linear damping",
+    "quadratic_damping": "quadratic damping",
+}
+
+
+def balance_forces(
+    model: Model, motion: Motion, found: Samples, settings: ReplaySettings
+) -> Budget:
+    """Budget of one model over one run, of which `found` are the samples."""
+    parts: dict[str, Array] = {}
+    before = np.zeros((len(motion.time), 6))
+    for name, force in _cumulative(model, as_true(model, motion), settings):
+        parts[name] = parts.get(name, 0.0) + force - before
+        before = force
+    missing = np.full((len(motion.time), 6), np.nan)
+    missing[found.index] = found.a_res @ model.body.M.T
+    return Budget(model.name, motion.run.id, motion.time, parts, missing)
+
+
+def _cumulative(
+    model: Model, motion: Motion, settings: ReplaySettings
+) -> Iterator[tuple[str, Array]]:
+    """Generalized force (n, 6) as parts are put in one by one, each under its part's name."""
+    neutral = [_neutral(effect) for effect in model.effects]
+    bare = _with(model, neutral)
+    none = drive_as_measured(bare, motion, settings).idle()
+    still = replace(motion, state_nu=0 * motion.state_nu)
+    yield RESTORING, _force(bare, still, none)
+    yield CORIOLIS, _force(bare, motion, none)
+    own = len(model.effects) - len(model.added)
+    for k in sorted(range(own), key=lambda k: _place(model.effects[k])):
+        if model.effects[k].id in NOMINAL:
+            neutral[k] = model.effects[k]
+            yield NOMINAL[neutral[k].id], _force(_with(model, neutral), motion, none)
+    yield THRUSTERS, _at(_with(model, neutral), motion, settings)
+    for k in range(own, len(neutral)):
+        neutral[k] = model.effects[k]
+        yield f"+{neutral[k].id}", _at(_with(model, neutral), motion, settings)
+    if model.residual is not None:
+        yield RESIDUAL, _at(model, motion, settings)
+
+
+def _place(effect: Effect) -> int:
+    """Where an effect of the vehicle stands in the order of parts."""
+    return list(NOMINAL).index(effect.id) if effect.id in NOMINAL else len(NOMINAL)
+
+
+def _neutral(effect: Effect) -> Effect:
+    """The effect at its defaults, which change nothing; what every vehicle has stays."""
+    return type(effect)() if effect.listed else effect
+
+
+def _with(model: Model, effects: Sequence[Effect]) -> Model:
+    """The model of these effects alone, without a learned residual."""
+    return replace(model, effects=tuple(effects), residual=None)
+
+
+def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
+    return _force(model, motion, drive_as_measured(model, motion, settings))
+
+
+def _force(model: Model, motion: Motion, drive: Drive) -> Array:
+    """M nu_dot (n, 6) of a model at the measured states."""
+    return accelerate_as_measured(model, motion, drive) @ model.body.M.T
