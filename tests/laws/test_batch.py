@@ -7,7 +7,7 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
-from rovsim.diagnosis.observer.innovations import drive_all, serve_all
+from rovsim.diagnosis.observer.innovations import serve_all
 from rovsim.diagnosis.observer.observed_run import prepare_run
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.dynamics.catalogue import built_in
@@ -20,7 +20,7 @@ from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Poses
 from rovsim.simulation.batch import Batch, Starts
-from rovsim.simulation.drive import drive_models
+from rovsim.simulation.drive import Drives
 from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
@@ -63,7 +63,7 @@ def by_stepper():
 
 
 def by_heun():
-    drive = drive_models([WORLD], RUN.commands, SHORT * np.arange(2), "held")[0]
+    drive = Drives(RUN.commands, SHORT * np.arange(2), "held").of([WORLD])[0]
     path = Batch([WORLD], tank()).advance_by_heun(
         drive, np.zeros((1, 6)), START, np.zeros(6), 0.0, SHORT
     )
@@ -72,7 +72,7 @@ def by_heun():
 
 def by_observer():
     run = observed()
-    drives, batch = drive_all([WORLD], run), serve_all([WORLD], run)
+    drives, batch = run.replay_drives.of([WORLD]), serve_all([WORLD], run)
     return batch.accelerations(drives[0].at([0]), np.zeros(1), START[None], np.empty((0, 6)))[0]
 
 
@@ -109,9 +109,9 @@ def test_models_side_by_side_move_as_each_would_alone():
     """In one engine for all their wrench effects, whoever else is there."""
     worlds = [model(), WORLD, model(ConstantWrench(surge=3.0)), model(QuadraticDamping(surge=5.0))]
     run, first = observed(), np.zeros(1, np.int64)
-    drives = drive_all(worlds, run)
+    drives = run.replay_drives.of(worlds)
     starts = Starts(np.tile(START, (len(worlds), 1, 1)), first, first + 100)
-    together = serve_all(worlds, run).trajectories(drives, starts, run.h)
+    together = serve_all(worlds, run).trajectories(drives, starts, run.grid.h)
     for world, paths in zip(worlds, together, strict=True):
         alone = simulate(world, RUN, [(0, 100, START)], ReplaySettings())[0]
         np.testing.assert_allclose(paths[0], alone, rtol=0, atol=1e-12)
@@ -132,7 +132,8 @@ def test_models_with_other_wrench_effects_need_an_engine_for_all():
 def test_what_drives_models_alike_is_found_once():
     world, edges = model(), 0.01 * np.arange(5)
     pushed = world + ConstantWrench(surge=3.0)
-    one, other = drive_models([world, pushed], RUN.commands, edges, "held")
+    drives = Drives(RUN.commands, edges, "held")
+    one, other = drives.of([world, pushed])
     assert one is other
     weaker = world + VoltageSag(fraction=0.2)
-    assert drive_models([world, weaker], RUN.commands, edges, "held")[1] is not one
+    assert drives.of([world, weaker])[1] is not one

@@ -133,7 +133,11 @@ def test_the_noise_of_made_innovations_is_found():
     e = np.array([innovations(f, y) for f in found.filters])
     kept = np.arange(20000) > 100
     run = SimpleNamespace(
-        period=H, motion=SimpleNamespace(binned=False), rows=np.array([[0, 20000]]), settled=kept
+        period=H,
+        motion=SimpleNamespace(binned=False),
+        rows=np.array([[0, 20000]]),
+        settled=kept,
+        group=1,
     )
     noise, _ = fit_noise([e], [run], [found], damping, start)
     np.testing.assert_allclose(noise.reading, true.reading, rtol=0.03)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from rovsim.diagnosis.observer.least_squares import (
-    coarsen,
     inner_products,
     project_out,
     select_columns,
@@ -52,9 +51,3 @@ def test_projected_columns_are_gone(columns):
 def test_parallel_columns_share():
     H = np.array([[1.0, 1.0], [1.0, 1.0]])
     np.testing.assert_allclose(solve(H, np.array([2.0, 2.0])), [1.0, 1.0], atol=1e-6)
-
-
-def test_coarse_rows_keep_their_variance():
-    rows = np.random.default_rng(0).normal(size=(2, 6, 4001))
-    assert coarsen(rows).shape == (2, 6, 1000)
-    assert np.var(coarsen(rows)) == pytest.approx(1.0, abs=0.05)

@@ -28,7 +28,7 @@ class MocapView:
     @staticmethod
     def through(parts: Iterable[tuple[Rigid, Rigid]], low_pass: LowPass) -> "MocapView":
         """All parts in order, the first one next to the vehicle."""
-        world, body = Rigid.by(), Rigid.by()
+        world, body = NO_CHANGE.world, NO_CHANGE.body
         for outer, inner in parts:
             world, body = outer.after(world), body.after(inner)
         return MocapView(world, body, low_pass)
@@ -101,3 +101,6 @@ class MocapView:
         """Poses (n, 7) that were seen, of reported ones at the full rate, dt s apart."""
         smoothing = self.low_pass.time_constants
         return unit(self.low_pass.stages(eta, dt)[0]) if smoothing else eta
+
+
+NO_CHANGE = MocapView(Rigid.by(), Rigid.by(), LowPass())

@@ -15,7 +15,7 @@ from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.dynamics.low_pass import LowPass
-from rovsim.dynamics.mocap_view import MocapView
+from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.dynamics.vehicle import Thrusters, Vehicle
 
 
@@ -88,6 +88,8 @@ class Model:
         """What the motion capture makes of the true motion."""
         sensing = sorted((e for e in self.effects if isinstance(e, Sensing)), key=lambda e: e.rank)
         smoothing = [e for e in self.effects if isinstance(e, Smoothing)]
+        if not sensing and not smoothing:
+            return NO_CHANGE
         low_pass = LowPass(tuple(T for e in smoothing for T in e.time_constants()))
         return MocapView.through((e.transforms() for e in sensing), low_pass)
 

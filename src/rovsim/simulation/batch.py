@@ -209,10 +209,13 @@ def _inputs(drives: Sequence[Drive]) -> Inputs:
     own, row = _distinct(drives)
     first = own[0]
     if len(own) == 1:
-        wrench, force = first.wrench[None], first.force[None]
+        wrench, force, ramp = first.wrench[None], first.force[None], first.ramp[None]
     else:
-        wrench, force = np.stack([d.wrench for d in own]), np.stack([d.force for d in own])
-    return Inputs(wrench, force, first.demand, row, np.full(len(first.wrench), first.duration))
+        wrench, force, ramp = (
+            np.stack([getattr(d, name) for d in own]) for name in ("wrench", "force", "ramp")
+        )
+    length = np.full(len(first.wrench), first.duration)
+    return Inputs(wrench, force, first.demand, row, length, ramp)
 
 
 def _distinct(values: Sequence[T]) -> tuple[list[T], Array]:

@@ -1,8 +1,9 @@
 """What drives a model over integration steps, or at instants."""
 
-from dataclasses import dataclass, replace
-from typing import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Callable, Sequence, TypeVar
 
+import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.run import Commands
@@ -12,6 +13,9 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 
+T = TypeVar("T")
+KEPT = 64  # drives of a run: what one step of a fit needs, some 0.2 MB each a minute
+
 
 @dataclass(frozen=True, eq=False)
 class Drive:
@@ -19,13 +23,14 @@ class Drive:
 
     `wrench` (k, 6) N and N m of thrusters, autopilots and commands that are a wrench; `force`
     (k, n) N of each thruster; `demand` (k, 6) in [-1, 1], NaN where none was logged; `duration` s
-    of the whole run.
+    of the whole run. `ramp` (k, 6) is what the wrench grows by over each step; empty: nothing.
     """
 
     wrench: Array
     force: Array
     demand: Array
     duration: float
+    ramp: Array = field(default_factory=lambda: np.empty((0, 6)))
 
     @staticmethod
     def by(model: Model, thrust: Thrust, duration: float) -> "Drive":
@@ -36,6 +41,19 @@ class Drive:
     def each(self, change: Callable[[Array], Array]) -> "Drive":
         """Wrench, forces and demand, all changed alike."""
         return Drive(change(self.wrench), change(self.force), change(self.demand), self.duration)
+
+    def joined(self, count: int) -> "Drive":
+        """The same over steps as long as `count` of these: mean, and first moment as a ramp.
+
+        A force that is held over a long step loses when within it it acted.
+        """
+        if count == 1:
+            return self
+        apart = (np.arange(count) + 0.5) / count - 0.5
+        parts = self.wrench.reshape(-1, count, 6)
+        long = self.each(lambda x: x.reshape(-1, count, x.shape[-1]).mean(axis=1))
+        # a line r c over -1/2 < c < 1/2 has the first moment r / 12
+        return replace(long, ramp=12.0 * np.einsum("j,kji->ki", apart, parts) / count)
 
     def at(self, steps: Array) -> "Drive":
         """What acts in some of the steps (j,)."""
@@ -50,28 +68,48 @@ class Drive:
         return replace(self, wrench=0 * self.wrench, force=0 * self.force)
 
 
-def drive_models(
-    models: Sequence[Model], commands: Commands, edges: Array, between: Between
-) -> list[Drive]:
-    """Drives of models under logged commands, over the steps between `edges` (k+1,) s.
+class Drives:
+    """Drives of models under the commands of one run; the last ones are kept.
 
     Models that are driven alike share one: thrust takes as long to find as a short simulation.
+
+    Args:
+        commands: the log.
+        edges: ends (k+1,) s of the steps, over each of which thrust is steady.
+        between: two lines of the log.
+        parts: so many steps are then joined to one.
     """
-    duration = float(edges[-1] - edges[0])
-    thrusts: dict[tuple, Thrust] = {}
-    drives: dict[tuple, Drive] = {}
-    keys = []
-    for model in models:
+
+    def __init__(self, commands: Commands, edges: Array, between: Between, parts: int = 1) -> None:
+        self._given = commands, edges, between
+        self._parts = parts
+        self._thrusts: dict[tuple, Thrust] = {}
+        self._drives: dict[tuple, Drive] = {}
+
+    def of(self, models: Sequence[Model]) -> list[Drive]:
+        """One for each model."""
+        return [self._of(model) for model in models]
+
+    def _of(self, model: Model) -> Drive:
         path = model.thrust_path
-        thrust = (id(model.vehicle), *path.key)
-        if thrust not in thrusts:
-            thrusts[thrust] = path.over_steps(commands, edges, between)
+        key = (id(model.vehicle), *path.key)
         loops = [loop.values.tobytes() for loop in path.autopilots]
         inertia = model.body.M.tobytes() if loops else b""
-        keys.append((*thrust, *loops, inertia, model.body.B.tobytes()))
-        if keys[-1] not in drives:
-            drives[keys[-1]] = Drive.by(model, thrusts[thrust], duration)
-    return [drives[key] for key in keys]
+        whole = (*key, *loops, inertia, model.body.B.tobytes())
+        edges = self._given[1]
+        if whole not in self._drives:
+            if key not in self._thrusts:
+                _keep(self._thrusts, key, path.over_steps(*self._given))
+            drive = Drive.by(model, self._thrusts[key], float(edges[-1] - edges[0]))
+            _keep(self._drives, whole, drive.joined(self._parts))
+        return self._drives[whole]
+
+
+def _keep(kept: dict[tuple, T], key: tuple, value: T) -> None:
+    """Put in, and let go of what came first."""
+    kept[key] = value
+    if len(kept) > KEPT:
+        del kept[next(iter(kept))]
 
 
 def drive_by_log(model: Model, motion: Motion, grid: StepGrid, settings: ReplaySettings) -> Drive:
@@ -81,4 +119,4 @@ def drive_by_log(model: Model, motion: Motion, grid: StepGrid, settings: ReplayS
         BadInput: the run lacks what an effect of the model needs.
     """
     model.check(motion.site, motion.commands.kind)
-    return drive_models([model], motion.commands, grid.edges, settings.commands)[0]
+    return Drives(motion.commands, grid.edges, settings.commands).of([model])[0]

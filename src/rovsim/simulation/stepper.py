@@ -18,7 +18,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Commands, Site
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
-from rovsim.simulation.drive import Drive, drive_models
+from rovsim.simulation.drive import Drive, Drives
 
 LONGEST = 0.01  # s, an integration step; see `rovsim.simulation.settings.ReplaySettings`
 
@@ -166,4 +166,5 @@ def rollouts(
         np.zeros(len(states), np.int64), np.full(len(states), count),
     )  # fmt: skip
     batch = Batch(models, Site.unknown())
-    return np.array(batch.trajectories(drive_models(models, lines, edges, "held"), starts, dt))
+    drives = Drives(lines, edges, "held").of(models)
+    return np.array(batch.trajectories(drives, starts, dt))

@@ -11,6 +11,7 @@ from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.signal import lfilter
 
 from rovsim.core import rotations
 from rovsim.diagnosis.observer.noise import Noise
@@ -63,8 +64,10 @@ class _PerfectModel:
 
     def _push(self, run: ObservedRun) -> Array:
         """Wrench (draws, k, 6) of the disturbance over the integration steps."""
-        fade = np.exp(-run.h / self.noise.memory)
-        kicks = self.random.normal(size=(len(run.edges) - 1, DRAWS, 6)) * np.sqrt(1.0 - fade**2)
+        fade = np.exp(-run.grid.h / self.noise.memory)
+        kicks = self.random.normal(size=(len(run.grid.edges) - 1, DRAWS, 6)) * np.sqrt(
+            1.0 - fade**2
+        )
         a, x = np.empty_like(kicks), self.random.normal(size=(DRAWS, 6))
         for k, kick in enumerate(kicks):
             x = fade * x + kick
@@ -77,13 +80,28 @@ class _PerfectModel:
         if run.motion.binned:
             state[:, 7:] += reading * self.random.normal(size=(len(state), 6))
             return state
-        pad = round(PAD / run.period)
-        kicks = reading * self.random.normal(size=(len(state) + 2 * pad, 6))
+        period = run.period / run.group
+        pad = round(PAD / period)
+        # as noisy as a single frame: readings are means of a group
+        kicks = np.sqrt(run.group) * reading * self.random.normal(size=(len(state) + 2 * pad, 6))
+        kicks += self._err_slowly(len(kicks), period)
         poses = np.hstack([kicks[:, :3], rotations.exp(kicks[:, 3:])])  # about a vehicle at rest
+        poses = self.model.mocap_view.smooth(poses, period)
         inside = slice(pad, len(poses) - pad)
-        smooth = filter_eta(poses, run.period, self.signals.filter)[inside]
-        nu, _ = velocities(poses, run.period, self.signals)
+        smooth = filter_eta(poses, period, self.signals.filter)[inside]
+        nu, _ = velocities(poses, period, self.signals)
         state[:, :3] += rotations.rotate(state[:, 3:7], smooth[:, :3])
         state[:, 3:7] = rotations.multiply(state[:, 3:7], smooth[:, 3:])
         state[:, 7:] += nu[inside]
         return state
+
+    def _err_slowly(self, count: int, period: float) -> Array:
+        """Errors (count, 6) of the cameras that last."""
+        if not self.noise.colour.any():
+            return np.zeros((count, 6))
+        keep = np.exp(-period / self.noise.colour_memory)
+        drive = self.noise.colour * np.sqrt(1.0 - keep**2)
+        kicks = self.random.normal(size=(count, 6)) * drive
+        return np.stack(
+            [lfilter([1.0], [1.0, -k], x) for k, x in zip(keep, kicks.T, strict=True)], 1
+        )

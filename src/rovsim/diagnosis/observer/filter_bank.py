@@ -9,7 +9,6 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.innovations import estimate_damping, observe
-from rovsim.diagnosis.observer.least_squares import coarsen
 from rovsim.diagnosis.observer.noise import Noise, Tuning, tune, whiten
 from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
@@ -28,7 +27,7 @@ class FilterBank:
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
         damping = estimate_damping(base, runs)
-        found = tuple(tune(noise, damping, w) for w in runs)
+        found = tuple(tune(noise.white, damping, w) for w in runs)
         return FilterBank(tuple(runs), damping, found)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
@@ -49,18 +48,18 @@ class FilterBank:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
         return whiten(e, self.runs, self.tunings, self.tune(noise))
 
-    def coarsen(self, rows: Sequence[Array], noise: Noise) -> Array:
-        """Rows (q, 6, n_run) of each run, whitened, a few neighbours together: (q, m)."""
-        found = coarsen(self.whiten(rows, noise))
+    def flatten(self, rows: Sequence[Array], noise: Noise) -> Array:
+        """Rows (q, 6, n_run) of each run, whitened, all axes after one another: (q, 6 n)."""
+        found = self.whiten(rows, noise)
         return found.reshape(len(found), -1)
 
     def tune(self, noise: Noise) -> list[Tuning]:
         """Filters of each run that suit another noise."""
         return [tune(noise, self.damping, w) for w in self.runs]
 
-    def fit_noise(self, e: Sequence[Array], start: Noise) -> NoiseFit:
-        """The most likely noise of innovations (6, n) of each run."""
-        return fit_noise(e, self.runs, self.tunings, self.damping, start)
+    def fit_noise(self, e: Sequence[Array], start: Noise, colour: bool = False) -> NoiseFit:
+        """The most likely noise of innovations (6, n) of each run; see `fit_noise`."""
+        return fit_noise(e, self.runs, self.tunings, self.damping, start, colour)
 
     def linearise(self, at: Hypothesis) -> Linearised:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""

@@ -97,7 +97,8 @@ class Hypothesis:
     @property
     def key(self) -> tuple:
         """The same for the same terms, in the same order, at the same values."""
-        return tuple((t.id, t.free, t.effect.values.tobytes()) for t in self.terms)
+        own = ((t.id, t.free, t.effect.values.tobytes()) for t in self.terms)
+        return (self.base.mocap_view.key, *own)
 
     @property
     def x(self) -> Array:

@@ -11,7 +11,6 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
-from rovsim.simulation.drive import Drive, drive_models
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import as_true
 
@@ -28,7 +27,8 @@ def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
     seen = Correction(
         readings, run.ends, tuning.gains, tuning.decay(run.h), by_velocity=run.motion.binned
     )
-    e = serve_all(models, run).innovations(drive_all(models, run), starts, run.h, seen)
+    drives = run.drives.of(models)
+    e = serve_all(models, run).innovations(drives, starts, run.h, seen)
     reported = np.stack([m.mocap_view.twists(own) for m, own in zip(models, e, strict=True)])
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 
@@ -49,20 +49,15 @@ def estimate_damping(model: Model, runs: Sequence[ObservedRun]) -> Array:
 
 def _accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:
     """Accelerations (s, k, 6) at states (s, k, 13) of some readings (k,)."""
-    ends, batch = run.ends[index], serve_all([model], run)
-    drive = drive_all([model], run)[0].at(np.minimum(ends, len(run.edges) - 2))
-    memory = recall([model], run, ends).reshape(-1, 6)
-    return np.stack([batch.accelerations(drive, ends * run.h, own, memory) for own in states])
+    at, edges, batch = run.at[index], run.grid.edges, serve_all([model], run)
+    drive = run.replay_drives.of([model])[0].at(np.minimum(at, len(edges) - 2))
+    memory = recall([model], run, edges, at).reshape(-1, 6)
+    return np.stack([batch.accelerations(drive, at * run.grid.h, own, memory) for own in states])
 
 
 def serve_all(models: Sequence[Model], run: ObservedRun) -> Batch:
     """One engine for all models, at the site of a run."""
     return Batch(models, run.motion.site, _slots(models, run.wrenches))
-
-
-def drive_all(models: Sequence[Model], run: ObservedRun) -> list[Drive]:
-    """What the logged commands do to each model, over the integration steps of a run."""
-    return drive_models(models, run.motion.commands, run.edges, run.between)
 
 
 def _slots(models: Sequence[Model], known: Sequence[type[Wrench]]) -> list[type[Wrench]]:
@@ -75,19 +70,17 @@ def _slots(models: Sequence[Model], known: Sequence[type[Wrench]]) -> list[type[
 
 def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts]:
     """What each model takes for true: readings (k, 13), shared where models see alike; starts."""
-    readings: dict[bytes, Array] = {}
-    for model in models:
-        back = model.mocap_view.inverse
-        if back.key not in readings:
-            readings[back.key] = back.states(run.readings)
+    views = [m.mocap_view.inverse for m in models]
+    readings = {back.key: run.read(back) for back in {v.key: v for v in views}.values()}
     first = np.array([a for a, _ in run.spans], np.int64)
     steps = np.array([b - a for a, b in run.spans], np.int64)
-    states = np.stack([m.mocap_view.inverse.states(run.starts) for m in models])
-    starts = Starts(states, first, steps, recall(models, run, run.ends[first]))
-    return [readings[m.mocap_view.inverse.key] for m in models], starts
+    true = {m.mocap_view.key: as_true(m, run.motion).state[run.sample[first]] for m in models}
+    states = np.stack([true[m.mocap_view.key] for m in models])
+    starts = Starts(states, first, steps, recall(models, run, run.edges, run.ends[first]))
+    return [readings[back.key] for back in views], starts
 
 
-def recall(models: Sequence[Model], run: ObservedRun, steps: Array) -> Array:
-    """What the water remembers (m, s, 6) at integration steps (s,); empty if it never does."""
+def recall(models: Sequence[Model], run: ObservedRun, edges: Array, steps: Array) -> Array:
+    """What the water remembers (m, s, 6) at steps (s,) of a grid; empty if it never does."""
     true = (as_true(m, run.motion) for m in models)
-    return remembered_at(models, true, run.edges, steps)
+    return remembered_at(models, true, edges, steps)

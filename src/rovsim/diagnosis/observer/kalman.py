@@ -18,18 +18,24 @@ SOLVABLE, LEAST_DRIVING = 1e-6, 1e-12
 
 
 class AxisNoise(NamedTuple):
-    """Noise of one axis: `level` m/s2 or rad/s2, `memory` s of the disturbance, `reading` noise."""
+    """Noise of one axis: `level` m/s2 or rad/s2, `memory` s of the disturbance, `reading` noise.
+
+    `colour`, in units of the reading, is a slow error of the readings that lasts `colour_memory` s.
+    """
 
     level: float
     memory: float
     reading: float
+    colour: float = 0.0
+    colour_memory: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class AxisFilter:
     """Filter of one axis: `F` (n, n), `C` and `gain` (n,), variance of its innovations.
 
-    `poles` (n + 1,): its characteristic polynomial, highest power first.
+    `poles` (n + 1,): its characteristic polynomial, highest power first; `forgets`: that of the
+    disturbance and of a slow error of the readings, which other filters do not share.
     """
 
     F: Array
@@ -37,16 +43,16 @@ class AxisFilter:
     gain: Array
     variance: float
     poles: Array
+    forgets: Array
 
     @property
     def decay(self) -> float:
         """What remains of the disturbance after one period."""
-        return float(self.F[-1, -1])
+        return -float(self.forgets[1]) if len(self.forgets) == 2 else float(self.F[2, 2])
 
     def whitening(self, old: "AxisFilter") -> tuple[Array, Array]:
         """Rational filter (b, a) that turns innovations of the filter `old` into this one's."""
-        b = np.convolve([1.0, -self.decay], old.poles)
-        return b, np.convolve([1.0, -old.decay], self.poles)
+        return np.convolve(self.forgets, old.poles), np.convolve(old.forgets, self.poles)
 
     @cached_property
     def response(self) -> tuple[Array, Array]:
@@ -54,9 +60,13 @@ class AxisFilter:
 
         C (z I - A)^-1 B = det(z I - A + B C) / det(z I - A) - 1 with A = F (I - K C).
         """
-        n, h = len(self.C), float(self.F[-2, -1])
+        n = len(self.C)
         A = self.F @ (np.eye(n) - np.outer(self.gain, self.C))
-        B = np.array([0.5 * h * h, h, 0.0][-n:])
+        if n == 2:
+            B = np.array([self.F[0, 1], 0.0])
+        else:
+            h = self.F[0, 1]
+            B = np.array([0.5 * h * h, h, 0.0, 0.0][:n])
         return (characteristic(A - np.outer(B, self.C)) - self.poles) / np.sqrt(
             self.variance
         ), self.poles
@@ -68,23 +78,37 @@ def design_filter(binned: bool, h: float, damping: float, noise: AxisNoise) -> A
 
 
 @njit(cache=True)
-def solve_steady_state(binned, h, d, level, memory, reading):
-    """F, C, gain, variance of the innovations and poles of the filter of one axis."""
+def solve_steady_state(binned, h, d, level, memory, reading, colour, colour_memory):
+    """F, C, gain, variance of the innovations, poles and forgetting of the filter of one axis.
+
+    Velocities of bins have no slow error of their own.
+    """
     phi = np.exp(-h / memory)
+    forgets = np.array([1.0, -phi])
     if binned:
         F = np.array([[np.exp(-d * h), h], [0.0, phi]])
         C = np.array([1.0, -0.5 * h])  # the mean over a bin is the velocity at its middle
     else:
-        F = np.array([[1.0, h, 0.5 * h * h], [0.0, 1.0 - d * h, h], [0.0, 0.0, phi]])
-        C = np.array([1.0, 0.0, 0.0])
+        F = np.zeros((4, 4))
+        F[0, 0], F[0, 1], F[0, 2] = 1.0, h, 0.5 * h * h
+        F[1, 1], F[1, 2], F[2, 2] = 1.0 - d * h, h, phi
+        F[3, 3] = np.exp(-h / colour_memory)
+        C = np.array([1.0, 0.0, 0.0, 1.0])
+        if colour > 0.0:
+            forgets = np.array([1.0, -phi - F[3, 3], phi * F[3, 3]])
+        else:
+            F, C = np.ascontiguousarray(F[:3, :3]), C[:3].copy()
     n, r = len(C), reading**2
+    disturbed = 1 if binned else 2
     Q = SOLVABLE * r * np.eye(n)
-    Q[-1, -1] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
+    Q[disturbed, disturbed] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
+    if n == 4:
+        Q[3, 3] = colour**2 * (1.0 - F[3, 3] ** 2)
     P = solve_riccati(F, C, Q, r)
     variance = np.dot(C, np.dot(P, C)) + r
     gain = np.dot(P, C) / variance
     poles = characteristic(np.dot(F, np.eye(n) - np.outer(gain, C)))
-    return F, C, gain, variance, poles
+    return F, C, gain, variance, poles, forgets
 
 
 @njit(cache=True)
@@ -168,3 +192,36 @@ def sum_of_squares(b, a, e, spans, kept):
                 total += value * value
                 count += 1
     return total, count
+
+
+@njit(cache=True)
+def convolve(a, b):
+    """Product of two polynomials; `numpy.convolve` takes longer to call than to work."""
+    out = np.zeros(len(a) + len(b) - 1)
+    for i in range(len(a)):
+        for j in range(len(b)):
+            out[i + j] += a[i] * b[j]
+    return out
+
+
+@njit(cache=True, nogil=True)
+def negative_log_likelihood(noise, binned, h, damping, poles, forgets, e, spans, kept):
+    """Of innovations e (n,) of one run under a noise (5,), up to a constant.
+
+    Args:
+        noise: as `AxisNoise`.
+        binned: whether velocities of bins are read.
+        h: period of the readings, s.
+        damping: of the velocity, 1/s.
+        poles: of the filter that e was found with.
+        forgets: likewise.
+        e: innovations.
+        spans: first and last + 1 (s, 2) of each.
+        kept: which of them count (n,).
+    """
+    _, _, _, variance, own_poles, own_forgets = solve_steady_state(
+        binned, h, damping, noise[0], noise[1], noise[2], noise[3], noise[4]
+    )
+    b, a = convolve(own_forgets, poles), convolve(forgets, own_poles)
+    squares, count = sum_of_squares(b, a, e, spans, kept)
+    return 0.5 * (squares / variance + count * np.log(variance))

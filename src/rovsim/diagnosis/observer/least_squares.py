@@ -7,18 +7,8 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import lsq_linear
 
-FEW = 4
 MOST = 12  # columns of one effect: more is not an effect but a fit of everything
 RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
-
-
-def coarsen(white: Array) -> Array:
-    """Means of a few neighbours (..., n // few), still of unit variance.
-
-    What a vehicle of this size does is slower than 10 Hz; frames come ten times as fast.
-    """
-    n = white.shape[-1] // FEW * FEW
-    return white[..., :n].reshape(*white.shape[:-1], -1, FEW).sum(axis=-1) / np.sqrt(FEW)
 
 
 def inner_products(rows: Array) -> Array:

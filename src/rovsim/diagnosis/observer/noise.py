@@ -1,6 +1,7 @@
 """What no model predicts: noise of the readings, and a disturbance with memory. Per axis.
 
     pose      x = (p, v, a):  p' = v,  v' = -d v + a,  a' = -a / T + white noise,  reading p + noise
+              where cameras err slowly, also b' = -b / T_b + white noise, and p + b is read
     velocity  x = (v, a):     the same without p,      reading v (mean over the bin) + noise
 
 The steady-state Kalman filter of this linear model corrects the nonlinear one (engine/observer.py),
@@ -9,7 +10,7 @@ one noise are turned into those of another by a rational filter, so the noise ca
 candidates be compared, without observing anew.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Sequence
 
 import numpy as np
@@ -22,15 +23,27 @@ from rovsim.dynamics.engine.parallel import on_cores
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """Per axis (6,): `level` m/s2 or rad/s2 and `memory` s of the disturbance, `reading` noise."""
+    """Per axis (6,): `level` m/s2 or rad/s2 and `memory` s of the disturbance, `reading` noise.
+
+    `colour` is a slow error of the readings, which lasts `colour_memory` s; 0 where there is none.
+    """
 
     level: Array
     memory: Array
     reading: Array
+    colour: Array = field(default_factory=lambda: np.zeros(6))
+    colour_memory: Array = field(default_factory=lambda: np.full(6, 0.5))
 
     def of_axis(self, i: int) -> AxisNoise:
         """The noise of one axis."""
-        return AxisNoise(self.level[i], self.memory[i], self.reading[i])
+        return AxisNoise(
+            self.level[i], self.memory[i], self.reading[i], self.colour[i], self.colour_memory[i]
+        )
+
+    @property
+    def white(self) -> "Noise":
+        """The same without slow errors: what the observer itself corrects for."""
+        return replace(self, colour=np.zeros(6))
 
 
 # Turbulence that moves this vehicle by some mm/s2, and a usual motion capture: only a first guess.
@@ -90,7 +103,7 @@ def whiten(
 
 def _white_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Array:
     pairs = zip(wanted.filters, found.filters, strict=True)
-    b, a = (np.array(c) for c in zip(*(new.whitening(old) for new, old in pairs), strict=True))
+    b, a = map(_stack, zip(*(new.whitening(old) for new, old in pairs), strict=True))
     rows = e.reshape(int(np.prod(e.shape[:-2])), *e.shape[-2:])
     out = np.empty((*rows.shape[:-1], int(run.settled.sum())), e.dtype)
     scale = 1.0 / np.sqrt(wanted.variance)
@@ -99,3 +112,9 @@ def _white_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Arr
         np.ones(len(rows)),
     )
     return out.reshape(*e.shape[:-1], out.shape[-1])
+
+
+def _stack(polynomials: Sequence[Array]) -> Array:
+    """Of the six axes, in powers of the delay: those of lower order end in zeros."""
+    length = max(len(own) for own in polynomials)
+    return np.array([np.pad(own, (0, length - len(own))) for own in polynomials])

@@ -1,13 +1,13 @@
 """The most likely noise of innovations, axis by axis."""
 
 from dataclasses import dataclass
-from typing import NamedTuple, Sequence
+from typing import Callable, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
-from rovsim.diagnosis.observer.kalman import AxisFilter, AxisNoise, design_filter, sum_of_squares
+from rovsim.diagnosis.observer.kalman import AxisFilter, AxisNoise, negative_log_likelihood
 from rovsim.diagnosis.observer.noise import Noise, Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
@@ -15,6 +15,12 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 # Longer memory would let the disturbance swallow a steady force, which is a missing effect.
 SHORTEST_MEMORY, TYPICAL_MEMORY, LONGEST_MEMORY = 0.2, 1.0, 3.0  # s
 MEMORY_SPREAD = 0.7  # of log T: a factor of two either way
+
+
+# A slow error of calibrated cameras is no larger than their noise from frame to frame, and lasts as
+# long as the vehicle takes to leave the place where the calibration errs.
+TYPICAL_COLOUR, COLOUR_SPREAD = 0.5, 0.7  # s, and of its log
+COLOURED = 12.0  # in twice the log likelihood: two more numbers, and sure of it on six axes
 
 
 class NoiseFit(NamedTuple):
@@ -30,6 +36,7 @@ def fit_noise(
     found: Sequence[Tuning],
     damping: Array,
     start: Noise,
+    colour: bool = False,
 ) -> NoiseFit:
     """The most likely noise of innovations e (6, n_run).
 
@@ -41,12 +48,15 @@ def fit_noise(
         found: the tuning each was found with.
         damping: decay (6,) of the velocities, 1/s.
         start: where to begin.
+        colour: whether to look for slow errors of the readings; if not, they stay.
     """
     noises, costs = [], []
     for i, d in enumerate(damping):
         filters = tuple(one.filters[i] for one in found)
         axis = _AxisInnovations(tuple(one[i] for one in e), tuple(runs), filters, d)
         noise, cost = _fit_axis(axis, start.of_axis(i))
+        if colour and not axis.binned:
+            noise, cost = _fit_colour(axis, noise, cost)
         noises.append(noise)
         costs.append(cost)
     return NoiseFit(Noise(*np.array(noises).T), -2.0 * sum(costs))
@@ -61,38 +71,77 @@ class _AxisInnovations:
     filters: tuple[AxisFilter, ...]
     damping: float
 
-    def cost(self, noise: AxisNoise) -> float:
-        """Negative log likelihood of a noise, up to a constant."""
-        new = {
-            run.period: design_filter(run.motion.binned, run.period, self.damping, noise)
-            for run in self.runs
-        }
-        each = zip(self.e, self.runs, self.filters, strict=True)
-        return sum(_run_cost(e, run, old, new[run.period]) for e, run, old in each)
+    @property
+    def binned(self) -> bool:
+        """Whether velocities of bins were read."""
+        return self.runs[0].motion.binned
+
+    @property
+    def single(self) -> float:
+        """Square root of the number of frames in a reading: how much noisier one frame is."""
+        return float(np.sqrt(self.runs[0].group))
+
+    def cost(self, noise: Array) -> float:
+        """Negative log likelihood of a noise (5,), up to a constant."""
+        return sum(
+            negative_log_likelihood(
+                noise, run.motion.binned, run.period, self.damping, old.poles, old.forgets, e,
+                run.rows, run.settled,
+            )
+            for e, run, old in zip(self.e, self.runs, self.filters, strict=True)
+        )  # fmt: skip
 
 
-def _run_cost(e: Array, run: ObservedRun, old: AxisFilter, new: AxisFilter) -> float:
-    squares, count = sum_of_squares(*new.whitening(old), e, run.rows, run.settled)
-    return 0.5 * float(squares / new.variance + count * np.log(new.variance))
+def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
+    """The noise of one axis, its slow error as given, and what it costs."""
+    slow = np.array(start[3:])
+
+    def cost(x: Array) -> float:
+        noise = np.concatenate([np.exp(x), slow])
+        return _memory_prior(noise[1]) + axis.cost(noise)
+
+    x, found = _descend(cost, np.log(start[:3]))
+    level, memory, reading = np.exp(x)
+    fitted = start._replace(level=level, memory=memory, reading=reading)
+    return fitted, found + _colour_prior(start, axis.single)
 
 
-def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[Array, float]:
-    """Level, memory and reading noise (3,) of one axis, and what they cost."""
+def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
+    """The noise of one axis with a slow error of the readings, where that is more likely."""
 
     def cost(x: Array) -> float:
         noise = AxisNoise(*np.exp(x))
-        return _memory_prior(noise.memory) + axis.cost(noise)
+        prior = _memory_prior(noise.memory) + _colour_prior(noise, axis.single)
+        return prior + axis.cost(np.exp(x))
 
-    first = np.log(start)
-    simplex = first + np.vstack([np.zeros(3), 0.3 * np.eye(3)])
+    first = white if white.colour else white._replace(colour=white.reading, colour_memory=0.5)
+    x, found = _descend(cost, np.log(first))
+    if white.colour:
+        white, known = _fit_axis(axis, white._replace(colour=0.0))
+    if 2.0 * (known - found) < COLOURED:
+        return white, known
+    return AxisNoise(*np.exp(x)), found
+
+
+def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float]:
+    """Where a cost is least, and the least."""
+    simplex = first + np.vstack([np.zeros(len(first)), 0.3 * np.eye(len(first))])
     best = minimize(
         cost, first, method="Nelder-Mead",
         options={"initial_simplex": simplex, "xatol": 0.01, "fatol": 0.02, "maxiter": 300},
     )  # fmt: skip
-    return np.exp(best.x), float(best.fun)
+    return best.x, float(best.fun)
 
 
 def _memory_prior(memory: float) -> float:
     """Negative log of the prior of a memory, s; steep outside of what eddies can do."""
     outside = max(0.0, memory / LONGEST_MEMORY - 1.0) + max(0.0, SHORTEST_MEMORY / memory - 1.0)
     return 0.5 * (np.log(memory / TYPICAL_MEMORY) / MEMORY_SPREAD) ** 2 + 1e3 * outside
+
+
+def _colour_prior(noise: AxisNoise, single: float) -> float:
+    """Negative log of the prior of a slow error, if there is one."""
+    if noise.colour == 0.0:
+        return 0.0
+    lasting = np.log(noise.colour_memory / TYPICAL_COLOUR) / COLOUR_SPREAD
+    return 0.5 * float(lasting**2 + (noise.colour / (single * noise.reading)) ** 2)

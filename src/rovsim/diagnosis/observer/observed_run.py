@@ -1,18 +1,21 @@
 """A run as the observer sees it: readings of the motion capture before any filter."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.rotations import normalized
 from rovsim.dynamics.actuation import Between, ThrustPath
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
+from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.motion import Motion, Poses
+from rovsim.simulation.drive import Drives
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 
@@ -21,6 +24,9 @@ SETTLING = 1.0  # s
 SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
 GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
 USUAL, JUMP = 0.95, 2.0  # quantile of the changes from line to line; two of them are a jump
+# Frames are read in groups of about this length: what a vehicle of this size does is slower than
+# 5 Hz, and so are its propellers (5 / s, docs/simulator.md).
+GROUP = 0.05  # s
 BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are independent
 
 
@@ -28,21 +34,75 @@ BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are indep
 class ObservedRun:
     """One run, ready to be observed.
 
-    `readings` (k, 13): pose NED, and mean velocity since the reading before where velocities were
-    measured; `ends` (k,) integration steps at which they hold; `edges` (s+1,) those steps, s;
-    `spans` pairs (first, last) of readings: the observer starts at `first`, whose state is
-    `starts` (., 13), and reads up to `last`. `between` two lines of the log, commands are
+    `grid` steps of a replay, `at` (n,) those at which the samples or bins begin.
+
+    `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
+    velocities were measured; `group` of them, an odd number, make a reading, which holds at step
+    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s; over each of their `parts` the
+    thrust is steady. `spans` pairs (first, last) of readings: the observer starts at `first`, at
+    the state of that sample, and reads up to `last`. `between` two lines of the log, commands are
     held or joined; `wrenches` are those of the one engine that serves all models of a diagnosis.
     """
 
     motion: Motion
-    readings: Array
+    grid: StepGrid
+    at: Array
+    frames: Array
+    group: int
     ends: Array
     edges: Array
+    parts: int
     spans: tuple[tuple[int, int], ...]
-    starts: Array
     between: Between
     wrenches: tuple[type[Wrench], ...]
+
+    def limited(self, kept: Array) -> "ObservedRun":
+        """The same run of which only some samples or bins (n,) are usable."""
+        motion = replace(self.motion, usable=self.motion.usable & kept)
+        return replace(self, motion=motion, spans=_find_spans(motion, self.group))
+
+    @cached_property
+    def drives(self) -> Drives:
+        """What drives models over the steps of the observer."""
+        count = self.parts * (len(self.edges) - 1) + 1
+        fine = np.linspace(self.edges[0], self.edges[-1], count)
+        return Drives(self.motion.commands, fine, self.between, self.parts)
+
+    @cached_property
+    def replay_drives(self) -> Drives:
+        """What drives models over the steps of a replay."""
+        return Drives(self.motion.commands, self.grid.edges, self.between)
+
+    @cached_property
+    def sample(self) -> Array:
+        """Sample or bin (k,) of the motion at which each reading holds."""
+        return np.arange(len(self.ends)) * self.group + self.group // 2
+
+    def read(self, view: MocapView) -> Array:
+        """Readings (k, 13), one a group, as `view` turns them.
+
+        A group's mean, but for what the curve of the motion adds to it.
+        """
+        return self._read_as_reported if view.key == NO_CHANGE.key else self._read(view)
+
+    @cached_property
+    def _read_as_reported(self) -> Array:
+        return self._read(NO_CHANGE)
+
+    def _read(self, view: MocapView) -> Array:
+        period = self.period / self.group
+        sharp = np.hstack([view.sharpen(self.frames[:, :7], period), self.frames[:, 7:]])
+        frames = view.states(sharp)
+        if self.group == 1:
+            return frames
+        smooth = view.poses(view.sharpen(self.motion.eta, period))
+        mean = self._average(frames[:, :7]) + smooth[self.sample] - self._average(smooth)
+        poses = np.hstack([mean[:, :3], normalized(mean[:, 3:])])
+        return np.hstack([poses, np.zeros((len(poses), 6))])
+
+    def _average(self, x: Array) -> Array:
+        count = len(self.ends)
+        return x[: count * self.group].reshape(count, self.group, -1).mean(axis=1)
 
     @property
     def h(self) -> float:
@@ -70,7 +130,7 @@ class ObservedRun:
     @cached_property
     def index(self) -> Array:
         """Sample or bin of the motion that each innovation belongs to."""
-        parts = [np.arange(a + 1, b + 1) for a, b in self.spans]
+        parts = [self.sample[a + 1 : b + 1] for a, b in self.spans]
         return np.concatenate([np.arange(0), *parts]) - (1 if self.motion.binned else 0)
 
     @cached_property
@@ -119,40 +179,57 @@ def prepare_run(
         catalogue: effects that may act in it.
     """
     grid = StepGrid.over(motion, settings.step)
-    ends, readings = _read_bins(motion, grid) if motion.binned else _read_poses(stage, grid)
-    spans = tuple((a, b - 1) for a, b in motion.segments() if _lasts(motion, a, b))
-    return ObservedRun(
-        motion=motion,
-        readings=readings,
-        ends=ends,
-        edges=grid.edges,
-        spans=spans,
-        starts=np.array([motion.state[a] for a, _ in spans]).reshape(-1, 13),
-        between=settings.commands,
-        wrenches=tuple(c for c in catalogue.values() if issubclass(c, Wrench)),
-    )
+    wrenches = tuple(c for c in catalogue.values() if issubclass(c, Wrench))
+    make = _observe_bins if motion.binned else _observe_samples
+    return make(stage, motion, grid, settings.commands, wrenches)
 
 
-def _lasts(motion: Motion, a: int, b: int) -> bool:
-    """Whether the stretch from sample or bin a to b - 1 is long enough."""
-    if motion.binned:
-        return bool(motion.time[b - 1] - motion.time[a] > SHORTEST)
-    return bool((b - a) * (motion.time[1] - motion.time[0]) > SHORTEST)
+def _observe_bins(
+    stage: Stage, motion: Motion, grid: StepGrid, between: Between,
+    wrenches: tuple[type[Wrench], ...],
+) -> ObservedRun:  # fmt: skip
+    """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
+    at = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
+    frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
+    spans = _find_spans(motion, 1)
+    return ObservedRun(motion, grid, at, frames, 1, at, grid.edges, 1, spans, between, wrenches)
 
 
-def _read_poses(stage: Stage, grid: StepGrid) -> tuple[Array, Array]:
-    """Steps (k,) at which readings (k, 13) hold: the poses."""
+def _observe_samples(
+    stage: Stage, motion: Motion, grid: StepGrid, between: Between,
+    wrenches: tuple[type[Wrench], ...],
+) -> ObservedRun:  # fmt: skip
+    """A group of frames is a reading, and one step leads from it to the next."""
     assert isinstance(stage, Poses)
-    count = len(stage.eta)
-    return np.arange(count) * grid.stride, np.hstack([stage.eta, np.zeros((count, 6))])
+    count, period = len(motion.time), float(motion.time[1] - motion.time[0])
+    group = 2 * round(0.5 * (GROUP / period - 1.0)) + 1 if period < GROUP else 1
+    readings = count // group
+    first = motion.time[0] + group // 2 * period
+    steps = grid.stride if group == 1 else 1
+    parts = group * grid.stride // steps
+    h = group * period / steps
+    edges = first + h * np.arange((readings - 1) * steps + 1)
+    frames = np.hstack([stage.eta, np.zeros((count, 6))])
+    return ObservedRun(
+        motion, grid, np.arange(count) * grid.stride, frames, group,
+        np.arange(readings) * steps, edges, parts, _find_spans(motion, group), between, wrenches,
+    )  # fmt: skip
 
 
-def _read_bins(motion: Motion, grid: StepGrid) -> tuple[Array, Array]:
-    """Steps (k,) at which readings (k, 13) hold: the pose there, the mean velocity of the bin."""
-    h = grid.edges[1] - grid.edges[0]
-    means = np.vstack([np.zeros(6), motion.nu[:-1]])
-    ends = np.round((motion.time - motion.time[0]) / h).astype(int)
-    return ends, np.hstack([motion.eta, means])
+def _find_spans(motion: Motion, group: int) -> tuple[tuple[int, int], ...]:
+    """First and last reading of every usable stretch that is long enough."""
+    if motion.binned:
+        return tuple(
+            (a, b - 1)
+            for a, b in motion.segments()
+            if motion.time[b - 1] - motion.time[a] > SHORTEST
+        )
+    period = float(motion.time[1] - motion.time[0])
+    return tuple(
+        (-(-a // group), b // group - 1)
+        for a, b in motion.segments()
+        if (b - a) * period > SHORTEST
+    )
 
 
 def number_blocks(runs: Sequence[ObservedRun]) -> Array:

@@ -11,12 +11,14 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.innovations import drive_all, recall, serve_all
+from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalize, rms
 from rovsim.measurement.signals.binned import bin_means
 from rovsim.simulation.batch import Starts
+from rovsim.simulation.measured_states import as_true
+from rovsim.simulation.sharpened import stage_outputs
 from rovsim.simulation.windows import find_windows
 
 SECONDS = 2.0  # contract, section 3
@@ -87,26 +89,37 @@ class Windows:
             pushes: further wrench (m, k, 6) over the integration steps, N and N m.
         """
         if starts is None:
-            starts = np.tile(self.run.motion.state[self.first], (len(models), 1, 1))
-        paths = self._simulate(models, starts, pushes)
+            begin = [as_true(m, self.run.motion).state[self.first] for m in models]
+        else:
+            each = zip(models, starts, strict=True)
+            begin = [m.mocap_view.inverse.states(state) for m, state in each]
+        paths = self._simulate(models, np.array(begin), pushes)
         each = zip(models, paths, strict=True)
-        nu = [[m.mocap_view.twists(path[:, 7:]) for path in of_model] for m, of_model in each]
+        nu = [self._report(m, of_model) for m, of_model in each]
         return np.array([self._subtract_measured(of_model) for of_model in nu])
 
+    def _report(self, model: Model, paths: Sequence[Array]) -> list[Array]:
+        """Velocities (steps + 1, 6) of each window, as the motion capture would report them."""
+        view = model.mocap_view
+        if not view.low_pass.time_constants:
+            return [view.twists(path[:, 7:]) for path in paths]
+        begins = stage_outputs(model, self.run.motion)[1:, self.first, :14]
+        h = self.run.grid.h
+        straight = self.run.motion.binned
+        return [view.report(p, h, begins[:, i], straight)[:, 7:] for i, p in enumerate(paths)]
+
     def _simulate(
-        self, models: Sequence[Model], starts: Array, pushes: Array | None
+        self, models: Sequence[Model], begin: Array, pushes: Array | None
     ) -> list[list[Array]]:
-        """States (steps + 1, 13) of each model and window, every integration step."""
+        """States (steps + 1, 13) of each model from true states (m, w, 13), every step."""
         run = self.run
-        drives = drive_all(models, run)
+        drives = run.replay_drives.of(models)
         if pushes is not None:
             drives = [drive.pushed(push) for drive, push in zip(drives, pushes, strict=True)]
-        first = np.array([run.ends[a] for a, _ in self.spans], np.int64)
-        steps = np.array([run.ends[b] - run.ends[a] for a, b in self.spans], np.int64)
-        each = zip(models, starts, strict=True)
-        begin = np.array([m.mocap_view.inverse.states(state) for m, state in each])
-        begins = Starts(begin, first, steps, recall(models, run, first))
-        return serve_all(models, run).trajectories(drives, begins, run.h)
+        first = np.array([run.at[a] for a, _ in self.spans], np.int64)
+        steps = np.array([run.at[b] - run.at[a] for a, b in self.spans], np.int64)
+        begins = Starts(begin, first, steps, recall(models, run, run.grid.edges, first))
+        return serve_all(models, run).trajectories(drives, begins, run.grid.h)
 
     def _subtract_measured(self, nu: Sequence[Array]) -> Array:
         """Differences (n, 6) of velocities (steps + 1, 6) of each window."""
@@ -120,7 +133,7 @@ class Windows:
     def _at_readings(self, span: tuple[int, int], nu: Array) -> Array:
         """Velocities at the samples, or their means over the bins, of one window."""
         a, b = span
-        at = self.run.ends[a : b + 1] - self.run.ends[a]
+        at = self.run.at[a : b + 1] - self.run.at[a]
         if not self.run.motion.binned:
             return nu[at[1:]]
         return bin_means(np.arange(len(nu), dtype=float), nu, at)

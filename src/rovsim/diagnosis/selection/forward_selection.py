@@ -9,13 +9,17 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival, Selection
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
 SWAP = 1.0  # in twice the log likelihood: less is not worth another name
+# In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
+# thirty times, against a coefficient of a file that is known to be off.
+FILE_ODDS = 13.8
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 
 
@@ -91,8 +95,8 @@ def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Mode
 def contest(workspace: SearchWorkspace, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close."""
     rivals = []
-    for i, term in enumerate(current.hypothesis.terms):
-        rest = workspace.fit(current.hypothesis.without(i))
+    rests = workspace.remove_each(current)
+    for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in _list_others(workspace, rest, term.id, trials):
             trial = workspace.fit(rest.hypothesis.with_term(p.term))
             deficit = workspace.score(current) - workspace.score(trial)
@@ -102,27 +106,60 @@ def contest(workspace: SearchWorkspace, current: Fit, trials: int) -> tuple[Fit,
     return current, rivals
 
 
-def _list_others(workspace: SearchWorkspace, rest: Fit, name: str, trials: int) -> list[Proposal]:
+def _list_others(
+    workspace: SearchWorkspace, rest: Removed, name: str, trials: int
+) -> list[Proposal]:
     """Other names for what a term took: one where it could win, or several to report."""
-    ranked = list_promising(workspace, rest)
+    ranked = [p for p in workspace.propose_instead(rest) if p.gain > 0.0 and p.term.id != name]
     if trials == 1:
-        return [p for p in keep_close(ranked, 2) if p.term.id != name][:1]
-    return keep_close([p for p in ranked if p.term.id != name], trials)
+        return [p for p in ranked[:1] if p.gain > CLOSE * rest.loss]
+    return keep_close(ranked, trials)
+
+
+def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """Without effects that the vehicle file, where it is off anyway, explains about as well.
+
+    Such a file is off everywhere, much of it too little to be found; a special effect is seldom
+    there. What the file leaves unfound may favour a special name by chance.
+    """
+    names = [term.id for term in current.hypothesis.terms]
+    if not set(names) & set(STATED):
+        return current
+    for name, rest in zip(names, workspace.remove_each(current), strict=True):
+        free = len(current.hypothesis.x) - len(rest.hypothesis.x)
+        limit = workspace.price * free + FILE_ODDS
+        if name in STATED or workspace.loss_beside_file(rest) > limit:
+            continue
+        fewer = prune(workspace, _add_from_file(workspace, workspace.fit(rest.hypothesis)))
+        if workspace.score(fewer) > workspace.score(current) - FILE_ODDS:
+            return prefer_file(workspace, fewer)
+    return current
+
+
+def _add_from_file(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """With all that the vehicle file states and that is worth its price, one at a time."""
+    while True:
+        left = [p for p in list_promising(workspace, current) if p.term.id in STATED]
+        trial = workspace.fit(current.hypothesis.with_term(left[0].term)) if left else current
+        if workspace.score(trial) <= workspace.score(current):
+            return current
+        current = trial
 
 
 def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
     """From the base to the model to which nothing can be added, swapped or taken away.
 
-    The workspace's noise and filters follow what is found. Incomplete, and without rivals, where
-    there were `most_effects` before it came to an end: these names are not what is missing.
+    The workspace's noise and filters follow what is found.
     """
     current, settings = base, workspace.settings
     while len(current.hypothesis.terms) < settings.most_effects:
         found = add_best(workspace, current, workspace.chance_limit(current, seed))
         if found is None:
-            current, rivals = contest(workspace, current, settings.trials)
-            return Selection(workspace, current, tuple(rivals), complete=True)
+            break
         workspace = workspace.renew(found)
         again = workspace.fit(found.hypothesis)
         current, _ = contest(workspace, again, 1)  # the likeliest other name
-    return Selection(workspace, current, (), complete=False)
+    current, _ = contest(workspace, current, settings.trials)
+    current = prefer_file(workspace, current)
+    current, rivals = contest(workspace, current, settings.trials)
+    return Selection(workspace, current, tuple(rivals), complete=True)

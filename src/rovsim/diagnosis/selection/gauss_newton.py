@@ -18,6 +18,8 @@ ROUGH = 1e-2  # of what the model does not explain: a wrong model need not be fi
 # Scales: where much is free at once, what acts only together (drag and a loop, drag and thrust)
 # stays near where it began.
 REACH = 10.0
+# Of the decrease that the derivatives promised: so close to it they need not be found anew.
+FORESEEN = 0.1
 # Damping of the steps (Levenberg-Marquardt).
 FIRST_TRUST, LEAST_TRUST, LARGEST_TRUST = 1e-4, 1e-8, 1e4
 
@@ -79,43 +81,61 @@ def descend(
     only act together from running away together.
     """
     problem = _Problem(evidence, noise, start.x, reach)
-    here, trust = start, FIRST_TRUST
+    seen, trust = evidence.linearise(start), FIRST_TRUST
+    if not len(start.x) or not seen.finite:
+        return seen
+    bowl = problem.expand(seen)
     for _ in range(MOST_ITERATIONS):
-        seen = evidence.linearise(here)
-        if not len(here.x) or not seen.finite:
+        step = _find_step(problem, bowl, trust)
+        if step is None and seen.at is bowl.at:
+            return seen
+        if step is not None:
+            trust = step.trust
+            if step.length < _small(step, bowl):
+                return evidence.linearise(step.to)
+            if step.as_foreseen:
+                bowl = problem.shift(bowl, step)
+                continue
+        seen = evidence.linearise(bowl.at if step is None else step.to)
+        if not seen.finite:
             return seen
         bowl = problem.expand(seen)
-        step = _find_step(problem, bowl, trust)
-        if step is None:
-            return seen
-        excess = max(0.0, step.cost - bowl.size)
-        enough = max(CONVERGED**2 * len(here.x), ROUGH * excess)
-        here, trust = step.to, step.trust
-        if step.length < enough:
-            break
-    return evidence.linearise(here)
+    return evidence.linearise(bowl.at)
+
+
+def _small(step: "_Step", bowl: "_Bowl") -> float:
+    """The squared length of a step that need not be followed by another."""
+    excess = max(0.0, step.cost - bowl.size)
+    return max(CONVERGED**2 * len(bowl.g), ROUGH * excess)
 
 
 class _Bowl(NamedTuple):
-    """Sum of squares of `size` errors about a hypothesis: curvature (k, k), slope (k,), value."""
+    """Sum of squares of `size` errors about a hypothesis: curvature (k, k), slope (k,), value.
+
+    `rows` (k, size) are the derivatives of the errors.
+    """
 
     at: Hypothesis
     H: Array
     g: Array
     cost: float
     size: int
+    rows: Array
 
 
 class _Step(NamedTuple):
     """Where a step leads, what it costs there, and how damped the next one begins.
 
-    `length`, squared, in standard deviations.
+    `length`, squared, in standard deviations; `target` (size,) the errors there; `as_foreseen`:
+    the derivatives from where it began still hold.
     """
 
     to: Hypothesis
     cost: float
     trust: float
     length: float
+    target: Array
+    as_foreseen: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,12 +147,16 @@ class _Problem:
     start: Array
     reach: float
 
-    def cost(self, wanted: Hypothesis) -> float:
-        """Sum of squares; infinite where the model diverges."""
+    def errors(self, wanted: Hypothesis) -> Array:
+        """Whitened errors (size,); infinite where the model diverges."""
         e = [one[0] for one in self.evidence.evaluate([wanted.model])]
         if not all(np.isfinite(one).all() for one in e):
-            return np.inf
-        return float(np.sum(self.evidence.whiten(e, self.noise) ** 2)) + self._prior(wanted.x)
+            return np.array([np.inf])
+        return self.evidence.whiten(e, self.noise).ravel()
+
+    def cost(self, wanted: Hypothesis, target: Array) -> float:
+        """Sum of squares of errors, and what the prior says of the hypothesis."""
+        return float(target @ target) + self._prior(wanted.x)
 
     def _prior(self, x: Array) -> float:
         return float(np.sum(((x - self.start) / self.reach) ** 2))
@@ -142,9 +166,14 @@ class _Problem:
         x = seen.at.x
         rows = _flatten(self.evidence.whiten(seen.J, self.noise))
         target = self.evidence.whiten(seen.e, self.noise).ravel()
-        H, g, cost = inner_products(rows), rows @ target, float(target @ target)
-        H, g = H + np.eye(len(H)) / self.reach**2, g + (x - self.start) / self.reach**2
-        return _Bowl(seen.at, H, g, cost + self._prior(x), len(target))
+        H = inner_products(rows) + np.eye(len(rows)) / self.reach**2
+        g = rows @ target + (x - self.start) / self.reach**2
+        return _Bowl(seen.at, H, g, self.cost(seen.at, target), len(target), rows)
+
+    def shift(self, bowl: _Bowl, step: _Step) -> _Bowl:
+        """The same about where a step leads, with the derivatives from where it began."""
+        g = bowl.rows @ step.target + (step.to.x - self.start) / self.reach**2
+        return bowl._replace(at=step.to, g=g, cost=step.cost)
 
 
 def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:
@@ -156,9 +185,12 @@ def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:
             break
         wanted = bowl.at.at(goal)
         step = wanted.x - x
-        cost, length = problem.cost(wanted), float(step @ H @ step)
+        target = problem.errors(wanted)
+        cost, length = problem.cost(wanted, target), float(step @ H @ step)
         if cost < bowl.cost:
-            return _Step(wanted, cost, max(trust / 10.0, LEAST_TRUST), length)
+            foreseen = -float(2.0 * bowl.g @ step + length)
+            true = abs(bowl.cost - cost - foreseen) < FORESEEN * foreseen
+            return _Step(wanted, cost, max(trust / 10.0, LEAST_TRUST), length, target, true)
         if length < CONVERGED**2:
             break
         trust *= 10.0

@@ -14,11 +14,10 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.gauss_newton import fit
-from rovsim.diagnosis.selection.nominal_terms import DRAG, ONE_GAIN, free_terms
+from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, free_terms
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
-STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center")
 # A curve measured on the bench; gain, masses and drag are known to one scale only.
 GAINS = Bounds(0.5, 2.0)
 ROUNDS = 3  # the filters suit the noise of the round before
@@ -41,7 +40,7 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
 
 def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     """All parameters free and unchanged."""
-    terms = free_terms(base, moved, STATED)
+    terms = free_terms(base, moved, [name for name in STATED if name != "thruster_gain"])
     gain = Term(ThrusterGain(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAINS))
     return Hypothesis(base, (*terms, gain))
 

@@ -7,11 +7,28 @@ import numpy as np
 from rovsim import AXES
 from rovsim.diagnosis.observer.hypothesis import Bounds, Term
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.model import Model
 
 DRAG = ("linear_damping", "quadratic_damping")
 PER_AXIS = (*DRAG, "added_mass", "constant_wrench")
 ONE_GAIN = ("all",)  # of all thrusters
+STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "thruster_gain")
+# How far a vehicle file is off (assumed, not measured): coefficients of drag and added mass by a
+# third of what it states, the thrusters' gain by a tenth. What it states as zero, the ballast and
+# its place, by one of the parameter's own scales.
+SHARE, GAIN = 0.3, 0.1
+
+
+def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
+    """How far the vehicle file may be off there, in scales of the parameter; 0: not stated."""
+    if effect.id not in STATED or (effect.id == "thruster_gain" and parameter.name not in ONE_GAIN):
+        return 0.0
+    if effect.id == "thruster_gain":
+        return GAIN / parameter.scale
+    bounds = _physical_bounds(base).get(effect.id, {}).get(parameter.name)
+    stated = 0.0 if bounds is None else -bounds.low
+    return max(1.0, SHARE * stated / parameter.scale)
 
 
 def free_terms(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple[Term, ...]:

@@ -15,8 +15,9 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import inner_products
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.candidates import Candidate
+from rovsim.dynamics.model import Model
 
-ROUNDS = 3  # of fitting the noise and what it leaves in turns
+ROUNDS = 3  # where the noise is not yet known
 SHRINK = 1e-4  # of each column's own square: parallel candidates share
 
 
@@ -37,9 +38,10 @@ class CandidateColumns:
 class Sensitivities:
     """`base` innovations (6, n) of each run, and `columns` (c, 6, n), as this filter bank saw them.
 
-    `blocks` say which columns belong to which candidate.
+    `blocks` say which columns belong to which candidate, `base_model` what they start from.
     """
 
+    base_model: Model
     bank: FilterBank
     base: list[Array]
     columns: list[Array]
@@ -66,7 +68,7 @@ def linearise_candidates(
             parts.append(columns)
             count += len(columns[0])
     stacked = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
-    return Sensitivities(bank, absent, stacked, tuple(blocks))
+    return Sensitivities(base.model, bank, absent, stacked, tuple(blocks))
 
 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:
@@ -89,17 +91,21 @@ def _columns(
     return [own.astype(np.float32) for own in columns]  # six digits are enough for columns
 
 
-def fit_remaining_noise(known: Sensitivities, at: Hypothesis, noise: Noise) -> Noise:
+def fit_remaining_noise(
+    known: Sensitivities, at: Hypothesis, noise: Noise, rounds: int = ROUNDS
+) -> Noise:
     """The noise of what a hypothesis leaves and no candidate explains, all acting together.
 
-    It is close to the true one whatever is still missing: candidates are compared under it.
+    It is close to the true one whatever is still missing: candidates are compared under it. What is
+    left depends on the noise in turn, so that this takes `rounds`.
     """
     bank, e, columns = known.bank, known.base, known.columns
     if at.terms:
         seen = bank.linearise(at)
         e, columns = seen.e, _join(seen.J, columns)
-    for _ in range(ROUNDS):
-        noise, _ = bank.fit_noise(_remainder(bank, e, columns, noise), noise)
+    for k in range(rounds):
+        left = _remainder(bank, e, columns, noise)
+        noise, _ = bank.fit_noise(left, noise, colour=k == rounds - 1)
     return noise
 
 
@@ -112,8 +118,8 @@ def _remainder(
     bank: FilterBank, e: Sequence[Array], columns: Sequence[Array], noise: Noise
 ) -> list[Array]:
     """Innovations (6, n) of each run less the best combination of all columns (c, 6, n)."""
-    target = bank.coarsen([one[None] for one in e], noise)[0]
-    white = bank.coarsen(columns, noise)
+    target = bank.flatten([one[None] for one in e], noise)[0]
+    white = bank.flatten(columns, noise)
     H = inner_products(white).astype(float)
     x = -np.linalg.solve(H + np.diag(SHRINK * np.diag(H) + 1e-9), white @ target)
     return [one + np.tensordot(x, c, axes=1) for one, c in zip(e, columns, strict=True)]

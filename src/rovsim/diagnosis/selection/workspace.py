@@ -11,14 +11,28 @@ from functools import cached_property
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import inner_products, project_out
+from rovsim.diagnosis.observer.least_squares import inner_products, project_out, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit
+from rovsim.diagnosis.selection.nominal_terms import spread_of_file
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, rank_proposals
 from rovsim.diagnosis.selection.sensitivities import Sensitivities, fit_remaining_noise
 from rovsim.diagnosis.settings import SearchSettings
+
+
+@dataclass(frozen=True, eq=False)
+class Removed:
+    """A hypothesis without one of its terms, judged to first order.
+
+    `products` (1 + c, 1 + c) as of `SearchWorkspace`; `loss`: increase of the sum of squares.
+    """
+
+    hypothesis: Hypothesis
+    products: Array
+    loss: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +48,7 @@ class SearchWorkspace:
 
     def renew(self, current: Fit) -> "SearchWorkspace":
         """The workspace whose filters and noise suit what is now known to act."""
-        noise = fit_remaining_noise(self.sensitivities, current.hypothesis, current.noise)
+        noise = fit_remaining_noise(self.sensitivities, current.hypothesis, self.noise, rounds=1)
         fresh = self.bank.redesign(current.hypothesis.model, noise)
         return SearchWorkspace(fresh, self.sensitivities, noise, self.settings)
 
@@ -61,23 +75,64 @@ class SearchWorkspace:
     @cached_property
     def columns(self) -> Array:
         """The candidates' columns (c, m), white."""
-        return self.sensitivities.bank.coarsen(self.sensitivities.columns, self.noise)
+        return self.sensitivities.bank.flatten(self.sensitivities.columns, self.noise)
 
     @cached_property
     def inner_products(self) -> Array:
         """Inner products (c, c) of the candidates' columns."""
         return inner_products(self.columns).astype(float)
 
-    def products(self, current: Fit) -> Array:
+    def products(self, seen: Linearised) -> Array:
         """Inner products (1 + c, 1 + c) of the innovations and the candidates' columns.
 
-        What the free parameters of the current fit can explain is projected out of both.
+        What the free parameters can explain is projected out of both.
         """
-        own = self.bank.coarsen(current.seen.rows, self.noise)
+        rows = [one.astype(np.float32) for one in seen.rows]
+        own = self.bank.flatten(rows, self.noise)
         across = own @ self.columns.T
         M = np.block([[inner_products(own), across], [across.T, self.inner_products]])
         kept = [0, *range(len(own), len(M))]
         return project_out(M, range(1, len(own)))[np.ix_(kept, kept)]
+
+    def remove_each(self, current: Fit) -> list[Removed]:
+        """The current hypothesis without each of its terms, the others refitted to first order."""
+        h = current.hypothesis
+        fewer = [h.without(i) for i in range(len(h.terms))]
+        e = self.bank.evaluate([one.model for one in fewer])
+        found, left = [], float(self.products(current.seen)[0, 0])
+        for i, (one, own) in enumerate(zip(fewer, h.columns, strict=True)):
+            J = [np.delete(all_, own, axis=0) for all_ in current.seen.J]
+            seen = Linearised(one, [run[i] for run in e], J)
+            M = self.products(seen)
+            found.append(Removed(one, M, float(M[0, 0]) - left))
+        return found
+
+    @cached_property
+    def file_columns(self) -> tuple[list[int], Array]:
+        """Columns (j,) of what a vehicle file can be wrong about, and how far, in their units."""
+        base = self.sensitivities.base_model
+        columns, spread = [], []
+        for block in self.sensitivities.blocks:
+            term = block.candidate.term()
+            for column, parameter in zip(block.derivatives, term.parameters, strict=True):
+                own = spread_of_file(base, block.candidate.effect, parameter)
+                if block.candidate.absent and own:
+                    columns.append(column)
+                    spread.append(own)
+        return columns, np.array(spread)
+
+    def loss_beside_file(self, rest: Removed) -> float:
+        """How much less likely it is to do without a term, the vehicle file being off as it may."""
+        columns, spread = self.file_columns
+        own = [1 + j for j in columns]
+        H, b = rest.products[np.ix_(own, own)], rest.products[own, 0]
+        return rest.loss - float(b @ solve(H + np.diag(spread**-2.0), b))
+
+    def propose_instead(self, rest: Removed) -> list[Proposal]:
+        """All candidates for what a term took, best first."""
+        if not np.isfinite(rest.products).all():
+            return []
+        return rank_proposals(rest.products, self.sensitivities.blocks, self.price)
 
     def propose(self, current: Fit) -> list[Proposal]:
         """All candidates, best first, judged to first order on top of what is there; made once.
@@ -88,7 +143,7 @@ class SearchWorkspace:
             return []
         key = current.hypothesis.key
         if key not in self._proposed:
-            products = self.products(current)
+            products = self.products(current.seen)
             blocks = self.sensitivities.blocks
             self._proposed[key] = rank_proposals(products, blocks, self.price)
         return self._proposed[key]
@@ -96,7 +151,7 @@ class SearchWorkspace:
     def chance_limit(self, current: Fit, seed: int) -> float:
         """What the best of all candidates gains by chance, but for the false alarms allowed."""
         gains = draw_chance_gains(
-            self.products(current)[1:, 1:], self.sensitivities.blocks, self.price,
+            self.products(current.seen)[1:, 1:], self.sensitivities.blocks, self.price,
             self.settings.draws, seed,
         )  # fmt: skip
         return max(0.0, float(np.quantile(gains, 1.0 - self.settings.false_alarm)))

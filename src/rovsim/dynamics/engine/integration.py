@@ -46,12 +46,12 @@ def renormalised(x):
 
 
 @inline_anew
-def runge_kutta(extra, t, x, h, body, p, step, correction, site):
-    """One classical Runge-Kutta 4 step."""
-    k1 = slope(extra, t, x, body, p, step, correction, site)
+def runge_kutta(extra, t, x, h, body, p, step, correction, ramp, site):
+    """One classical Runge-Kutta 4 step; `ramp` is what the correction grows by over the step."""
+    k1 = slope(extra, t, x, body, p, step, add6(correction, -0.5, ramp), site)
     k2 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)
     k3 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k2), body, p, step, correction, site)
-    k4 = slope(extra, t + h, moved(x, h, k3), body, p, step, correction, site)
+    k4 = slope(extra, t + h, moved(x, h, k3), body, p, step, add6(correction, 0.5, ramp), site)
     x = moved(moved(x, h / 6.0, k1), h / 3.0, k2)
     return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
 
@@ -120,6 +120,14 @@ def step_of(inputs, row, k):
 
 
 @inline_internal
+def ramp_of(inputs, row, k, body):
+    """What the thrusters' acceleration grows by over step k."""
+    if inputs.ramp.size == 0:
+        return ZERO6
+    return times6(body.M_inv, vector6(inputs.ramp[row, k]))
+
+
+@inline_internal
 def state_of(a):
     """State of an array (13,)."""
     return State((a[0], a[1], a[2]), (a[3], a[4], a[5], a[6]), vector6(a[7:]))
@@ -153,7 +161,7 @@ def stepped(extra, t, x, memory, h, body, own, step, data, place, features, a_re
     if data is not None:
         a_learned = learned(extra, t, x, body, own, step, push, data, place, features, a_res)
         push = add6(push, 1.0, a_learned)
-    after = runge_kutta(extra, t, x, h, body, own, step, push, place)
+    after = runge_kutta(extra, t, x, h, body, own, step, push, ZERO6, place)
     if body.forgets != 0.0:
         memory = memory_after(memory, x, after, h, body)
     return after, memory

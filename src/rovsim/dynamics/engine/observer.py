@@ -12,6 +12,7 @@ from rovsim.dynamics.engine.integration import (
     constants_of,
     memory_after,
     push_over_step,
+    ramp_of,
     renormalised,
     runge_kutta,
     site_of,
@@ -99,9 +100,9 @@ def observe(
                 t, before, push = start + (n - ends[first]) * h, x, a
                 if body.forgets != 0.0:
                     push = add6(a, 1.0, push_over_step(x, memory, h, body))
-                x = runge_kutta(
-                    extra, t, x, h, body, own, step_of(inputs, inputs.row[m], n), push, place
-                )
+                step = step_of(inputs, inputs.row[m], n)
+                ramp = ramp_of(inputs, inputs.row[m], n, body)
+                x = runge_kutta(extra, t, x, h, body, own, step, push, ramp, place)
                 if body.forgets != 0.0:
                     memory = memory_after(memory, before, x, h, body)
                 mean = add6(add6(mean, 0.5 / count, before.nu), 0.5 / count, x.nu)

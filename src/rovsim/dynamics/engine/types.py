@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
+NO_RAMP = np.empty((0, 0, 6))
 NO_MEMORY = np.empty((0, 6))
 
 Vector3 = tuple[float, float, float]
@@ -85,7 +86,8 @@ class Inputs(NamedTuple):
     """Mean thrust over each step: `wrench` (r, k, 6), `force` (r, k, n), `demand` (k, 6).
 
     `row` (m,) says which of the r rows belongs to each parameter set; `duration` (k,) is the
-    length in s of the recording the step belongs to.
+    length in s of the recording the step belongs to. `ramp` (r, k, 6) is what the wrench grows by
+    over each step, N and N m; empty: nothing.
     """
 
     wrench: Array
@@ -93,6 +95,7 @@ class Inputs(NamedTuple):
     demand: Array
     row: Array
     duration: Array
+    ramp: Array = NO_RAMP
 
 
 class Jobs(NamedTuple):
