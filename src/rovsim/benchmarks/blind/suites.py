@@ -5,6 +5,9 @@ weak       the same at 0.5, 0.25 and 0.1 of it: where does it vanish?
 noisy      camera noise three times as large
 short      runs of 30 and 20 s
 pair, triple   effects of different families, none of which imitates another by construction
+many       four to eight of them
+workshop   a vehicle file that is wrong everywhere, and none to two special effects (field.py)
+camera     cameras that err slowly, or whose software smooths
 deviation  every coefficient of damping and inertia a few per cent off
 none       nothing hidden
 outside    physics that no entry describes, alone or beside an effect
@@ -16,6 +19,7 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
+from rovsim.benchmarks.blind.field import CAMERAS, camera, workshops
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
 from rovsim.dynamics.model_file import EffectEntry, Value
@@ -31,6 +35,7 @@ NOISY: Mapping[str, Any] = {
 }
 WEAK = (0.5, 0.25, 0.1)
 SHORT = (30.0, 20.0)  # s
+MANY = (4, 5, 6, 7, 8)  # effects at once
 DEVIATION = (0.02, 0.05)  # of each coefficient
 DEVIATING = ("linear_damping", "quadratic_damping", "added_mass")
 
@@ -79,6 +84,9 @@ def standard(seeds: Range) -> Iterator[Case]:
     for name, recipe in RECIPES.items():
         if recipe.weak:
             yield hiding("weak", (name,), 0, seeds, 0.25)
+    yield from workshops(0, seeds)
+    yield from (combination(count, 0, seeds) for count in MANY)
+    yield from (camera(how, k, seeds) for how in CAMERAS for k in range(4))
 
 
 def full(seeds: Range) -> Iterator[Case]:
@@ -100,6 +108,9 @@ def full(seeds: Range) -> Iterator[Case]:
         yield from (
             nothing(k, seeds, f"none, {seconds:g} s", {"duration": seconds}) for k in range(5)
         )
+    yield from (case for k in range(2) for case in workshops(k, seeds))
+    yield from (combination(count, k, seeds) for count in MANY for k in range(4))
+    yield from (camera(how, k, seeds) for how in CAMERAS for k in range(10))
     for name in OUTSIDE:
         yield from (outside(name, k, seeds) for k in range(4))
         yield outside(name, 0, seeds, beside=True)
@@ -129,7 +140,7 @@ def combination(count: int, k: int, seeds: Range) -> Case:
     random = random_of(f"combination/{count}/{k}", seeds)
     families = random.choice(len(FAMILIES), size=count, replace=False)
     names = [str(random.choice(sorted(FAMILIES[i]))) for i in families]
-    return hiding({2: "pair", 3: "triple"}[count], names, k, seeds)
+    return hiding({2: "pair", 3: "triple"}.get(count, "many"), names, k, seeds)
 
 
 def nothing(

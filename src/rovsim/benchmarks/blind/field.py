@@ -1,0 +1,83 @@
+"""Cases as a laboratory has them: a vehicle file that is wrong everywhere, and cameras as they are.
+
+workshop   every coefficient of the vehicle file off, and none to two special effects
+camera     a right model, seen by cameras that err slowly or whose software smooths
+
+How wrong is assumed: coefficients of drag and added mass by up to a quarter, the gain of the
+thrusters by a twentieth, the ballast by 1 N and its place by 4 mm.
+"""
+
+from typing import Any, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from rovsim import AXES
+from rovsim.benchmarks.blind.case import Case, Range, merged, random_of, seed_of
+from rovsim.benchmarks.blind.recipes import RECIPES, drawn
+from rovsim.dynamics.model_file import EffectEntry, Value
+from rovsim.dynamics.vehicle import load_vehicle
+
+COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")
+OFF = 0.25  # of each coefficient, at most
+GAIN, BUOYANCY, CENTER = 0.05, 1.0, 0.004  # 1, N, m, at most
+NOMINAL = (*COEFFICIENTS, "thruster_gain", "net_buoyancy", "buoyancy_center")
+# Effects that a wrong vehicle file does not explain, and a pilot can hold.
+SPECIAL = (
+    "current", "tether_tension", "tether_drag", "thruster_lag", "input_delay", "clock_drift",
+    "thruster_deadband", "thrust_asymmetry", "voltage_sag", "marker_offset",
+    "marker_misalignment", "constant_wrench", "lift", "fluid_memory", "advance_loss",
+)  # fmt: skip
+CAMERAS: Mapping[str, Mapping[str, tuple[float, float]]] = {
+    "coloured": {"colour_noise": (2e-4, 3e-4), "colour_attitude": (6e-4, 9e-4)},  # m, rad
+    "smoothed": {},
+}
+CUTOFF = (3.0, 12.0)  # Hz
+
+
+def workshop(special: Sequence[str], k: int, seeds: Range) -> Case:
+    """A vehicle file that is wrong everywhere, and these special effects."""
+    kind = f"workshop+{len(special)}"
+    case_id = f"{kind}/{'+'.join(special) or 'nothing'}/{k}"
+    random = random_of(case_id, seeds)
+    hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special))
+    return Case(
+        id=case_id, kind=kind, seed=seed_of(case_id, seeds), hidden=hidden, forgiven=NOMINAL,
+        tank=merged(*(RECIPES[name].tank for name in special)),
+    )  # fmt: skip
+
+
+def workshops(k: int, seeds: Range) -> Iterator[Case]:
+    """One of each special effect, one of each with its next but two, and three without."""
+    for i, name in enumerate(SPECIAL):
+        yield workshop((name,), k, seeds)
+        yield workshop((name, SPECIAL[(i + 3) % len(SPECIAL)]), k, seeds)
+    yield from (workshop((), 3 * k + j, seeds) for j in range(3))
+
+
+def camera(how: str, k: int, seeds: Range) -> Case:
+    """A right model, seen by cameras that err slowly, or through software that smooths."""
+    case_id = f"camera/{how}/{k}"
+    random = random_of(case_id, seeds)
+    settings: dict[str, Any] = {name: random.uniform(*size) for name, size in CAMERAS[how].items()}
+    cutoff = float(f"{random.uniform(*CUTOFF):.3g}")
+    smoothing = EffectEntry(effect="pose_filter", parameters={"cutoff": Value(value=cutoff)})
+    return Case(
+        id=case_id, kind="camera", seed=seed_of(case_id, seeds),
+        hidden=(smoothing,) if how == "smoothed" else (), tank={"camera": settings},
+    )  # fmt: skip
+
+
+def _wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
+    """Every coefficient changed by its own share."""
+    water = load_vehicle("bluerov2_heavy").hydrodynamics
+    for name in COEFFICIENTS:
+        nominal = np.array(getattr(water, name))
+        yield _entry(name, dict(zip(AXES, random.uniform(-OFF, OFF, 6) * nominal, strict=True)))
+    yield _entry("thruster_gain", {"all": 1.0 + random.uniform(-GAIN, GAIN)})
+    yield _entry("net_buoyancy", {"force": random.uniform(-BUOYANCY, BUOYANCY)})
+    yield _entry("buoyancy_center", {"z": random.uniform(-CENTER, CENTER)})
+
+
+def _entry(name: str, values: Mapping[str, float]) -> EffectEntry:
+    given = {k: Value(value=float(f"{v:.4g}")) for k, v in values.items() if v}
+    return EffectEntry(effect=name, parameters=given)
