@@ -23,6 +23,8 @@ from rovsim.simulation.replay import replay
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
 
+CHANCE = 0.1  # by which a floor, itself drawn by chance, may lie above what was reached
+
 
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
@@ -67,8 +69,7 @@ def _climb(found: TrainDiagnosis, test: list[ObservedRun], settings: DiagnosisSe
         score_step(one.name, motions, [replay(one, m, settings.signals, horizons) for m in motions])
         for one in found.models()
     ]
-    reached = [s.windows_2s for s in steps if s.windows_2s is not None]
-    floor = Step(model=NOISE_FLOOR, windows_2s=_floor(found, test, settings, reached))
+    floor = Step(model=NOISE_FLOOR, windows_2s=_floor(found, test, settings, steps[-1].windows_2s))
     return Ladder(steps=(*steps, floor))
 
 
@@ -76,12 +77,17 @@ def _floor(
     found: TrainDiagnosis,
     test: list[ObservedRun],
     settings: DiagnosisSettings,
-    reached: list[float],
+    reached: float | None,
 ) -> float | None:
-    """At most what was reached: where a model came below, part of the noise is structure."""
-    if found.fit is None or not test:
+    """What a perfect model would score; None where that cannot be estimated.
+
+    Part of what is taken for noise may be structure: a floor above what was reached is none.
+    """
+    if found.fit is None or reached is None:
         return None
     floor = simulate_noise_floor(
         found.models()[-1], test, found.fit.noise, settings.signals, settings.seed,
     )  # fmt: skip
-    return None if floor is None else min([floor, *reached])
+    if floor is None or floor > (1.0 + CHANCE) * reached:
+        return None
+    return min(floor, reached)

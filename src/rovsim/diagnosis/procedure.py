@@ -1,11 +1,13 @@
 """Diagnosis: which physical effects a model lacks, how sure that is, and what is left unexplained.
 
 filter bank     the base model runs along the train runs, corrected by a filter
+camera          does the software of the motion capture smooth what it reports?
 sensitivities   how each candidate would change what the filter could not foresee
 search          add, refit, swap, prune; against what chance gives to the best of all candidates
 held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows
-joint fit       where the search came to no end: all that could be wrong, together, then pruned
+gate            it must replay stretches well that took no part in choosing
 structure       what is left, and no candidate explains
+joint fit       where there is some: all that could be wrong together, pruned; the likelier wins
 replay fit      where there is some: values that replay best, rather than foresee the next reading
 test runs       opened once, for the errors that are reported
 """
@@ -14,9 +16,11 @@ from dataclasses import dataclass
 from typing import Callable, Sequence
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
+from rovsim.diagnosis.observer.camera import find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -24,13 +28,21 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.forward_selection import search
+from rovsim.diagnosis.selection.gate import Gate, keep_apart
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit
 from rovsim.diagnosis.selection.held_out import drop_idle
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
-from rovsim.diagnosis.selection.ranking import Ranked, Selected, rank_alone, rank_selected
+from rovsim.diagnosis.selection.ranking import (
+    Ranked,
+    Selected,
+    rank_alone,
+    rank_selected,
+    rank_smoothing,
+)
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linearise_candidates
+from rovsim.diagnosis.selection.smoothed import absorb_delay, seen_through
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
@@ -39,6 +51,9 @@ from rovsim.results.diagnosis import Verdict
 
 Stages = Callable[[str], None]
 
+REFUSED = Structure(
+    "all axes", "what only effects explain that make replays of held-out stretches worse", 1.0, 1.0
+)
 POLISHED = 2  # times: the noise of the first is already the right one
 
 
@@ -96,61 +111,92 @@ def diagnose(
     usable = select_usable(train)
     if not usable.enough:
         return TrainDiagnosis(base, usable.still, usable.seconds)
+    with threadpool_limits(1, "blas"):  # matrices here are too small for several threads to help
+        return _diagnose(base, usable, settings, catalogue, seed, stage)
+
+
+def _diagnose(
+    base: Model, usable: UsableRuns, settings: SearchSettings, catalogue: Catalogue, seed: int,
+    stage: Stages,
+) -> TrainDiagnosis:  # fmt: skip
     stage("observing")
-    workspace = _observe(base, usable, settings, catalogue)
-    nothing = workspace.fit(Hypothesis(base))
+    smoothing = find_smoothing(base, usable.runs)
+    seen = seen_through(base, smoothing)
+    chosen, apart = keep_apart(usable.runs)
+    workspace = _observe(seen, chosen, settings, catalogue)
+    nothing = workspace.fit(Hypothesis(seen))
     stage("searching")
-    selection = search(workspace, nothing, seed)
+    selection = drop_idle(search(workspace, nothing, seed))
+    if smoothing:
+        selection, smoothing = absorb_delay(selection, base, smoothing)
+    found = _settle(selection, usable, apart)
     stage("checking")
-    selection = _check(selection, base, usable)
-    found, structures = _settle(selection)
-    rivals = selection.named_rivals
+    if found.structures:
+        seen = seen_through(base, smoothing)
+        joint = _settle(fit_jointly(workspace, seen, usable.moved), usable, apart)
+        found = found if found.score >= joint.score else joint
+    rivals = found.selection.named_rivals
+    selected = rank_selected(base, found.fit, rivals, usable.runs)
+    if smoothing:
+        selected = [rank_smoothing(base, smoothing, usable.runs), *selected]
     return TrainDiagnosis(
-        base, usable.still, usable.seconds, found,
-        selected=rank_selected(found, rivals, usable.runs),
-        ranking=rank_alone(workspace, nothing, found),
-        rivals=rivals, structures=structures,
+        base, usable.still, usable.seconds, found.fit, selected=selected,
+        ranking=rank_alone(workspace, nothing, found.fit),
+        rivals=rivals, structures=found.structures,
     )  # fmt: skip
 
 
 def _observe(
-    base: Model, usable: UsableRuns, settings: SearchSettings, catalogue: Catalogue
+    base: Model, runs: Sequence[ObservedRun], settings: SearchSettings, catalogue: Catalogue
 ) -> SearchWorkspace:
     """Columns of the candidates, and the noise that is left when all of them may act at once.
 
     The columns are made with filters that take all the base misses for noise: these hold it close
     to the measurement. The filters of the search then suit the noise that was found.
     """
-    first = FilterBank.design(usable.runs, base, FIRST_NOISE)
+    first = FilterBank.design(runs, base, FIRST_NOISE)
     noise, _ = first.fit_noise([e[0] for e in first.evaluate([base])], FIRST_NOISE)
     close = first.redesign(base, noise)
-    candidates = list_candidates(usable.runs, catalogue)
+    candidates = list_candidates(runs, catalogue)
     sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
     noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
     return SearchWorkspace(close.redesign(base, noise), sensitivities, noise, settings)
 
 
-def _check(selection: Selection, base: Model, usable: UsableRuns) -> Selection:
-    """What of a selection stands; all that could be wrong, where it came to no end."""
-    if selection.complete:
-        return drop_idle(selection)
-    return fit_jointly(selection.workspace, base, usable.moved)
+@dataclass(frozen=True, eq=False)
+class _Settled:
+    """An answer: its final values, how likely it is, and all that it leaves unexplained."""
+
+    selection: Selection
+    fit: Fit
+    score: float
+    structures: Sequence[Structure]
 
 
-def _settle(selection: Selection) -> tuple[Fit, list[Structure]]:
-    """The final values, and all that they leave unexplained."""
-    found, bank = _polish(selection)
+def _settle(selection: Selection, usable: UsableRuns, apart: Sequence[ObservedRun]) -> _Settled:
+    """What passes the gate, at its final values on all runs, and all that it leaves unexplained."""
+    gate = Gate(apart, usable.runs)
+    selection, whole = gate.judge(selection)
+    found, bank = _polish(selection, usable.runs)
+    if find_structure(found, bank):
+        fewer = gate.keep_earning(selection)
+        if fewer.found is not selection.found:
+            selection = fewer
+            found, bank = _polish(selection, usable.runs)
+    score = found.likelihood - selection.workspace.price * len(found.hypothesis.x)
     structures = find_structure(found, bank)
+    if not whole and not structures:
+        structures = [REFUSED]
     if structures and found.hypothesis.terms:
         found = fit_to_replays(found, bank)
-    return found, structures
+    return _Settled(selection, found, score, structures)
 
 
-def _polish(selection: Selection) -> tuple[Fit, FilterBank]:
-    """Fitted once more under its own noise, with filters that suit it and the model's damping."""
-    found, bank = selection.found, selection.workspace.bank
+def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
+    """Fitted once more to all runs under its own noise, with filters that suit it."""
+    found = selection.found
     reach = np.inf if selection.complete else REACH
     for _ in range(POLISHED):
-        bank = selection.workspace.bank.redesign(found.hypothesis.model, found.noise)
+        bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
         found = fit(found.hypothesis, bank, found.noise, reach)
     return found, bank

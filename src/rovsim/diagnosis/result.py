@@ -59,6 +59,7 @@ def report(
         rivals=tuple(
             RivalEffect(effect=r.effect, instead_of=r.instead_of, deficit=_rounded(r.deficit))
             for r in found.rivals
+            if np.isfinite(r.deficit)
         ),
         noise=_noise(found),
         base=dict(base),
@@ -90,7 +91,7 @@ def _listed(found: TrainDiagnosis) -> list[Ranked]:
 
 
 def _rounded(value: float | None) -> float | None:
-    return None if value is None or value != value else float(f"{value:.6g}")
+    return None if value is None or not np.isfinite(value) else float(f"{value:.6g}")
 
 
 def _parameters(term: Term, std: Mapping[str, float]) -> dict[str, FittedValue]:
@@ -141,4 +142,5 @@ def _noise(found: TrainDiagnosis) -> FittedNoise:
         disturbance=tuple(map(_rounded, noise.level)),
         memory_s=tuple(map(_rounded, noise.memory)),
         reading=tuple(map(_rounded, noise.reading)),
+        colour=tuple(map(_rounded, noise.colour)) if noise.colour.any() else (),
     )

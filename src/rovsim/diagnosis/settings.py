@@ -15,13 +15,13 @@ class SearchSettings(Section):
     `false_alarm` is the chance of naming an effect where none is missing, per addition. `relevant`:
     an effect without which no axis' error in 2 s windows is larger by this share is left out,
     however sure it is: at that size the laboratory's clocks and roundings look like effects.
-    Once `most_effects` are found one by one, all that could be wrong is fitted at once.
+    The search ends where the evidence ends; `most_effects` only guards against one that does not.
     """
 
     false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.01
     draws: PositiveInt = 1000  # of noise alone, for the best gain by chance
     trials: PositiveInt = 3
-    most_effects: PositiveInt = 4
+    most_effects: PositiveInt = 20
     relevant: Annotated[float, Field(ge=0)] = 0.02
 
 

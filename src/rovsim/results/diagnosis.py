@@ -54,11 +54,15 @@ class RivalEffect(Section):
 
 
 class FittedNoise(Sparse):
-    """Six values each: disturbance m/s2, rad/s2; its memory s; reading m, rad. Empty if unknown."""
+    """Six values each: disturbance m/s2, rad/s2; its memory s; reading m, rad. Empty if unknown.
+
+    `colour` m, rad: the cameras' slow error, where there is one.
+    """
 
     disturbance: tuple[float | None, ...] = ()
     memory_s: tuple[float | None, ...] = ()
     reading: tuple[float | None, ...] = ()
+    colour: tuple[float | None, ...] = ()
 
 
 class Answer(Section):

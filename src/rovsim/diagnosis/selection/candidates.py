@@ -7,7 +7,7 @@ from rovsim.core.errors import BadInput
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.base import Effect, Smoothing, Wander
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +33,8 @@ def list_candidates(runs: Sequence[ObservedRun], catalogue: Catalogue) -> list[C
     site = runs[0].motion.site
     found = []
     for cls in catalogue.values():
+        if issubclass(cls, Smoothing | Wander):  # camera.py tells of the one, none of the other
+            continue
         for values in cls.starts_at(site):
             start = cls(**values)
             if _can_act(start, runs):

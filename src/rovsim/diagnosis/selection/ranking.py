@@ -6,12 +6,14 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.rivals import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
 
 
@@ -22,7 +24,7 @@ class Selected:
     term: Term
     std: dict[str, float]
     error_reduction: float
-    probability: float
+    probability: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,13 +37,15 @@ class Ranked:
 
 
 def rank_selected(
-    found: Fit, rivals: Sequence[Rival], runs: Sequence[ObservedRun]
+    base: Model, found: Fit, rivals: Sequence[Rival], runs: Sequence[ObservedRun]
 ) -> list[Selected]:
-    """Selected effects, the one that removes most error first, then the next on top of it."""
+    """Selected effects, the one that removes most error first, then the next on top of it.
+
+    Reductions are of the error of `base`, to which what the camera does may have been added.
+    """
     terms, model = found.hypothesis.terms, found.hypothesis.base
     left, order, gains = list(range(len(terms))), [], []
-    start = _score([model], runs)[0]
-    now = start
+    start, now = _score([base, model], runs)
     while left:
         tried = [model + terms[i].effect for i in left]
         after = _score(tried, runs)
@@ -53,6 +57,16 @@ def rank_selected(
         Selected(terms[i], _spread(found, i), gain, _share_of_odds(found, i, rivals))
         for i, gain in zip(order, gains, strict=True)
     ]
+
+
+def rank_smoothing(base: Model, smoothing: Smoothing, runs: Sequence[ObservedRun]) -> Selected:
+    """What the camera does, as a selected effect; white noise was tried in its place."""
+    effect = PoseFilter(cutoff=smoothing.cutoff)
+    before, after = _score([base, base + effect], runs)
+    return Selected(
+        Term(effect, ("cutoff",)), {"cutoff": smoothing.std}, float((before - after) / before),
+        float(1.0 / (1.0 + np.exp(-0.5 * min(smoothing.gain, 700.0)))),
+    )  # fmt: skip
 
 
 def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
@@ -69,11 +83,12 @@ def _spread(found: Fit, i: int) -> dict[str, float]:
     }
 
 
-def _share_of_odds(found: Fit, i: int, rivals: Sequence[Rival]) -> float:
-    """Of this name among all that were tried in its place, from their likelihoods."""
+def _share_of_odds(found: Fit, i: int, rivals: Sequence[Rival]) -> float | None:
+    """Of this name among all that were tried in its place, from their likelihoods; None: none."""
     name = found.hypothesis.terms[i].id
-    odds = sum(np.exp(-0.5 * min(r.deficit, 700.0)) for r in rivals if r.instead_of == name)
-    return float(1.0 / (1.0 + odds))
+    tried = [r.deficit for r in rivals if r.instead_of == name]
+    odds = sum(np.exp(-0.5 * min(deficit, 700.0)) for deficit in tried)
+    return float(1.0 / (1.0 + odds)) if tried else None
 
 
 def rank_alone(workspace: SearchWorkspace, nothing: Fit, found: Fit) -> list[Ranked]:

@@ -95,7 +95,9 @@ def percent(share: float | None) -> str:
 
 
 def _sure(probability: float | None) -> str:
-    p = or_nan(probability)
+    if probability is None:
+        return "no other name was tried"
+    p = probability
     return "probability above 0.999" if p > 0.999 else f"probability {p:.3f}"
 
 
@@ -108,7 +110,7 @@ def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
     text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
     text += " (velocity in 2 s windows, in units of its spread)."
     if not math.isfinite(floor):
-        return text
+        return f"{text} What a perfect model would show cannot be estimated: not all is noise."
     return f"{text} A perfect model would show about {significant(floor)} (noise floor)."
 
 

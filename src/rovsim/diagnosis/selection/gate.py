@@ -1,0 +1,140 @@
+"""The gate: what was chosen must replay stretches of the train runs that took no part in choosing.
+
+A likelihood can be wrong about what matters to a user; a replay is what users do. So the last part
+of every train run is kept apart. An effect without which these stretches are replayed better goes,
+and an answer that replays them worse than the model before is no answer.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.windows import Windows
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.nominal_terms import STATED
+from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.dynamics.model import Model
+
+KEPT_APART = 0.2  # of each run's time
+SHORTEST = 60.0  # s of a run, less than which a fifth shows too few windows of 2 s
+WORSE = 0.02  # of the error: less is within what the windows happen to hold
+CERTAIN = 2.0  # standard errors over the windows
+SMALLEST = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
+
+
+def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[ObservedRun]]:
+    """The runs to choose by, and those stretches of them that take no part in it."""
+    chosen, held = [], []
+    for run in runs:
+        time = run.motion.time
+        end = time[0] + (1.0 - KEPT_APART) * (time[-1] - time[0])
+        if time[-1] - time[0] < SHORTEST - 1.0:
+            chosen.append(run)
+            continue
+        chosen.append(run.limited(time <= end))
+        held.append(run.limited(time > end))
+    return chosen, [run for run in held if Windows(run).spans]
+
+
+@dataclass(frozen=True, eq=False)
+class Gate:
+    """The stretches that were kept apart; the whole runs tell how much each axis varies."""
+
+    runs: Sequence[ObservedRun]
+    whole: Sequence[ObservedRun]
+
+    @cached_property
+    def spread(self) -> Array:
+        """Standard deviation (6,) of the measured velocity."""
+        nu = np.concatenate([run.motion.nu[run.motion.usable] for run in self.whole])
+        return np.maximum(np.std(nu, axis=0), SMALLEST)
+
+    def judge(self, selection: Selection) -> tuple[Selection, bool]:
+        """What passes, and whether that is all that was selected."""
+        found = selection.found
+        while self.runs and found.hypothesis.terms:
+            weakest = self._find_harmful(selection, found)
+            if weakest is None:
+                break
+            found = selection.workspace.fit(found.hypothesis.without(weakest))
+        if self.runs and self._is_worse(found.hypothesis.model, found.hypothesis.base):
+            base = replace(found.hypothesis, terms=())
+            found = selection.workspace.fit(base)
+        return replace(selection, found=found), found is selection.found
+
+    def keep_earning(self, selection: Selection) -> Selection:
+        """Where physics is left that no name explains: only what makes a difference there.
+
+        A name then stands for part of what has none, unless replays are better for it. What the
+        vehicle file states counts together.
+        """
+        found, all_of_it = selection.found, None
+        while self.runs and found.hypothesis.terms:
+            fewer, errors = self._do_without(selection, found, _group(found.hypothesis))
+            all_of_it = errors[0] if all_of_it is None else all_of_it
+            losses = [_ratio(other, all_of_it) - 1.0 for other in errors[1:]]
+            least = int(np.argmin(losses))
+            if losses[least] > WORSE:
+                break
+            found = fewer[least]
+        return replace(selection, found=found)
+
+    def _find_harmful(self, selection: Selection, found: Fit) -> int | None:
+        """The effect whose absence helps most; None where each of them earns its place."""
+        _, errors = self._do_without(selection, found, [(t,) for t in found.hypothesis.terms])
+        gains = [_compare(errors[0], other) for other in errors[1:]]
+        best = int(np.argmax(gains))
+        return best if gains[best] > 0.0 else None
+
+    def _do_without(
+        self, selection: Selection, found: Fit, groups: Sequence[Sequence[Term]]
+    ) -> tuple[list[Fit], Array]:
+        """Fits without each group of terms, and errors (1 + g, w), those with all terms first."""
+        h = found.hypothesis
+        rests = [tuple(t for t in h.terms if t not in group) for group in groups]
+        fewer = [selection.workspace.fit(replace(h, terms=rest)) for rest in rests]
+        return fewer, self._errors([h.model, *(one.hypothesis.model for one in fewer)])
+
+    def _is_worse(self, model: Model, before: Model) -> bool:
+        errors = self._errors([model, before])
+        return _compare(errors[0], errors[1]) > 0.0
+
+    def _errors(self, models: Sequence[Model]) -> Array:
+        """Mean squared error (m, w) of each window, every axis in units of how much it varies."""
+        parts: list[Array] = []
+        for run in self.runs:
+            windows = Windows(run)
+            squares = np.mean((windows.compare(models) / self.spread) ** 2, axis=2)
+            parts += [
+                squares[:, windows.number == k].mean(axis=1) for k in range(len(windows.spans))
+            ]
+        return np.stack(parts, axis=1)
+
+
+def _group(h: Hypothesis) -> list[tuple[Term, ...]]:
+    """Each special effect by itself, and all that a vehicle file states together."""
+    stated = tuple(term for term in h.terms if term.id in STATED)
+    groups: list[tuple[Term, ...]] = [(term,) for term in h.terms if term.id not in STATED]
+    return [*groups, stated] if stated else groups
+
+
+def _ratio(error: Array, other: Array) -> float:
+    """Of two errors (w,) over all windows; infinite where a model diverged."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        return float(np.sqrt(np.nan_to_num(np.mean(error) / np.mean(other), nan=np.inf)))
+
+
+def _compare(error: Array, other: Array) -> float:
+    """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        less = np.nan_to_num(error - other, nan=np.inf)
+    mean, sure = float(np.mean(less)), float(np.std(less)) / np.sqrt(len(less))
+    if not np.isfinite(mean):
+        return np.inf
+    share = 1.0 - _ratio(other, error)
+    return share if share > WORSE and mean > CERTAIN * sure else 0.0

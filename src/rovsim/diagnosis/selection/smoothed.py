@@ -1,0 +1,46 @@
+"""A filter in the camera's software and a late command both delay what is seen.
+
+The noise of the cameras tells the filter's cutoff only within some per cent, the motion tells the
+delay far more finely. So a delay no longer than what the noise leaves open is the filter's.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from rovsim.diagnosis.observer.camera import Smoothing
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.model import Model
+
+DELAY = "input_delay"
+OPEN = 3.0  # standard deviations
+
+
+def seen_through(base: Model, smoothing: Smoothing | None) -> Model:
+    """The base, as far as is known what the camera does to its poses."""
+    return base if smoothing is None else base + PoseFilter(cutoff=smoothing.cutoff)
+
+
+def absorb_delay(
+    selection: Selection, base: Model, smoothing: Smoothing
+) -> tuple[Selection, Smoothing]:
+    """The selection without a delay that the filter explains, and the filter that explains it.
+
+    Two stages delay slow motions by twice their time constant T = 1 / (2 pi f).
+    """
+    found = selection.found
+    h = found.hypothesis
+    k = next((i for i, term in enumerate(h.terms) if term.id == DELAY), None)
+    if k is None:
+        return selection, smoothing
+    delay, column = h.terms[k].effect["delay"], h.columns[k][0]
+    T = 1.0 / (2.0 * np.pi * smoothing.cutoff)
+    if abs(delay) > OPEN * 2.0 * T * smoothing.std / smoothing.cutoff:
+        return selection, smoothing
+    cutoff = float(1.0 / (2.0 * np.pi * (T + 0.5 * delay)))
+    std = found.std[column] * h.terms[k].parameters[0].scale
+    finer = replace(smoothing, cutoff=cutoff, std=float(np.pi * cutoff**2 * std))
+    rest = Hypothesis(seen_through(base, finer), h.without(k).terms)
+    return replace(selection, found=selection.workspace.fit(rest)), finer

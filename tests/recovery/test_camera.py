@@ -1,0 +1,45 @@
+"""What the motion capture does to its poses is told by their noise, whatever else is wrong."""
+
+import numpy as np
+import pytest
+
+from flown import observed
+from rovsim.diagnosis.observer.camera import find_smoothing
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.model_file import EffectEntry
+from rovsim.simulation.synthetic_tank.settings import Camera
+
+LAG = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.3})
+
+
+@pytest.mark.parametrize("cutoff", [3.0, 6.0, 12.0])
+def test_a_filter_in_the_software_is_found_by_the_noise(tmp_path, cutoff):
+    hidden = (LAG, EffectEntry(effect="pose_filter", parameters={"cutoff": cutoff}))
+    base, runs = observed(tmp_path, duration=30.0, effects=hidden)
+    found = find_smoothing(base, runs)
+    assert found is not None
+    assert abs(found.cutoff - cutoff) < max(4.0 * found.std, 0.05 * cutoff)
+    assert find_smoothing(base + PoseFilter(cutoff=cutoff), runs) is None  # nothing is left to find
+
+
+@pytest.mark.parametrize("colour", [0.0, 0.3e-3])
+def test_cameras_that_do_not_smooth_are_not_said_to(tmp_path, colour):
+    camera = Camera(colour_noise=colour, colour_attitude=3.0 * colour)
+    base, runs = observed(tmp_path, duration=30.0, effects=(LAG,), camera=camera)
+    assert find_smoothing(base, runs) is None
+
+
+def test_a_slow_error_of_the_cameras_is_told_from_noise_and_from_turbulence(tmp_path):
+    levels = []
+    for colour in (0.0, 1.0e-3):
+        camera = Camera(colour_noise=colour, colour_attitude=0.0)
+        base, runs = observed(tmp_path / str(colour), duration=60.0, camera=camera)
+        bank = FilterBank.design(runs, base, FIRST_NOISE)
+        e = [one[0] for one in bank.evaluate([base])]
+        noise, _ = bank.fit_noise(e, FIRST_NOISE, colour=True)
+        levels.append(noise.colour)
+    assert np.all(levels[0][3:] == 0.0)
+    assert np.count_nonzero(levels[0]) <= 1
+    assert np.median(levels[1][:3]) == pytest.approx(1.0e-3, rel=0.4)
