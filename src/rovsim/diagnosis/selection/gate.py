@@ -131,10 +131,11 @@ def _ratio(error: Array, other: Array) -> float:
 
 def _compare(error: Array, other: Array) -> float:
     """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure."""
-    with np.errstate(invalid="ignore", over="ignore"):
-        less = np.nan_to_num(error - other, nan=np.inf)
-    mean, sure = float(np.mean(less)), float(np.std(less)) / np.sqrt(len(less))
-    if not np.isfinite(mean):
+    if not np.isfinite(other).all():
+        return 0.0
+    if not np.isfinite(error).all():
         return np.inf
+    less = error - other
+    mean, sure = float(np.mean(less)), float(np.std(less)) / np.sqrt(len(less))
     share = 1.0 - _ratio(other, error)
     return share if share > WORSE and mean > CERTAIN * sure else 0.0

@@ -1,0 +1,67 @@
+"""The gate: stretches kept apart are apart, and only what is sure counts."""
+
+import numpy as np
+import pytest
+
+from flown import observed
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.windows import Windows
+from rovsim.diagnosis.selection.gate import Gate, _compare, keep_apart
+from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
+
+
+def test_no_reading_is_on_both_sides(tmp_path):
+    _, runs = observed(tmp_path, duration=60.0)
+    (chosen,), (held,) = keep_apart(runs)
+    assert not np.any(chosen.motion.usable & held.motion.usable)
+    ends = [set(run.sample[a] for a, b in run.spans for a in range(a, b)) for run in (chosen, held)]
+    assert not ends[0] & ends[1]
+    seconds = [run.settled.sum() * run.period for run in (chosen, held)]
+    assert seconds[1] / sum(seconds) == pytest.approx(0.2, abs=0.06)
+
+
+def test_short_runs_are_used_whole(tmp_path):
+    _, runs = observed(tmp_path, duration=20.0)
+    chosen, held = keep_apart(runs)
+    assert chosen == runs
+    assert held == []
+
+
+def test_only_what_is_sure_and_matters_is_less():
+    error = np.linspace(0.5, 1.5, 20)
+    assert _compare(error, 0.5 * error) == pytest.approx(1.0 - np.sqrt(0.5))
+    assert _compare(error, 0.99 * error) == 0.0  # too little
+    uneven = error * np.where(np.arange(20) == 3, 1.0, 0.0)
+    assert _compare(error + 20.0 * uneven, error) == 0.0  # a single window
+    assert _compare(np.full(20, np.inf), error) == np.inf
+    assert _compare(error, np.full(20, np.nan)) == 0.0
+
+
+class Workspace:
+    """Fits nothing: hypotheses as they are."""
+
+    def fit(self, h):
+        return Found(h)
+
+
+class Found:
+    def __init__(self, h):
+        self.hypothesis = h
+
+
+def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
+    truth = [{"effect": "quadratic_damping", "parameters": {"surge": {"value": 120.0}}}]
+    base, runs = observed(tmp_path, duration=60.0, effects=truth)
+    _, held = keep_apart(runs)
+    right = Term(QuadraticDamping(surge=120.0), ("surge",))
+    wrong = Term(LinearDamping(sway=150.0), ("sway",))
+    selection = Selection(Workspace(), Found(Hypothesis(base, (right, wrong))), (), True)
+    passed, whole = Gate(held, runs).judge(selection)
+    assert [t.id for t in passed.found.hypothesis.terms] == ["quadratic_damping"]
+    assert not whole
+    alone = Selection(Workspace(), Found(Hypothesis(base, (wrong,))), (), True)
+    passed, whole = Gate(held, runs).judge(alone)
+    assert passed.found.hypothesis.terms == ()
+    assert not whole
+    assert Windows(held[0]).spans
