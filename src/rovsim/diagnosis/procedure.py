@@ -7,7 +7,7 @@ search          add, refit, swap, prune; against what chance gives to the best o
 held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows
 gate            it must replay stretches well that took no part in choosing
 structure       what is left, and no candidate explains
-joint fit       where there is some: all that could be wrong together, pruned; the likelier wins
+joint fit       where there is some: all that could be wrong together, pruned; it competes
 replay fit      where there is some: values that replay best, rather than foresee the next reading
 test runs       opened once, for the errors that are reported
 """
@@ -129,12 +129,15 @@ def _diagnose(
     selection = drop_idle(search(workspace, nothing, seed))
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
-    found = _settle(selection, usable, apart)
+    gate = Gate(apart, usable.runs)
+    found = _settle(selection, usable, gate)
     stage("checking")
     if found.structures:
         seen = seen_through(base, smoothing)
-        joint = _settle(fit_jointly(workspace, seen, usable.moved), usable, apart)
-        found = found if found.score >= joint.score else joint
+        joint = _settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
+        # neither is complete, so that what a likelihood takes for noise is physics
+        better = gate.prefers(found.selection, joint.selection)
+        found = found if better or (better is None and found.score >= joint.score) else joint
     rivals = found.selection.named_rivals
     selected = rank_selected(base, found.fit, rivals, usable.runs)
     if smoothing:
@@ -173,9 +176,8 @@ class _Settled:
     structures: Sequence[Structure]
 
 
-def _settle(selection: Selection, usable: UsableRuns, apart: Sequence[ObservedRun]) -> _Settled:
+def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
     """What passes the gate, at its final values on all runs, and all that it leaves unexplained."""
-    gate = Gate(apart, usable.runs)
     selection, whole = gate.judge(selection)
     found, bank = _polish(selection, usable.runs)
     if find_structure(found, bank):

@@ -21,7 +21,7 @@ class SearchSettings(Section):
     false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.01
     draws: PositiveInt = 1000  # of noise alone, for the best gain by chance
     trials: PositiveInt = 3
-    most_effects: PositiveInt = 20
+    most_effects: PositiveInt = 12
     relevant: Annotated[float, Field(ge=0)] = 0.02
 
 

@@ -17,6 +17,7 @@ from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
 SWAP = 1.0  # in twice the log likelihood: less is not worth another name
+SLIGHT = 0.01  # of what the last addition gained: while more is sought, less is not worth a swap
 # In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
 # thirty times, against a coefficient of a file that is known to be off.
 FILE_ODDS = 13.8
@@ -92,16 +93,21 @@ def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Mode
     return np.max(rmse[1:] / rmse[0], axis=1) - 1.0 > workspace.settings.relevant
 
 
-def contest(workspace: SearchWorkspace, current: Fit, trials: int) -> tuple[Fit, list[Rival]]:
-    """Replace any one term by another effect while that is more likely; then what comes close."""
+def contest(
+    workspace: SearchWorkspace, current: Fit, trials: int, swap: float = SWAP
+) -> tuple[Fit, list[Rival]]:
+    """Replace any one term by another effect while that is more likely; then what comes close.
+
+    `swap`: by how much more, in twice the log likelihood.
+    """
     rivals = []
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in _list_others(workspace, rest, term.id, trials):
             trial = workspace.fit(rest.hypothesis.with_term(p.term))
             deficit = workspace.score(current) - workspace.score(trial)
-            if deficit < -SWAP:
-                return contest(workspace, prune(workspace, trial), trials)
+            if deficit < -swap:
+                return contest(workspace, prune(workspace, trial), trials, swap)
             rivals.append(Rival(p.term.id, term.id, deficit))
     return current, rivals
 
@@ -156,10 +162,12 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
         found = add_best(workspace, current, workspace.chance_limit(current, seed))
         if found is None:
             break
+        gained = workspace.score(found) - workspace.score(current)
         workspace = workspace.renew(found)
         again = workspace.fit(found.hypothesis)
-        current, _ = contest(workspace, again, 1)  # the likeliest other name
-    current, _ = contest(workspace, current, settings.trials)
+        swap = max(SWAP, SLIGHT * gained)
+        current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
+    current, _ = contest(workspace, current, 1)
     current = prefer_file(workspace, current)
     current, rivals = contest(workspace, current, settings.trials)
     return Selection(workspace, current, tuple(rivals), complete=True)

@@ -67,6 +67,13 @@ class Gate:
             found = selection.workspace.fit(base)
         return replace(selection, found=found), found is selection.found
 
+    def prefers(self, one: Selection, other: Selection) -> bool | None:
+        """Whether the first replays better; None where nothing was kept apart."""
+        if not self.runs:
+            return None
+        errors = self._errors([own.found.hypothesis.model for own in (one, other)])
+        return _ratio(errors[0], errors[1]) <= 1.0
+
     def keep_earning(self, selection: Selection) -> Selection:
         """Where physics is left that no name explains: only what makes a difference there.
 
