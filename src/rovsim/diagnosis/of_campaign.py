@@ -3,8 +3,11 @@
 from dataclasses import dataclass
 from typing import Callable
 
+import numpy as np
+
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_runs
+from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
 from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -22,8 +25,6 @@ from rovsim.simulation.replay import replay
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
-
-CHANCE = 0.1  # by which a floor, itself drawn by chance, may lie above what was reached
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +89,8 @@ def _floor(
     floor = simulate_noise_floor(
         found.models()[-1], test, found.fit.noise, settings.signals, settings.seed,
     )  # fmt: skip
-    if floor is None or floor > (1.0 + CHANCE) * reached:
+    # what was reached is itself chance: of a mean square over w windows, sqrt(2 / w), of its root half
+    chance = 1.0 / np.sqrt(2.0 * sum(len(Windows(run).spans) for run in test))
+    if floor is None or floor > (1.0 + chance) * reached:
         return None
     return min(floor, reached)
