@@ -89,7 +89,7 @@ def _floor(
     floor = simulate_noise_floor(
         found.models()[-1], test, found.fit.noise, settings.signals, settings.seed,
     )  # fmt: skip
-    # what was reached is itself chance: of a mean square over w windows, sqrt(2 / w), of its root half
+    # what was reached is itself drawn by chance: a root mean square of w windows
     chance = 1.0 / np.sqrt(2.0 * sum(len(Windows(run).spans) for run in test))
     if floor is None or floor > (1.0 + chance) * reached:
         return None
