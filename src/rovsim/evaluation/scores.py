@@ -52,7 +52,10 @@ def pool(parts: Sequence[Errors]) -> Errors:
 
 def rms(x: Array) -> Array:
     """Root mean square over the first axis; NaN where there is nothing."""
-    return np.sqrt(np.mean(np.square(x), axis=0)) if len(x) else np.full(x.shape[1:], np.nan)
+    if not len(x):
+        return np.full(x.shape[1:], np.nan)
+    with np.errstate(over="ignore"):  # of a model that diverged: infinite
+        return np.sqrt(np.mean(np.square(x), axis=0))
 
 
 def mean_absolute(x: Array) -> Array:

@@ -18,6 +18,7 @@ from rovsim.dynamics.model import Model
 ROUNDS = 3  # of trials, when none of the first matters
 SWAP = 1.0  # in twice the log likelihood: less is not worth another name
 SLIGHT = 0.01  # of what the last addition gained: while more is sought, less is not worth a swap
+PROMISING = 0.5  # of what a term explains: another name may do better than it promises, not twice
 # In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
 # thirty times, against a coefficient of a file that is known to be off.
 FILE_ODDS = 13.8
@@ -98,16 +99,20 @@ def contest(
 ) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close.
 
+    Names that promise less than half of what the term explains are not refitted.
+
     `swap`: by how much more, in twice the log likelihood.
     """
     rivals = []
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in _list_others(workspace, rest, term.id, trials):
-            trial = workspace.fit(rest.hypothesis.with_term(p.term))
-            deficit = workspace.score(current) - workspace.score(trial)
-            if deficit < -swap:
-                return contest(workspace, prune(workspace, trial), trials, swap)
+            deficit = rest.loss - workspace.price * len(term.free) - p.gain
+            if p.gain > PROMISING * rest.loss:
+                trial = workspace.fit(rest.hypothesis.with_term(p.term))
+                deficit = workspace.score(current) - workspace.score(trial)
+                if deficit < -swap:
+                    return contest(workspace, prune(workspace, trial), trials, swap)
             rivals.append(Rival(p.term.id, term.id, deficit))
     return current, rivals
 
@@ -115,10 +120,8 @@ def contest(
 def _list_others(
     workspace: SearchWorkspace, rest: Removed, name: str, trials: int
 ) -> list[Proposal]:
-    """Other names for what a term took: one where it could win, or several to report."""
+    """The likeliest other names for what a term took."""
     ranked = [p for p in workspace.propose_instead(rest) if p.gain > 0.0 and p.term.id != name]
-    if trials == 1:
-        return [p for p in ranked[:1] if p.gain > CLOSE * rest.loss]
     return keep_close(ranked, trials)
 
 
