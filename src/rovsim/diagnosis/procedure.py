@@ -180,13 +180,13 @@ def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
     """What passes the gate, at its final values on all runs, and all that it leaves unexplained."""
     selection, whole = gate.judge(selection)
     found, bank = _polish(selection, usable.runs)
-    if find_structure(found, bank):
-        fewer = gate.keep_earning(selection)
-        if fewer.found is not selection.found:
-            selection = fewer
-            found, bank = _polish(selection, usable.runs)
-    score = found.likelihood - selection.workspace.price * len(found.hypothesis.x)
     structures = find_structure(found, bank)
+    fewer = gate.keep_earning(selection) if structures else selection
+    if fewer.found is not selection.found:
+        selection = fewer
+        found, bank = _polish(selection, usable.runs)
+        structures = find_structure(found, bank)
+    score = selection.workspace.score(found)
     if not whole and not structures:
         structures = [REFUSED]
     if structures and found.hypothesis.terms:

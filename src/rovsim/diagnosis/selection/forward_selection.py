@@ -12,7 +12,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival, Selection
-from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
@@ -106,7 +106,8 @@ def contest(
     rivals = []
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
-        for p in _list_others(workspace, rest, term.id, trials):
+        others = [p for p in rest.others if p.gain > 0.0 and p.term.id != term.id]
+        for p in keep_close(others, trials):
             deficit = rest.loss - workspace.price * len(term.free) - p.gain
             if p.gain > PROMISING * rest.loss:
                 trial = workspace.fit(rest.hypothesis.with_term(p.term))
@@ -117,27 +118,18 @@ def contest(
     return current, rivals
 
 
-def _list_others(
-    workspace: SearchWorkspace, rest: Removed, name: str, trials: int
-) -> list[Proposal]:
-    """The likeliest other names for what a term took."""
-    ranked = [p for p in workspace.propose_instead(rest) if p.gain > 0.0 and p.term.id != name]
-    return keep_close(ranked, trials)
-
-
 def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     """Without effects that the vehicle file, where it is off anyway, explains about as well.
 
     Such a file is off everywhere, much of it too little to be found; a special effect is seldom
     there. What the file leaves unfound may favour a special name by chance.
     """
-    names = [term.id for term in current.hypothesis.terms]
-    if not set(names) & set(STATED):
+    terms = current.hypothesis.terms
+    if not any(term.id in STATED for term in terms):
         return current
-    for name, rest in zip(names, workspace.remove_each(current), strict=True):
-        free = len(current.hypothesis.x) - len(rest.hypothesis.x)
-        limit = workspace.price * free + FILE_ODDS
-        if name in STATED or workspace.loss_beside_file(rest) > limit:
+    for term, rest in zip(terms, workspace.remove_each(current), strict=True):
+        limit = workspace.price * len(term.free) + FILE_ODDS
+        if term.id in STATED or workspace.loss_beside_file(rest) > limit:
             continue
         fewer = prune(workspace, _add_from_file(workspace, workspace.fit(rest.hypothesis)))
         if workspace.score(fewer) > workspace.score(current) - FILE_ODDS:

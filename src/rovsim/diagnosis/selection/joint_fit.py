@@ -31,7 +31,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
     """The likeliest of all joint fits, pruned; the other ways to act are its rivals.
 
     Args:
-        workspace: where the search one by one ended.
+        workspace: of the model that is diagnosed.
         base: the model that is diagnosed.
         moved: axes about which something can be said.
     """

@@ -24,8 +24,8 @@ class Rival:
 class Selection:
     """What a search found, its rivals, and the workspace as it was then.
 
-    `complete`: nothing could be added, swapped or taken away. If not, more is missing than effects
-    found one by one can name, and what was found is not to be named.
+    `complete`: found one by one, each sure beside the others. If not, all that could be wrong was
+    fitted at once, and what acts only together is kept near where it began.
     """
 
     workspace: SearchWorkspace

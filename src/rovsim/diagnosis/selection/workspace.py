@@ -27,12 +27,14 @@ from rovsim.diagnosis.settings import SearchSettings
 class Removed:
     """A hypothesis without one of its terms, judged to first order.
 
-    `products` (1 + c, 1 + c) as of `SearchWorkspace`; `loss`: increase of the sum of squares.
+    `products` (1 + c, 1 + c) as of `SearchWorkspace`; `loss`: increase of the sum of squares;
+    `others`: all candidates for what the term took, best first.
     """
 
     hypothesis: Hypothesis
     products: Array
     loss: float
+    others: list[Proposal]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,7 @@ class SearchWorkspace:
     settings: SearchSettings
     _fitted: dict[tuple, Fit] = field(default_factory=dict)
     _proposed: dict[tuple, list[Proposal]] = field(default_factory=dict)
+    _removed: dict[tuple, list[Removed]] = field(default_factory=dict)
 
     def renew(self, current: Fit) -> "SearchWorkspace":
         """The workspace whose filters and noise suit what is now known to act."""
@@ -95,7 +98,16 @@ class SearchWorkspace:
         return project_out(M, range(1, len(own)))[np.ix_(kept, kept)]
 
     def remove_each(self, current: Fit) -> list[Removed]:
-        """The current hypothesis without each of its terms, the others refitted to first order."""
+        """The current hypothesis without each of its terms, the others refitted to first order.
+
+        Made once, as one contest follows the other.
+        """
+        key = current.hypothesis.key
+        if key not in self._removed:
+            self._removed[key] = self._remove_each(current)
+        return self._removed[key]
+
+    def _remove_each(self, current: Fit) -> list[Removed]:
         h = current.hypothesis
         fewer = [h.without(i) for i in range(len(h.terms))]
         e = self.bank.evaluate([one.model for one in fewer])
@@ -104,8 +116,14 @@ class SearchWorkspace:
             J = [np.delete(all_, own, axis=0) for all_ in current.seen.J]
             seen = Linearised(one, [run[i] for run in e], J)
             M = self.products(seen)
-            found.append(Removed(one, M, float(M[0, 0]) - left))
+            found.append(Removed(one, M, float(M[0, 0]) - left, self._rank(M)))
         return found
+
+    def _rank(self, products: Array) -> list[Proposal]:
+        """All candidates, best first; none where the observer cannot hold the model."""
+        if not np.isfinite(products).all():
+            return []
+        return rank_proposals(products, self.sensitivities.blocks, self.price)
 
     @cached_property
     def file_columns(self) -> tuple[list[int], Array]:
@@ -128,12 +146,6 @@ class SearchWorkspace:
         H, b = rest.products[np.ix_(own, own)], rest.products[own, 0]
         return rest.loss - float(b @ solve(H + np.diag(spread**-2.0), b))
 
-    def propose_instead(self, rest: Removed) -> list[Proposal]:
-        """All candidates for what a term took, best first."""
-        if not np.isfinite(rest.products).all():
-            return []
-        return rank_proposals(rest.products, self.sensitivities.blocks, self.price)
-
     def propose(self, current: Fit) -> list[Proposal]:
         """All candidates, best first, judged to first order on top of what is there; made once.
 
@@ -143,9 +155,7 @@ class SearchWorkspace:
             return []
         key = current.hypothesis.key
         if key not in self._proposed:
-            products = self.products(current.seen)
-            blocks = self.sensitivities.blocks
-            self._proposed[key] = rank_proposals(products, blocks, self.price)
+            self._proposed[key] = self._rank(self.products(current.seen))
         return self._proposed[key]
 
     def chance_limit(self, current: Fit, seed: int) -> float:
