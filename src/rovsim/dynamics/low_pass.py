@@ -46,6 +46,12 @@ class LowPass:
             x = _lag(x, begin, *(_weigh_lines if straight else _weigh_samples)(dt / T))
         return x
 
+    def pass_power(self, frequency: Array, dt: float) -> Array:
+        """Share (f,) of the power at each frequency (f,) Hz that leaves the last stage."""
+        a = np.exp(-dt / np.array(self.time_constants))[:, None]
+        turn = np.cos(2.0 * np.pi * frequency * dt)
+        return np.asarray(np.prod((1.0 - a) ** 2 / (1.0 - 2.0 * a * turn + a * a), axis=0))
+
     def stages(self, y: Array, dt: float) -> Array:
         """What entered the first stage, and what left each (stages + 1, n, c), of outputs (n, c).
 

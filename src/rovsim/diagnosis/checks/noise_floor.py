@@ -80,7 +80,7 @@ class _PerfectModel:
         if run.motion.binned:
             state[:, 7:] += reading * self.random.normal(size=(len(state), 6))
             return state
-        period = run.period / run.group
+        period = run.frame_period
         pad = round(PAD / period)
         # as noisy as a single frame: readings are means of a group
         kicks = np.sqrt(run.group) * reading * self.random.normal(size=(len(state) + 2 * pad, 6))

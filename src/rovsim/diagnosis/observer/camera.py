@@ -16,6 +16,8 @@ from scipy.signal import welch
 
 from rovsim.core.rotations import body_rates
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.model import Model
 
 LOWEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
@@ -51,10 +53,9 @@ class _Spectrum:
     period: float
 
     def response(self, cutoff: float) -> Array:
-        """Power (f,) that two equal first-order low-passes let through."""
-        a = np.exp(-2.0 * np.pi * cutoff * self.period)
-        turn = np.cos(2.0 * np.pi * self.frequency * self.period)
-        return ((1.0 - a) ** 2 / (1.0 - 2.0 * a * turn + a * a)) ** 2
+        """Power (f,) that the filter lets through."""
+        low_pass = LowPass(PoseFilter(cutoff=cutoff).time_constants())
+        return low_pass.pass_power(self.frequency, self.period)
 
     def cost(self, cutoff: float | None) -> float:
         """Negative log likelihood of noise that was smoothed; None: of noise that was not."""
@@ -101,7 +102,7 @@ def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None
 
 def _measure(base: Model, run: ObservedRun) -> list[_Spectrum]:
     """Spectra of the noise of a run's frames, from its longest stretch."""
-    motion, period = run.motion, run.period / run.group
+    motion, period = run.motion, run.frame_period
     a, b = max(motion.segments(), key=lambda one: one[1] - one[0], default=(0, 0))
     length = round(SEGMENT / period)
     if b - a < 2 * length or 0.5 / period < 2.0 * LOWEST:

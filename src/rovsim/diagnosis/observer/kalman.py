@@ -48,7 +48,8 @@ class AxisFilter:
     @property
     def decay(self) -> float:
         """What remains of the disturbance after one period."""
-        return -float(self.forgets[1]) if len(self.forgets) == 2 else float(self.F[2, 2])
+        place = min(2, len(self.C) - 1)  # behind velocity, and the pose where it is read
+        return float(self.F[place, place])
 
     def whitening(self, old: "AxisFilter") -> tuple[Array, Array]:
         """Rational filter (b, a) that turns innovations of the filter `old` into this one's."""

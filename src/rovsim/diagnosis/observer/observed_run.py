@@ -39,8 +39,8 @@ class ObservedRun:
     `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
     velocities were measured; `group` of them, an odd number, make a reading, which holds at step
     `ends` (k,) of the observer. Its steps are `edges` (s+1,) s; over each of their `parts` the
-    thrust is steady. `spans` pairs (first, last) of readings: the observer starts at `first`, at
-    the state of that sample, and reads up to `last`. `between` two lines of the log, commands are
+    thrust is steady. It starts at the first reading of each of the `spans`, at the state of that
+    sample, and reads up to the last. `between` two lines of the log, commands are
     held or joined; `wrenches` are those of the one engine that serves all models of a diagnosis.
     """
 
@@ -52,14 +52,21 @@ class ObservedRun:
     ends: Array
     edges: Array
     parts: int
-    spans: tuple[tuple[int, int], ...]
     between: Between
     wrenches: tuple[type[Wrench], ...]
 
     def limited(self, kept: Array) -> "ObservedRun":
         """The same run of which only some samples or bins (n,) are usable."""
-        motion = replace(self.motion, usable=self.motion.usable & kept)
-        return replace(self, motion=motion, spans=_find_spans(motion, self.group))
+        return replace(self, motion=replace(self.motion, usable=self.motion.usable & kept))
+
+    @cached_property
+    def spans(self) -> tuple[tuple[int, int], ...]:
+        """First and last reading of every usable stretch that is long enough."""
+        return tuple(
+            (-(-a // self.group), b // self.group - 1)
+            for a, b in self.motion.segments()
+            if _lasts(self.motion, a, b)
+        )
 
     @cached_property
     def drives(self) -> Drives:
@@ -90,7 +97,7 @@ class ObservedRun:
         return self._read(NO_CHANGE)
 
     def _read(self, view: MocapView) -> Array:
-        period = self.period / self.group
+        period = self.frame_period
         sharp = np.hstack([view.sharpen(self.frames[:, :7], period), self.frames[:, 7:]])
         frames = view.states(sharp)
         if self.group == 1:
@@ -113,6 +120,11 @@ class ObservedRun:
     def period(self) -> float:
         """Mean time between two readings, s."""
         return float((self.ends[-1] - self.ends[0]) * self.h / (len(self.ends) - 1))
+
+    @property
+    def frame_period(self) -> float:
+        """Mean time between two frames, s."""
+        return self.period / self.group
 
     @cached_property
     def rows(self) -> Array:
@@ -191,8 +203,7 @@ def _observe_bins(
     """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
     at = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
     frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
-    spans = _find_spans(motion, 1)
-    return ObservedRun(motion, grid, at, frames, 1, at, grid.edges, 1, spans, between, wrenches)
+    return ObservedRun(motion, grid, at, frames, 1, at, grid.edges, 1, between, wrenches)
 
 
 def _observe_samples(
@@ -212,24 +223,15 @@ def _observe_samples(
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
     return ObservedRun(
         motion, grid, np.arange(count) * grid.stride, frames, group,
-        np.arange(readings) * steps, edges, parts, _find_spans(motion, group), between, wrenches,
+        np.arange(readings) * steps, edges, parts, between, wrenches,
     )  # fmt: skip
 
 
-def _find_spans(motion: Motion, group: int) -> tuple[tuple[int, int], ...]:
-    """First and last reading of every usable stretch that is long enough."""
+def _lasts(motion: Motion, a: int, b: int) -> bool:
+    """Whether the stretch from sample or bin a to b - 1 is long enough."""
     if motion.binned:
-        return tuple(
-            (a, b - 1)
-            for a, b in motion.segments()
-            if motion.time[b - 1] - motion.time[a] > SHORTEST
-        )
-    period = float(motion.time[1] - motion.time[0])
-    return tuple(
-        (-(-a // group), b // group - 1)
-        for a, b in motion.segments()
-        if (b - a) * period > SHORTEST
-    )
+        return bool(motion.time[b - 1] - motion.time[a] > SHORTEST)
+    return bool((b - a) * (motion.time[1] - motion.time[0]) > SHORTEST)
 
 
 def number_blocks(runs: Sequence[ObservedRun]) -> Array:

@@ -36,7 +36,7 @@ def absorb_delay(
     if k is None:
         return selection, smoothing
     delay, column = h.terms[k].effect["delay"], h.columns[k][0]
-    T = 1.0 / (2.0 * np.pi * smoothing.cutoff)
+    T, *_ = PoseFilter(cutoff=smoothing.cutoff).time_constants()
     if abs(delay) > OPEN * 2.0 * T * smoothing.std / smoothing.cutoff:
         return selection, smoothing
     cutoff = float(1.0 / (2.0 * np.pi * (T + 0.5 * delay)))
