@@ -84,8 +84,7 @@ class Study:
         """Raw files: of one run, with the campaign file, or all that the tank writes."""
         if isinstance(self.campaign, Campaign):
             one = self.campaign.run(run)
-            paths = [self.campaign.mocap_path(one), self.campaign.commands_path(one)]
-            return [str(self.campaign.file), *dict.fromkeys(str(path) for path in paths)]
+            return [str(self.campaign.file), *map(str, self.campaign.raw_files(one))]
         runs = [r for r in self.campaign.runs if run in ("", r.id)]
         files = [name for r in runs for name in (r.mocap, r.commands)]
         extra = [] if run else [SEALED]

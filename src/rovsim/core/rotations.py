@@ -25,6 +25,11 @@ def axes_signs(axes: WorldAxes | BodyAxes) -> Array:
     return HALF_TURN_X if axes in ("z_up", "flu") else np.ones(3)
 
 
+def half_turn(signs: Array) -> Array:
+    """Quaternion (4,) of the rotation diag(signs): none, or a half turn about x."""
+    return np.array([1.0, 0, 0, 0]) if signs[1] > 0 else np.array([0.0, 1, 0, 0])
+
+
 def multiply(a: Array, b: Array) -> Array:
     """Hamilton product of quaternions (..., 4)."""
     aw, ax, ay, az = np.moveaxis(a, -1, 0)

@@ -24,6 +24,7 @@ class Commands:
 
     `time` (m,) in s on the MoCap clock, increasing. `value` (m, c): thruster commands in [-1, 1]
     (`thruster`), demands per axis in [-1, 1] (`demand`) or a body wrench in N, N m (`wrench`).
+    Without lines (m = 0) nothing was commanded: free decay, towing, drifting.
     """
 
     time: Array

@@ -135,7 +135,9 @@ class ThrustPath:
 
 
 def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
-    """Values (m, c) logged at `time`, at the instants `at`."""
+    """Values (m, c) logged at `time`, at the instants `at`; zero where nothing was commanded."""
+    if not len(time):
+        return np.zeros((len(at), value.shape[1]))
     if between == "held":
         return value[np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)]
     return np.stack([np.interp(at, time, column) for column in value.T], axis=1)

@@ -15,6 +15,7 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_yaml
 from rovsim.core.rotations import BodyAxes, WorldAxes, axes_signs
 from rovsim.core.schema import Section, checked
+from rovsim.measurement.sensors import Sensors
 
 
 def _as_text(value: Any) -> Any:
@@ -59,12 +60,18 @@ class Tank(Section):
 
 
 class Mocap(Section):
-    """How the poses were exported; `body` is the rigid body (or topic) to read."""
+    """How the motion was exported; `body` is the rigid body (or topic) to read.
+
+    `velocity`: whether body velocities beside poses are means from this line to the next, or hold
+    at the line's time.
+    """
 
     format: str
     body: Annotated[str, BeforeValidator(_as_text)] = ""
     world_axes: WorldAxes
     body_axes: BodyAxes
+    velocity: Literal["mean", "instant"] = "mean"
+    sensors: Sensors = Sensors()
 
 
 class CommandLog(Section):
@@ -92,13 +99,21 @@ class CommandLog(Section):
 
 
 class Run(Section):
-    """One run: its files, relative to the folder of the recordings."""
+    """One run: its files, relative to the folder of the recordings.
+
+    `commands` is `none` where nothing was commanded (free decay, towing, drifting).
+    """
 
     id: FileName
     control: Literal["3dof", "6dof"]
     split: Literal["train", "test"]
     mocap: Text
     commands: Text
+
+    @property
+    def commanded(self) -> bool:
+        """Whether there is a log of commands."""
+        return self.commands != "none"
 
 
 class CampaignFile(Section):
@@ -108,7 +123,7 @@ class CampaignFile(Section):
     vehicle: Text
     tank: Tank | None = None
     mocap: Mocap
-    commands: CommandLog
+    commands: CommandLog | None = None  # not needed where no run has commands
     runs: Annotated[list[Run], Field(min_length=1)]
     folder: str = ""  # where the recordings lie when they are not beside this file
     source: str = ""  # where to get them, told when they are missing
@@ -125,7 +140,7 @@ class Campaign:
     vehicle: str
     tank: Tank | None
     mocap: Mocap
-    commands: CommandLog
+    commands: CommandLog | None
     runs: tuple[Run, ...]
     file: Path
     folder: Path
@@ -152,8 +167,14 @@ class Campaign:
         return self.folder / run.mocap
 
     def commands_path(self, run: Run) -> Path:
-        """Absolute path of the run's commands."""
+        """Absolute path of the commands of a run that has any."""
         return self.folder / run.commands
+
+    def raw_files(self, run: Run) -> list[Path]:
+        """Files that hold the run, each once; of a folder (a bag) those in it."""
+        paths = [self.mocap_path(run), *([self.commands_path(run)] if run.commanded else [])]
+        inside = [sorted(p.iterdir()) if p.is_dir() else [p] for p in paths]
+        return list(dict.fromkeys(path for files in inside for path in files))
 
     def tank_ned(self) -> np.ndarray:
         """Low and high walls (3, 2) in NED m, NaN where unknown."""
@@ -174,7 +195,7 @@ def load_campaign(path: Path) -> Campaign:
     file = _campaign_file(Path(path).expanduser()).absolute()
     content = checked(CampaignFile, read_yaml(file), file)
     _check_ids(content.runs, file)
-    _check_columns(content.commands, file)
+    _check_commands(content, file)
     fields = dict(content) | {"runs": tuple(content.runs), "folder": _folder(content.folder, file)}
     campaign = Campaign(file=file, **fields)
     _check_files(campaign)
@@ -208,10 +229,19 @@ def _check_ids(runs: list[Run], file: Path) -> None:
         seen[key] = run.id
 
 
-def _check_columns(commands: CommandLog, file: Path) -> None:
-    if commands.per_axis and len(commands.axes) != len(commands.columns):
+def _check_commands(content: CampaignFile, file: Path) -> None:
+    log = content.commands
+    commanded = [run.id for run in content.runs if run.commanded]
+    if log is None and commanded:
         raise BadInput(
-            f"'commands.columns' names {len(commands.columns)} columns for kind {commands.kind}",
+            f"'commands' is missing, and run '{commanded[0]}' has commands",
+            where=file,
+            expected="'commands' with format, kind and columns",
+            remedy="Add it, or write 'commands: none' in each run in which nothing was commanded.",
+        )
+    if log is not None and log.per_axis and len(log.axes) != len(log.columns):
+        raise BadInput(
+            f"'commands.columns' names {len(log.columns)} columns for kind {log.kind}",
             where=file,
             expected=f"columns named after the axes, or six in the order {', '.join(AXES)}",
             remedy="List all six columns, or name them after their axes.",
@@ -241,8 +271,8 @@ def _check_files(campaign: Campaign) -> None:
     missing = [
         (key, run.id, path)
         for run in campaign.runs
-        for key in ("mocap", "commands")
-        if not (path := campaign.folder / getattr(run, key)).is_file()
+        for key in ("mocap", "commands")[: 1 + run.commanded]
+        if not (path := campaign.folder / getattr(run, key)).exists()
     ]
     if not missing:
         return

@@ -1,17 +1,25 @@
 """How good a recording is: rate, gaps, repairs, excitation, noise, and what to do about it."""
 
-from dataclasses import asdict
-
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
-from rovsim.measurement.recording.reading import Anomalies, measured_rate
+from rovsim.measurement.recording.channels import KINDS
+from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.remarks import remark
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
-from rovsim.results.quality import CommandLog, Excitation, Gap, PoseNoise, Quality, Rate
+from rovsim.results.quality import (
+    CommandLog,
+    Excitation,
+    Gap,
+    MeasuredChannel,
+    PoseNoise,
+    Quality,
+    Rate,
+)
 
 GAP = 0.05  # s; shorter ones are bridged by any resampling
 SHORTEST_RUN = 2.0  # s; one scoring window (contract, section 3)
@@ -26,7 +34,7 @@ EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard
 
 def report_quality(recording: Recording, anomalies: Anomalies, settings: Outliers) -> Quality:
     """What `quality/RUN.json` holds; outliers of binned velocities are not looked for."""
-    if recording.nu is not None:
+    if recording.nu is not None or not recording.posed:
         return assess(recording, anomalies)
     return assess(recording, anomalies, int(find_outliers(recording, settings).sum()))
 
@@ -45,22 +53,31 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         rate_hz=Rate(nominal=recording.rate, median=measured_rate(time)),
         duration_s=float(time[-1] - time[0]),
         frames=len(time),
-        not_found=int(np.sum(~found)),
+        not_found=int(np.sum(~found)) if recording.posed else 0,
         longest_gap_s=max((gap.duration_s for gap in gaps), default=0.0),
         gaps=tuple(gaps),
         outliers=outliers,
-        repairs=asdict(anomalies),
+        repairs=anomalies.counts,
         commands=_describe_commands(recording),
-        excitation=measure_excitation(recording),
+        excitation=measure_excitation(recording) if recording.posed else {},
         noise=measure_noise(recording),
         unusable=usable_reason(recording),
+        channels=_describe_channels(recording),
     )
-    return report.model_copy(update={"remarks": tuple(remark(report))})
+    remarks = [*remark(report), *anomalies.notes]
+    return report.model_copy(update={"remarks": tuple(remarks)})
 
 
 def usable_reason(recording: Recording) -> str | None:
-    """Say why a recording cannot be used, or None when it can."""
+    """Say why a recording cannot be used, or None when it can.
+
+    Where no full poses were measured only its length is looked at.
+    """
     found = recording.found
+    if not recording.posed:
+        length = float(np.ptp(recording.time))
+        short = f"too short: it lasts {length:.2f} s, {SHORTEST_RUN:g} needed"
+        return short if length < SHORTEST_RUN else None
     seen = float(np.sum(found)) / recording.rate
     duration = float(np.ptp(recording.time[found])) if found.any() else 0.0
     if min(seen, duration) < SHORTEST_RUN:
@@ -128,8 +145,27 @@ def measure_noise(recording: Recording) -> PoseNoise:
     return PoseNoise(position_m=_robust_std(moved), attitude_rad=_robust_std(turned))
 
 
-def _describe_commands(recording: Recording) -> CommandLog:
+def _describe_channels(recording: Recording) -> dict[str, MeasuredChannel]:
+    return {
+        kind: MeasuredChannel(
+            samples=len(channel.time),
+            rate_hz=channel.rate,
+            start_s=float(channel.time[0]),
+            end_s=float(channel.time[-1]),
+            measured=tuple(
+                name
+                for name, column in zip(KINDS[kind].columns, channel.value.T, strict=True)
+                if np.isfinite(column).any()
+            ),
+        )
+        for kind, channel in recording.channels.items()
+    }
+
+
+def _describe_commands(recording: Recording) -> CommandLog | None:
     time = recording.commands.time
+    if not len(time):
+        return None
     steps = np.diff(time)
     return CommandLog(
         kind=recording.commands.kind,

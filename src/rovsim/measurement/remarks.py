@@ -25,6 +25,9 @@ def _use(report: Quality) -> Iterator[str]:
 
 
 def _frames(report: Quality) -> Iterator[str]:
+    if not report.posed:
+        yield _held_channels(report)
+        return
     share = report.not_found / report.frames
     if share > MANY_MISSING:
         yield f"The body was not found in {share:.0%} of the frames: check markers and cameras."
@@ -42,8 +45,18 @@ def _frames(report: Quality) -> Iterator[str]:
         yield f"{report.outliers} outlier frames: look for swapped markers or reflections."
 
 
+def _held_channels(report: Quality) -> str:
+    held = [
+        f"{kind} ({' '.join(c.measured)}; {f'{c.rate_hz:.3g} Hz' if c.rate_hz else 'once'})"
+        for kind, c in report.channels.items()
+    ]
+    return f"There are no full poses; what was measured is {', '.join(held)}."
+
+
 def _commands(report: Quality) -> Iterator[str]:
     commands, repairs = report.commands, report.repairs
+    if commands is None:
+        return
     if not commands.varies:
         yield "The commands never change: check 'commands.columns', or that the log was running."
     if repairs["command_long_steps"]:

@@ -49,11 +49,23 @@ class PoseNoise(Section):
     attitude_rad: float | None
 
 
+class MeasuredChannel(Section):
+    """What a channel holds: samples, usual rate, first and last time, components measured."""
+
+    samples: int
+    rate_hz: float | None
+    start_s: float
+    end_s: float
+    measured: tuple[str, ...]
+
+
 class Quality(Result):
     """One run.
 
-    `repairs` counts what was mended, by kind; `outliers` is None when not looked for; `unusable`
-    says why a run cannot be used; `remarks` are sentences its owner can act on.
+    `repairs` counts what was mended, by kind; `outliers` is None when not looked for; `commands`
+    None where nothing was commanded; `channels` what was measured beside full poses (where there
+    were none, `excitation` is empty); `unusable` says why a run cannot be used; `remarks` are
+    sentences its owner can act on.
     """
 
     noun: ClassVar[str] = "quality report"
@@ -71,8 +83,14 @@ class Quality(Result):
     gaps: tuple[Gap, ...]
     outliers: int | None
     repairs: dict[str, int]
-    commands: CommandLog
+    commands: CommandLog | None
     excitation: dict[str, Excitation]
     noise: PoseNoise
     unusable: str | None
+    channels: dict[str, MeasuredChannel] = Field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+
+    @property
+    def posed(self) -> bool:
+        """Whether full poses were measured."""
+        return bool(self.excitation)

@@ -84,9 +84,7 @@ class Workbench:
         content = hashlib.sha256()
         campaign = self.data.campaign
         files = {campaign.file} | {
-            path
-            for run in campaign.runs
-            for path in (campaign.mocap_path(run), campaign.commands_path(run))
+            path for run in campaign.runs for path in campaign.raw_files(run)
         }
         for path in sorted(p for p in files if p.is_file()):
             content.update(path.read_bytes())

@@ -6,24 +6,17 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import CommandKind
 from rovsim.measurement.campaign import AXES, CommandLog
-from rovsim.measurement.recording.csv import csv_lines
-from rovsim.measurement.recording.readers import CommandExport, command_reader, finite_rows
+from rovsim.measurement.recording.readers import KIND, CommandExport, command_reader, finite_rows
 from rovsim.measurement.recording.table import (
     Lines,
     column_places,
+    csv_lines,
     numbers,
     times,
     without_cut_line,
 )
 
-KIND: dict[str, CommandKind] = {
-    "pwm": "thruster",
-    "normalized": "thruster",
-    "demand": "demand",
-    "wrench": "wrench",
-}
 # PWM = 1500 us + 400 us * c (the vehicle file's comment). Beyond 1100 .. 1900 us a speed
 # controller gives no more; beyond 800 .. 2200 us no servo signal is valid.
 PWM_CENTER, PWM_SPAN = 1500.0, 400.0

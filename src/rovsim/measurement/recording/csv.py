@@ -1,20 +1,23 @@
-"""Poses in a csv file whose column names carry their units, as in `time_s, x_m, … yaw_rad`."""
+"""Measured channels in a csv file whose column names carry their units, as `time_s, x_m, …`."""
 
+from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import read_text
 from rovsim.core.rotations import from_euler, normalized
 from rovsim.measurement.campaign import Mocap
+from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader
 from rovsim.measurement.recording.table import (
     Lines,
     column_places,
+    csv_lines,
     numbers,
-    split_lines,
     times,
     without_cut_line,
 )
@@ -22,57 +25,120 @@ from rovsim.measurement.recording.table import (
 POSITION = ["x_m", "y_m", "z_m"]
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
 QUATERNION = ["qw", "qx", "qy", "qz"]
-VELOCITY = ["u_m_s", "v_m_s", "w_m_s", "p_rad_s", "q_rad_s", "r_rad_s"]
+LINEAR, ANGULAR = ["u_m_s", "v_m_s", "w_m_s"], ["p_rad_s", "q_rad_s", "r_rad_s"]
+EXTRA = {  # kind of channel -> columns, beside poses and velocities
+    "depth": ["depth_m"],
+    "specific_force": ["ax_m_s2", "ay_m_s2", "az_m_s2"],
+    "voltage": ["voltage_v"],
+}
+KNOWN = [*POSITION, *EULER, *QUATERNION, *LINEAR, *ANGULAR, *(n for c in EXTRA.values() for n in c)]
+# Poses are full where position and attitude come in the same lines, and velocities are bin means
+# where they come with the poses: in at least this share of the lines that hold either.
+TOGETHER = 0.5
+NEAR = 0.75  # likeness of names: 'depth' is near 'depth_m', a demand 'pitch' not near 'pitch_rad'
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Columns of numbers (n,) by name, beside the times (n,) s of their lines."""
+
+    time: Array
+    values: Mapping[str, Array]
+
+    def of(self, names: Sequence[str]) -> Array:
+        """Columns (n, len(names)); NaN where the file has none of that name."""
+        missing = np.full(len(self.time), np.nan)
+        return np.stack([self.values.get(name, missing) for name in names], axis=1)
 
 
 @mocap_reader("csv")
 def read_csv(path: Path, mocap: Mocap) -> Export:
-    """Read poses, and the body velocities where all six are given.
+    """Read poses where position and attitude share their lines, and any other channel.
 
     Raises:
         BadInput: not such a file; names the line and the column.
     """
     lines = csv_lines(path)
-    attitude_names = QUATERNION if any(q in lines.names for q in QUATERNION) else EULER
-    velocity_names = _velocity_names(lines)
-    wanted = ["time_s", *POSITION, *attitude_names, *velocity_names]
-    places = column_places(path, lines.names, wanted)
+    names = _known_columns(lines)
+    places = column_places(path, lines.names, ["time_s", *names])
     table, cut = without_cut_line(lines, places)
-    time = times(table, places[0])
-    position = numbers(table, places[1:4])
-    end = 4 + len(attitude_names)
-    attitude, found = _attitude(numbers(table, places[4:end]))
-    nu = numbers(table, places[end:]) if velocity_names else None
-    found &= finite_rows(position, *([] if nu is None else [nu]))
-    return Export(time, position, attitude, found, nu=nu, counts={"cut_lines": cut})
+    values = numbers(table, places[1:])
+    columns = Columns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
+    return _export(columns, mocap, {"cut_lines": cut}, _near_misses(lines.names))
 
 
-def csv_lines(path: Path) -> Lines:
-    """Lines of a csv file below its line of column names.
+def _export(
+    columns: Columns, mocap: Mocap, counts: dict[str, int], notes: tuple[str, ...]
+) -> Export:
+    position, nu = columns.of(POSITION), columns.of([*LINEAR, *ANGULAR])
+    angles = columns.of(QUATERNION if "qw" in columns.values else EULER)
+    posed = finite_rows(position, angles)
+    other = {kind: measured(columns.time, columns.of(names)) for kind, names in EXTRA.items()}
+    partly = np.isfinite(np.hstack([position, angles])).any(axis=1)
+    if not posed.any() or posed.sum() < TOGETHER * partly.sum():
+        other |= _apart(columns, position, angles) | _velocities(columns, nu)
+        return Export.of_channels(other, counts, notes)
+    binned = _means(posed, nu, mocap)
+    if not binned:
+        other |= _velocities(columns, nu)
+        notes += _instant(other, mocap)
+    attitude, found = _attitude(angles)
+    found &= finite_rows(position, *([nu] if binned else []))
+    frame = _frames(columns.time, partly, other)
+    return Export(
+        columns.time[frame],
+        position[frame],
+        attitude[frame],
+        found[frame],
+        nu=nu[frame] if binned else None,
+        counts=counts,
+        channels=other,
+        notes=notes,
+    )
 
-    Raises:
-        BadInput: the file is empty, or is not separated by commas.
-    """
-    text = read_text(path)
-    lines = text.split("\n")
-    header = next((n for n, line in enumerate(lines) if line.strip()), None)
-    if header is None:
-        raise BadInput(
-            "the file is empty",
-            where=path,
-            expected="a line of column names and lines of numbers",
-            remedy="Export the run again.",
-        )
-    names = [cell.strip().strip('"') for cell in lines[header].rstrip(" ,").split(",")]
-    for separator, word in ((";", "semicolons"), ("\t", "tabs")):
-        if len(names) == 1 and separator in lines[header]:
-            raise BadInput(
-                f"the columns are separated by {word}",
-                where=f"{path}, line {header + 1}",
-                expected="commas between columns and decimal points",
-                remedy="Save it again with commas.",
-            )
-    return split_lines(path, lines, header, names, ",", ended=text.endswith("\n"))
+
+def _means(posed: Array, nu: Array, mocap: Mocap) -> bool:
+    """Whether the velocities (n, 6) are means over the time from one pose to the next."""
+    if mocap.velocity == "instant":
+        return False
+    given = np.isfinite(nu).any(axis=1)
+    both = finite_rows(nu) & posed
+    return bool(both.any() and both.sum() >= TOGETHER * max(given.sum(), posed.sum()))
+
+
+def _instant(channels: Mapping[str, Channel], mocap: Mocap) -> tuple[str, ...]:
+    some = any(len(channels[kind].time) for kind in ("velocity", "rates"))
+    if mocap.velocity == "instant" or not some:
+        return ()
+    return (
+        "The body velocities do not come with every pose, all six of them: they are read as "
+        "values at their times, not as means. 'mocap.velocity: instant' says so.",
+    )
+
+
+def _frames(time: Array, partly: Array, channels: Mapping[str, Channel]) -> Array:
+    """Lines (n,) that are frames of the poses: not those that only another sensor wrote."""
+    return partly | ~np.isin(time, np.concatenate([c.time for c in channels.values()]))
+
+
+def _apart(columns: Columns, position: Array, angles: Array) -> dict[str, Channel]:
+    """Position and attitude, each at its own times; attitudes with a missing angle are `euler`."""
+    attitude, found = _attitude(angles)
+    channels = {
+        "position": measured(columns.time, position),
+        "attitude": Channel(columns.time[found], attitude[found]),
+    }
+    if angles.shape[1] == 3:
+        some = np.where(found[:, None], np.nan, angles)
+        channels["euler"] = measured(columns.time, some)
+    return channels
+
+
+def _velocities(columns: Columns, nu: Array) -> dict[str, Channel]:
+    return {
+        "velocity": measured(columns.time, nu[:, :3]),
+        "rates": measured(columns.time, nu[:, 3:]),
+    }
 
 
 def _attitude(values: Array) -> tuple[Array, Array]:
@@ -86,14 +152,35 @@ def _attitude(values: Array) -> tuple[Array, Array]:
     return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
 
 
-def _velocity_names(table: Lines) -> list[str]:
-    given = [name for name in VELOCITY if name in table.names]
-    if 0 < len(given) < len(VELOCITY):
-        missing = ", ".join(name for name in VELOCITY if name not in given)
+def _known_columns(lines: Lines) -> list[str]:
+    """The columns of channels in the file.
+
+    Raises:
+        BadInput: none, or a quaternion without one of its components.
+    """
+    if any(name in lines.names for name in QUATERNION):
+        column_places(lines.path, lines.names, ["time_s", *QUATERNION])
+    names = [name for name in KNOWN if name in lines.names]
+    if not names:
         raise BadInput(
-            f"no column {missing}, but {', '.join(given)}",
-            where=table.path,
-            expected="all six body velocities or none",
-            remedy="Add the missing columns, or remove the velocities.",
+            f"no column of a measured channel, but {', '.join(lines.names)}",
+            where=lines.path,
+            expected=f"time_s and some of {', '.join(KNOWN)}",
+            remedy="Name the columns with their units; docs/formats.md lists them.",
         )
-    return given and VELOCITY
+    return names
+
+
+def _near_misses(names: list[str]) -> tuple[str, ...]:
+    """Say which columns that are not read may have been meant as others."""
+    missing = [name for name in KNOWN if name not in names]
+    near = {
+        name: close[0]
+        for name in names
+        if name not in KNOWN
+        and name != "time_s"
+        and (close := get_close_matches(name, missing, n=1, cutoff=NEAR))
+    }
+    return tuple(
+        f"The column '{name}' is not read: was '{meant}' meant?" for name, meant in near.items()
+    )

@@ -12,7 +12,15 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.run import CommandKind
 from rovsim.measurement.campaign import CommandLog, Mocap
+from rovsim.measurement.recording.channels import Channels
 
+# What a kind of logged command drives.
+KIND: dict[str, CommandKind] = {
+    "pwm": "thruster",
+    "normalized": "thruster",
+    "demand": "demand",
+    "wrench": "wrench",
+}
 # Named in the campaign format but not readable yet, and the way around.
 LATER = {
     "motive_csv": "Convert the take to 'csv' (time_s, x_m, y_m, z_m, qw, qx, qy, qz).",
@@ -22,12 +30,13 @@ LATER = {
 
 @dataclass(frozen=True, eq=False)
 class Export:
-    """Poses as a file tells them: its own axes, its own order of lines.
+    """What was measured as a file tells it: its own axes, its own order of lines.
 
     `time` (n,) s; `position` (n, 3) m; `attitude` (n, 4) quaternion, body to world; `found` (n,)
     False where the body was not seen; `rate` nominal Hz, None when the file does not say; `nu`
     (n, 6) body velocities, None when not exported; `counts` of what was repaired while reading
-    (`cut_lines`, `bad_rotations`).
+    (`cut_lines`, `bad_rotations`); `channels` what else was measured; `notes` are sentences about
+    the file that its owner should read.
     """
 
     time: Array
@@ -37,19 +46,33 @@ class Export:
     rate: float | None = None
     nu: Array | None = None
     counts: dict[str, int] = field(default_factory=dict)
+    channels: Channels = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @staticmethod
+    def of_channels(
+        channels: Channels, counts: dict[str, int] | None = None, notes: tuple[str, ...] = ()
+    ) -> "Export":
+        """What holds no full poses."""
+        return Export(
+            np.empty(0), np.empty((0, 3)), np.empty((0, 4)), np.empty(0, bool),
+            counts=counts or {}, channels=channels, notes=notes,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class CommandExport:
     """Commands as a file tells them: `time` (m,) s, `value` (m, c), lines in file order.
 
-    `counts` of what was repaired while reading (`cut_lines`, `dropped`, `clipped`).
+    `counts` of what was repaired while reading (`cut_lines`, `dropped`, `clipped`); `notes` are
+    sentences about the file that its owner should read.
     """
 
     time: Array
     value: Array
     kind: CommandKind
     counts: dict[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
 MocapReader = Callable[[Path, Mocap], Export]

@@ -1,30 +1,37 @@
 """From the files of a run to one `Recording` in NED and FRD."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.core.rotations import axes_signs, multiply
+from rovsim.core.rotations import axes_signs, half_turn, multiply
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.campaign import Campaign, Mocap
+from rovsim.measurement.campaign import Campaign, CommandLog, Mocap, Run
+from rovsim.measurement.recording import channels
 from rovsim.measurement.recording.readers import (
-    CommandExport,
+    KIND,
     Export,
     command_readers,
     mocap_readers,
     reader_of,
 )
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording.tidying import measured_rate, tidy_commands, tidy_export
 
-RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
+# Times beyond this are dates (seconds since 1970 or since the machine was started); a day is none.
+LATE = 1e5  # s
 
 
 @dataclass(frozen=True)
 class Anomalies:
-    """How much of the raw files had to be repaired or left out, in lines."""
+    """How much of the raw files had to be repaired or left out, in lines.
+
+    `notes` are sentences of the readers about their files.
+    """
 
     duplicates: int = 0
     unsorted: int = 0
@@ -37,26 +44,32 @@ class Anomalies:
     command_dropped: int = 0
     command_clipped: int = 0
     command_long_steps: int = 0
+    notes: tuple[str, ...] = ()
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """All but the notes."""
+        return {name: count for name, count in vars(self).items() if name != "notes"}
 
 
 def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
-    """Read the poses and commands of one run; nothing is filtered or filled in.
+    """Read what was measured and commanded in one run; nothing is filtered or filled in.
 
     Raises:
         BadInput: a file cannot be used; names the file, the place in it and the remedy.
     """
-    run = campaign.run(run_id)
-    mocap, log = campaign.mocap, campaign.commands
-    place = f"{campaign.file}, "
-    read_poses = reader_of(mocap.format, mocap_readers(), place + "mocap.format")
-    read_commands = reader_of(log.format, command_readers(), place + "commands.format")
-    poses_path, commands_path = campaign.mocap_path(run), campaign.commands_path(run)
-    poses, pose_counts = tidy_poses(read_poses(poses_path, mocap), poses_path)
-    commands, command_counts = tidy_commands(read_commands(commands_path, log), commands_path)
-    _check_overlap(poses.time, commands.time, commands_path)
+    run, mocap = campaign.run(run_id), campaign.mocap
+    read = reader_of(mocap.format, mocap_readers(), f"{campaign.file}, mocap.format")
+    path = campaign.mocap_path(run)
+    export, counts = tidy_export(read(path, mocap), path)
+    commands, command_counts, notes = _read_commands(campaign, run)
+    if run.commanded:
+        _check_overlap(export.time, commands.time, campaign.commands_path(run))
+    export, commands = _from_zero(export, commands)
     info = RunInfo(run.id, run.control, run.split)
-    recording = to_ned(poses, mocap, info, site(campaign), commands)
-    return recording, Anomalies(**pose_counts, **command_counts)
+    recording = to_ned(export, mocap, info, site(campaign), commands)
+    notes = tuple(dict.fromkeys([*export.notes, *notes]))
+    return recording, Anomalies(**counts, **command_counts, notes=notes)
 
 
 def site(campaign: Campaign) -> Site:
@@ -64,102 +77,68 @@ def site(campaign: Campaign) -> Site:
     return Site(campaign.tank_ned(), campaign.world_signs())
 
 
-def to_ned(poses: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Commands) -> Recording:
-    """Turn poses in the file's axes into a recording in NED and FRD.
+def _read_commands(
+    campaign: Campaign, run: Run
+) -> tuple[Commands, dict[str, int], tuple[str, ...]]:
+    log = campaign.commands
+    if not run.commanded or log is None:
+        return _no_commands(log), {}, ()
+    read = reader_of(log.format, command_readers(), f"{campaign.file}, commands.format")
+    path = campaign.commands_path(run)
+    export = read(path, log)
+    return *tidy_commands(export, path), export.notes
+
+
+def _no_commands(log: CommandLog | None) -> Commands:
+    """No lines, of the kind that the other runs have; a wrench where no run has commands."""
+    kind = KIND[log.kind] if log else "wrench"
+    columns = len(log.columns) if log and not log.per_axis else len(AXES)
+    return Commands(np.empty(0), np.empty((0, columns)), kind)
+
+
+def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
+    """Dates become times from the second in which the recording starts.
+
+    At 1.7e9 s a time is only known to 2.4e-7 s, and shares of it are years.
+    """
+    start = float(np.floor(export.time[0]))
+    if abs(start) < LATE:
+        return export, commands
+    moved = {k: replace(c, time=c.time - start) for k, c in export.channels.items()}
+    export = replace(export, time=export.time - start, channels=moved)
+    return export, replace(commands, time=commands.time - start)
+
+
+def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Commands) -> Recording:
+    """Turn what was measured in the file's axes into a recording in NED and FRD.
 
     With S the signs of the axes as diagonal matrices: p = S_world p_file and
     R = S_world R_file S_body, so each side is converted on its own.
     """
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
-    turned = multiply(multiply(_quaternion(world), poses.attitude), _quaternion(body))
-    seen = poses.found[:, None]
-    nu = None if poses.nu is None else poses.nu * np.tile(body, 2)
+    turned = multiply(multiply(half_turn(world), export.attitude), half_turn(body))
+    seen = export.found[:, None]
+    nu = None if export.nu is None else export.nu * np.tile(body, 2)
     return Recording(
         info,
         at,
-        poses.time,
-        np.where(seen, poses.position * world, np.nan),
+        export.time,
+        np.where(seen, export.position * world, np.nan),
         np.where(seen, np.where(turned[:, :1] < 0, -turned, turned), np.nan),
-        poses.found,
+        export.found,
         commands,
-        poses.rate or measured_rate(poses.time),
+        export.rate or measured_rate(export.time),
         nu,
+        channels.to_ned(export.channels, mocap),
+        mocap.sensors,
     )
 
 
-def _quaternion(signs: Array) -> Array:
-    """Rotation with the matrix diag(signs): none, or a half turn about x."""
-    return np.array([1.0, 0, 0, 0]) if signs[1] > 0 else np.array([0.0, 1, 0, 0])
-
-
-def tidy_poses(poses: Export, path: Path) -> tuple[Export, dict[str, int]]:
-    """Sort by time, keep the first of equal times, and check the rate; count what was wrong.
-
-    Raises:
-        BadInput: no frame, one time only, or no frame in which the body was found.
-    """
-    order = np.argsort(poses.time, kind="stable")
-    time = poses.time[order]
-    keep = order[np.diff(time, prepend=-np.inf) > 0]
-    if len(keep) < 2 or not poses.found[keep].any():
-        found = "no frame in which the body was found" if len(keep) > 1 else "no frames"
-        raise BadInput(
-            f"{found} ({len(time)} lines)",
-            where=path,
-            expected="a run with at least two frames and the body in sight",
-            remedy="Export the run again, or take it out of 'runs'.",
-        )
-    counts = dict(poses.counts)
-    rate, measured = poses.rate, measured_rate(poses.time[keep])
-    if rate and abs(measured / rate - 1.0) > RATES_DIFFER:
-        rate, counts["wrong_header_rate"] = None, 1
-    counts["unsorted"] = int(np.sum(np.diff(poses.time) < 0))
-    counts["duplicates"] = len(time) - len(keep)
-    return Export(
-        poses.time[keep],
-        poses.position[keep],
-        poses.attitude[keep],
-        poses.found[keep],
-        rate,
-        None if poses.nu is None else poses.nu[keep],
-    ), counts
-
-
-def measured_rate(time: Array) -> float:
-    """Rate in Hz of the usual step between the times (n,)."""
-    return 1.0 / float(np.median(np.diff(time)))
-
-
-def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, int]]:
-    """Sort by time and keep the last of equal times (it is what the vehicle got); count both.
-
-    Raises:
-        BadInput: no line is left.
-    """
-    if not len(log.time):
-        raise BadInput(
-            f"no commands ({log.counts.get('dropped', 0)} lines without a value)",
-            where=path,
-            expected="at least one line with a time and every column",
-            remedy="Export the commands again, or take the run out of 'runs'.",
-        )
-    order = np.argsort(log.time, kind="stable")
-    time = log.time[order]
-    keep = order[np.diff(time, append=np.inf) > 0]
-    steps = np.diff(log.time[keep])
-    counts = {f"command_{name}": count for name, count in log.counts.items()}
-    counts["command_unsorted"] = int(np.sum(np.diff(log.time) < 0))
-    counts["command_duplicates"] = len(time) - len(keep)
-    # a missing line makes a step twice as long
-    counts["command_long_steps"] = int(np.sum(steps > 1.5 * np.median(steps))) if len(steps) else 0
-    return Commands(log.time[keep], log.value[keep], log.kind), counts
-
-
-def _check_overlap(poses: Array, commands: Array, path: Path) -> None:
-    if commands[0] >= poses[-1] or commands[-1] <= poses[0]:
+def _check_overlap(measured: Array, commands: Array, path: Path) -> None:
+    if commands[0] >= measured[-1] or commands[-1] <= measured[0]:
         raise BadInput(
             f"the commands run from {commands[0]:g} to {commands[-1]:g} s, "
-            f"the poses from {poses[0]:g} to {poses[-1]:g} s",
+            f"what was measured from {measured[0]:g} to {measured[-1]:g} s",
             where=f"{path}, column 'time_s'",
             expected="commands on the clock of the motion capture",
             remedy="Shift the command times to that clock.",

@@ -1,13 +1,16 @@
 """A run as it was logged, in NED and FRD, before any filtering."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Mapping
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.files import read_arrays, write_arrays
 from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.measurement.recording.channels import Channel, by_name, from_names
+from rovsim.measurement.sensors import Sensors
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,6 +20,10 @@ class Recording:
     `time` (n,) s, increasing; `position` (n, 3) m in NED; `attitude` (n, 4) quaternion body to
     world; `found` (n,) False where the body was not seen (the pose there is NaN); `nu` (n, 6) the
     export's own body velocities, bin means from time[k] to time[k+1], or None; `rate` nominal Hz.
+
+    `channels` are what else was measured (`channels.KINDS`), of `sensors`. Where no full pose was,
+    they are all there is: `time` holds the times of all channels, `rate` is that of the fastest,
+    and `found` is False throughout.
     """
 
     run: RunInfo
@@ -28,6 +35,13 @@ class Recording:
     commands: Commands
     rate: float
     nu: Array | None = None
+    channels: Mapping[str, Channel] = field(default_factory=dict)
+    sensors: Sensors = field(default_factory=Sensors)
+
+    @property
+    def posed(self) -> bool:
+        """Whether it is a recording of full poses, seen or not."""
+        return bool(self.found.any()) or not self.channels
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""
@@ -36,6 +50,9 @@ class Recording:
         arrays["rate"] = np.array(self.rate)
         if self.nu is not None:
             arrays["nu"] = self.nu
+        if self.channels:
+            arrays |= dict(by_name(self.channels))
+            arrays["sensors"] = np.array(self.sensors.model_dump_json())
         write_arrays(path, **arrays)
 
     @staticmethod
@@ -43,9 +60,11 @@ class Recording:
         """Read what `write` wrote."""
         a = read_arrays(path)
         run, site, commands = unlabelled(a)
+        channels = from_names(a)
+        sensors = Sensors.model_validate_json(str(a["sensors"])) if channels else Sensors()
         return Recording(
             run, site, a["time"], a["position"], a["attitude"], a["found"], commands,
-            float(a["rate"]), a.get("nu"),
+            float(a["rate"]), a.get("nu"), channels, sensors,
         )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import read_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +24,34 @@ class Lines:
     cells: list[list[str]]
     numbers: list[int]
     ended: bool = True
+
+
+def csv_lines(path: Path) -> Lines:
+    """Lines of a csv file below its line of column names.
+
+    Raises:
+        BadInput: the file is empty, or is not separated by commas.
+    """
+    text = read_text(path)
+    lines = text.split("\n")
+    header = next((n for n, line in enumerate(lines) if line.strip()), None)
+    if header is None:
+        raise BadInput(
+            "the file is empty",
+            where=path,
+            expected="a line of column names and lines of numbers",
+            remedy="Export the run again.",
+        )
+    names = [cell.strip().strip('"') for cell in lines[header].rstrip(" ,").split(",")]
+    for separator, word in ((";", "semicolons"), ("\t", "tabs")):
+        if len(names) == 1 and separator in lines[header]:
+            raise BadInput(
+                f"the columns are separated by {word}",
+                where=f"{path}, line {header + 1}",
+                expected="commas between columns and decimal points",
+                remedy="Save it again with commas.",
+            )
+    return split_lines(path, lines, header, names, ",", ended=text.endswith("\n"))
 
 
 def split_lines(

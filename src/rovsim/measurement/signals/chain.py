@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
 from rovsim.core.files import read_arrays
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
@@ -52,10 +53,25 @@ def clean(recording: Recording, settings: SignalSettings) -> Motion:
 
 
 def resampled(recording: Recording, settings: SignalSettings) -> Stage:
-    """First stage: poses on a uniform clock. A binned recording passes unchanged."""
+    """First stage: poses on a uniform clock. A binned recording passes unchanged.
+
+    Raises:
+        BadInput: no full poses were measured.
+    """
+    _check_poses(recording)
     if recording.nu is not None:
         return recording
     return resample(recording, settings.resample, settings.outliers)
+
+
+def _check_poses(recording: Recording) -> None:
+    if not recording.posed:
+        raise BadInput(
+            f"no full poses, but the channels {', '.join(recording.channels)}",
+            where=f"run {recording.run.id}",
+            expected="position and attitude measured together",
+            remedy="Add the missing columns or topics; other recordings cannot be replayed yet.",
+        )
 
 
 def filtered(stage: Stage, settings: SignalSettings) -> Stage:

@@ -1,0 +1,131 @@
+"""Measured channels: what was measured of the motion, each kind at its own times.
+
+Not measured is not zero: a kind that nobody measured is absent, a component that was not measured
+at a time is NaN there.
+"""
+
+from dataclasses import dataclass
+from typing import Iterator, Literal, Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import axes_signs, half_turn, multiply
+from rovsim.measurement.campaign import Mocap
+
+Axes = Literal["world", "body", "none"]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of channel: its columns in order, their unit, and whose axes they go along."""
+
+    columns: tuple[str, ...]
+    unit: str
+    axes: Axes
+
+
+# Inside: world NED, body FRD. `velocity` is that of the place `sensors.velocity_at` over ground,
+# `specific_force` that of `sensors.imu_at` (acceleration less gravity: (0, 0, -g) at rest and
+# level), `depth` that of `sensors.depth_at` below the surface, whatever the world's axes. Angles
+# are R = Rz(yaw) Ry(pitch) Rx(roll); `euler` holds attitudes of which some angles are missing.
+KINDS: Mapping[str, Kind] = {
+    "position": Kind(("x", "y", "z"), "m", "world"),
+    "attitude": Kind(("qw", "qx", "qy", "qz"), "1", "body"),
+    "euler": Kind(("roll", "pitch", "yaw"), "rad", "body"),
+    "depth": Kind(("depth",), "m", "none"),
+    "velocity": Kind(("u", "v", "w"), "m/s", "body"),
+    "rates": Kind(("p", "q", "r"), "rad/s", "body"),
+    "specific_force": Kind(("ax", "ay", "az"), "m/s2", "body"),
+    "voltage": Kind(("voltage",), "V", "none"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """What one sensor gave: `time` (m,) s, increasing; `value` (m, c), NaN where not measured."""
+
+    time: Array
+    value: Array
+
+    @property
+    def rate(self) -> float | None:
+        """Rate in Hz of the usual step; None with fewer than two samples."""
+        return 1.0 / float(np.median(np.diff(self.time))) if len(self.time) > 1 else None
+
+
+Channels = Mapping[str, Channel]
+
+
+def measured(time: Array, value: Array) -> Channel:
+    """The samples in which at least one component was measured; infinite ones were not."""
+    value = np.where(np.isfinite(value), value, np.nan)
+    some = ~np.isnan(value).all(axis=1)
+    return Channel(time[some], value[some])
+
+
+def tidy(channels: Channels) -> tuple[dict[str, Channel], int, int]:
+    """Channels sorted by time, the first of equal times kept, empty ones left out.
+
+    Returns them with how many steps went back in time, and how many samples were left out.
+    """
+    tidied, unsorted, duplicates = {}, 0, 0
+    for kind in KINDS:
+        if kind not in channels or not len(channels[kind].time):
+            continue
+        time, value = channels[kind].time, channels[kind].value
+        order = np.argsort(time, kind="stable")
+        keep = order[np.diff(time[order], prepend=-np.inf) > 0]
+        unsorted += int(np.sum(np.diff(time) < 0))
+        duplicates += len(time) - len(keep)
+        tidied[kind] = Channel(time[keep], value[keep])
+    return tidied, unsorted, duplicates
+
+
+def to_ned(channels: Channels, mocap: Mocap) -> dict[str, Channel]:
+    """Channels along the axes of a file, turned into NED and FRD."""
+    return {
+        kind: Channel(channel.time, _turned(kind, channel.value, mocap))
+        for kind, channel in channels.items()
+    }
+
+
+def _turned(kind: str, value: Array, mocap: Mocap) -> Array:
+    world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
+    if kind == "attitude":
+        turned = multiply(multiply(half_turn(world), value), half_turn(body))
+        return np.where(turned[:, :1] < 0, -turned, turned)
+    if kind == "euler":
+        return _turned_angles(value, world, body)
+    signs = {"world": world, "body": body, "none": 1.0}[KINDS[kind].axes]
+    return value * signs
+
+
+def _turned_angles(angles: Array, world: Array, body: Array) -> Array:
+    """Angles (m, 3) after half turns about x on either side, each angle by itself.
+
+    S Rz(yaw) Ry(pitch) Rx(roll) = Rz(-yaw) Ry(-pitch) Rx(roll) S for a half turn S about x, and S
+    beside Rx adds pi to the roll.
+    """
+    turned = angles * world
+    half_turns = int(world[1] < 0) + int(body[1] < 0)
+    if half_turns == 1:
+        turned[:, 0] += np.pi
+    turned[:, [0, 2]] = np.remainder(turned[:, [0, 2]] + np.pi, 2.0 * np.pi) - np.pi
+    return turned
+
+
+def by_name(channels: Channels) -> Iterator[tuple[str, Array]]:
+    """Arrays of channels under the names that `from_names` knows."""
+    for kind, channel in channels.items():
+        yield f"channel.{kind}.time", channel.time
+        yield f"channel.{kind}.value", channel.value
+
+
+def from_names(arrays: Mapping[str, Array]) -> dict[str, Channel]:
+    """Undo `by_name`."""
+    return {
+        kind: Channel(arrays[f"channel.{kind}.time"], arrays[f"channel.{kind}.value"])
+        for kind in KINDS
+        if f"channel.{kind}.time" in arrays
+    }

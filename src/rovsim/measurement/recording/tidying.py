@@ -1,0 +1,105 @@
+"""Order in what a file told: sorted by time, each time once, and everything counted."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.run import Commands
+from rovsim.measurement.recording.channels import Channels, tidy
+from rovsim.measurement.recording.readers import CommandExport, Export
+
+RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
+
+
+def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
+    """Sort by time, keep the first of equal times, and check the rate; count what was wrong.
+
+    Raises:
+        BadInput: neither poses nor a channel of two samples.
+    """
+    channels, unsorted, duplicates = tidy(export.channels)
+    counts = {**export.counts, "unsorted": unsorted, "duplicates": duplicates}
+    if not export.found.any() and any(len(c.time) > 1 for c in channels.values()):
+        return _of_channels(export, channels), counts
+    order = np.argsort(export.time, kind="stable")
+    time = export.time[order]
+    keep = order[np.diff(time, prepend=-np.inf) > 0]
+    if len(keep) < 2 or not export.found[keep].any():
+        raise _nothing(export, len(keep), path)
+    rate, measured = export.rate, measured_rate(export.time[keep])
+    if rate and abs(measured / rate - 1.0) > RATES_DIFFER:
+        rate, counts["wrong_header_rate"] = None, 1
+    counts["unsorted"] += int(np.sum(np.diff(export.time) < 0))
+    counts["duplicates"] += len(time) - len(keep)
+    tidied = replace(
+        export,
+        time=export.time[keep],
+        position=export.position[keep],
+        attitude=export.attitude[keep],
+        found=export.found[keep],
+        rate=rate,
+        nu=None if export.nu is None else export.nu[keep],
+        channels=channels,
+    )
+    return tidied, counts
+
+
+def _nothing(export: Export, frames: int, path: Path) -> BadInput:
+    lines = max(len(export.time), *(len(c.time) for c in export.channels.values()), 0)
+    found = "no frame in which the body was found" if frames > 1 else "no frames"
+    return BadInput(
+        f"{found} ({lines} lines)",
+        where=path,
+        expected="a run with at least two frames and the body in sight",
+        remedy="Export the run again, or take it out of 'runs'.",
+    )
+
+
+def _of_channels(export: Export, channels: Channels) -> Export:
+    """No poses: frames are the instants at which anything was measured."""
+    time = np.unique(np.concatenate([channel.time for channel in channels.values()]))
+    unknown = np.full((len(time), 7), np.nan)
+    rate = max(channel.rate or 0.0 for channel in channels.values())
+    return replace(
+        export,
+        time=time,
+        position=unknown[:, :3],
+        attitude=unknown[:, 3:],
+        found=np.zeros(len(time), bool),
+        rate=rate,
+        nu=None,
+        channels=channels,
+    )
+
+
+def measured_rate(time: Array) -> float:
+    """Rate in Hz of the usual step between the times (n,)."""
+    return 1.0 / float(np.median(np.diff(time)))
+
+
+def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, int]]:
+    """Sort by time and keep the last of equal times (it is what the vehicle got); count both.
+
+    Raises:
+        BadInput: no line is left.
+    """
+    if not len(log.time):
+        raise BadInput(
+            f"no commands ({log.counts.get('dropped', 0)} lines without a value)",
+            where=path,
+            expected="at least one line with a time and every column",
+            remedy="Export the commands again, or take the run out of 'runs'.",
+        )
+    order = np.argsort(log.time, kind="stable")
+    time = log.time[order]
+    keep = order[np.diff(time, append=np.inf) > 0]
+    steps = np.diff(log.time[keep])
+    counts = {f"command_{name}": count for name, count in log.counts.items()}
+    counts["command_unsorted"] = int(np.sum(np.diff(log.time) < 0))
+    counts["command_duplicates"] = len(time) - len(keep)
+    # a missing line makes a step twice as long
+    counts["command_long_steps"] = int(np.sum(steps > 1.5 * np.median(steps))) if len(steps) else 0
+    return Commands(log.time[keep], log.value[keep], log.kind), counts

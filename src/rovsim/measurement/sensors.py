@@ -1,0 +1,38 @@
+"""Where the sensors of a vehicle sit, and how late they are."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from rovsim.core.schema import Number, Section
+
+Place = Annotated[tuple[Number, Number, Number], Field()]  # m, FRD from CO
+
+
+class Delays(Section):
+    """Seconds by which each kind of channel is stamped after it was measured."""
+
+    position: Number = 0.0
+    attitude: Number = 0.0
+    euler: Number = 0.0
+    depth: Number = 0.0
+    velocity: Number = 0.0
+    rates: Number = 0.0
+    specific_force: Number = 0.0
+    voltage: Number = 0.0
+
+
+class Sensors(Section):
+    """Places in the body (m, FRD from CO) and delays (s) of what measured the channels.
+
+    `surface_pressure` (Pa) and `water_density` (kg/m3) turn a logged pressure into a depth.
+    """
+
+    velocity_at: Place = (0.0, 0.0, 0.0)
+    imu_at: Place = (0.0, 0.0, 0.0)
+    depth_at: Place = (0.0, 0.0, 0.0)
+    delay_s: Delays = Delays()
+    # standard atmosphere, ISO 2533
+    surface_pressure: Number = Field(default=101325.0, gt=0)
+    # fresh water near 4 degrees; sea water has about 1025
+    water_density: Number = Field(default=1000.0, gt=0)

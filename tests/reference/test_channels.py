@@ -1,0 +1,253 @@
+"""Any subset of channels in a csv file: what becomes of it, in any axes, and what stays unknown."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from recordings import (
+    Swim,
+    campaign_content,
+    command_lines,
+    csv_lines,
+    write_campaign,
+    write_lines,
+    write_run,
+)
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import from_euler, matrix
+from rovsim.core.run import Commands
+from rovsim.measurement.campaign import Mocap, load_campaign
+from rovsim.measurement.quality import report_quality, usable_reason
+from rovsim.measurement.recording import Recording, read_run
+from rovsim.measurement.recording.channels import KINDS, Channel, to_ned
+from rovsim.measurement.signals.chain import SignalSettings, clean
+from worlds import model
+
+
+def read(folder, lines, mocap=None, run=None, commands=True):
+    """The recording and its anomalies of a csv with these lines, in NED and FRD."""
+    content = campaign_content("csv")
+    content["mocap"] |= {"world_axes": "ned", "body_axes": "frd"} | (mocap or {})
+    content["runs"][0] |= run or {}
+    if not commands:
+        del content["commands"]
+        content["runs"][0]["commands"] = "none"
+    write_lines(folder / "poses.csv", lines)
+    write_lines(folder / "commands.csv", command_lines())
+    return read_run(load_campaign(write_campaign(folder, content)), "one")
+
+
+def sparse(columns):
+    """Lines of a file in which every column has its own times: name -> (times, values)."""
+    times = np.unique(np.concatenate([t for t, _ in columns.values()]))
+    rows = [",".join(["time_s", *columns])]
+    for now in times:
+        cells = [
+            f"{v[np.flatnonzero(t == now)[0]]:.9g}" if now in t else "" for t, v in columns.values()
+        ]
+        rows.append(",".join([f"{now:.6g}", *cells]))
+    return rows
+
+
+SLOW, FAST = np.arange(12) / 3.0, np.arange(40) / 10.0
+ANGLES = {
+    "roll_rad": (FAST, 0.1 * np.sin(FAST)),
+    "pitch_rad": (FAST, 0.2 * np.cos(FAST)),
+    "yaw_rad": (FAST, FAST),
+}
+
+
+def test_depth_at_3_hz_and_attitude_at_10_hz_share_a_file(tmp_path):
+    recording, anomalies = read(tmp_path, sparse({"depth_m": (SLOW, 1 + SLOW), **ANGLES}))
+    assert set(recording.channels) == {"depth", "attitude"}
+    depth, attitude = recording.channels["depth"], recording.channels["attitude"]
+    np.testing.assert_allclose(depth.value[:, 0], 1 + SLOW, atol=1e-6)
+    np.testing.assert_allclose(attitude.time, FAST)
+    expected = from_euler(*(value for _, value in ANGLES.values()))
+    np.testing.assert_allclose(matrix(attitude.value), matrix(expected), atol=1e-7)
+    assert attitude.rate == pytest.approx(10.0)
+    assert not recording.posed
+    assert not recording.found.any()
+    assert np.isnan(recording.position).all()
+    assert not any(anomalies.counts.values())
+
+
+def test_what_was_not_measured_is_nan_or_absent_and_never_zero(tmp_path):
+    plan = {"x_m": (FAST, FAST), "y_m": (FAST, 2 * FAST), "yaw_rad": (FAST, 0.1 * FAST)}
+    recording, _ = read(tmp_path, sparse(plan))
+    assert set(recording.channels) == {"position", "euler"}
+    np.testing.assert_allclose(recording.channels["position"].value[:, 1], 2 * FAST)
+    assert np.isnan(recording.channels["position"].value[:, 2]).all()
+    assert np.isnan(recording.channels["euler"].value[:, :2]).all()
+
+
+def test_position_velocity_and_rates_at_their_own_rates(tmp_path):
+    gyro = np.arange(800) / 200.0
+    rates = {f"{name}_rad_s": (gyro, k + gyro) for k, name in enumerate("pqr")}
+    dvl = {f"{name}_m_s": (SLOW, k - SLOW) for k, name in enumerate("uvw")}
+    usbl = {f"{name}_m": (SLOW[::2], k * SLOW[::2]) for k, name in enumerate("xyz")}
+    recording, anomalies = read(tmp_path, sparse({**usbl, **ANGLES, **dvl, **rates}))
+    measured = {kind: len(channel.time) for kind, channel in recording.channels.items()}
+    assert measured == {"position": 6, "attitude": 40, "velocity": 12, "rates": 800}
+    np.testing.assert_allclose(recording.channels["rates"].value[:, 2], 2 + gyro, atol=1e-6)
+    assert recording.nu is None
+    assert recording.rate == pytest.approx(200.0)
+    report = report_quality(recording, anomalies, SignalSettings().outliers)
+    assert report.channels["velocity"].measured == ("u", "v", "w")
+    assert report.unusable is None
+    assert report.excitation == {}
+    assert any("no full poses" in remark and "rates" in remark for remark in report.remarks)
+
+
+def test_full_poses_keep_their_place_and_the_rest_goes_beside_them(tmp_path):
+    lines = csv_lines(Swim.ned())
+    plain, _ = read(tmp_path / "plain", lines)
+    lines = [f"{line},{'depth_m' if k == 0 else ''}" for k, line in enumerate(lines)]
+    lines[1:1] = [f"{t + 0.005:.4f},,,,,,,{2 + t:.3f}" for t in SLOW]
+    lines[60] = f"{lines[60].split(',')[0]},,,,,,,"  # a frame without the body
+    beside, anomalies = read(tmp_path / "beside", lines)
+    np.testing.assert_array_equal(beside.time, plain.time)
+    assert np.flatnonzero(~beside.found).tolist() == [47]
+    np.testing.assert_array_equal(beside.position[beside.found], plain.position[beside.found])
+    np.testing.assert_allclose(beside.channels["depth"].value[:, 0], 2 + SLOW, atol=1e-3)
+    assert anomalies.duplicates == 0
+    assert plain.channels == {}
+
+
+def with_velocities(lines, every=1):
+    names = ",u_m_s,v_m_s,w_m_s,p_rad_s,q_rad_s,r_rad_s"
+    given = [f"{line}{',1,2,3,4,5,6' if k % every == 0 else ',,,,,,'}" for k, line in
+             enumerate(lines[1:])]  # fmt: skip
+    return [lines[0] + names, *given]
+
+
+def test_velocities_are_means_or_instants_as_the_campaign_says(tmp_path):
+    lines = with_velocities(csv_lines(Swim.ned()))
+    mean, _ = read(tmp_path / "mean", lines)
+    np.testing.assert_array_equal(mean.nu[0], [1, 2, 3, 4, 5, 6])
+    assert mean.channels == {}
+    instant, _ = read(tmp_path / "instant", lines, {"velocity": "instant"})
+    assert instant.nu is None
+    assert instant.found.all()
+    np.testing.assert_array_equal(instant.channels["rates"].value[0], [4, 5, 6])
+
+
+def test_velocities_that_few_poses_have_are_no_bin_means_and_that_is_said(tmp_path):
+    recording, anomalies = read(tmp_path, with_velocities(csv_lines(Swim.ned()), every=10))
+    assert recording.nu is None
+    assert recording.found.all()
+    assert len(recording.channels["velocity"].time) == 40
+    assert any("mocap.velocity: instant" in note for note in anomalies.notes)
+
+
+def test_a_column_that_is_almost_known_is_told(tmp_path):
+    lines = sparse({"depth": (SLOW, SLOW), **ANGLES})
+    recording, anomalies = read(tmp_path, lines)
+    assert set(recording.channels) == {"attitude"}
+    assert anomalies.notes == ("The column 'depth' is not read: was 'depth_m' meant?",)
+
+
+turns = st.floats(-3.0, 3.0)
+
+
+@given(st.tuples(turns, st.floats(-1.5, 1.5), turns), st.sampled_from(["z_up", "ned"]),
+       st.sampled_from(["flu", "frd"]))  # fmt: skip
+def test_angles_turn_into_other_axes_as_attitudes_do(angles, world, body):
+    mocap = Mocap(format="csv", world_axes=world, body_axes=body)
+    value = np.array([angles])
+    now = np.zeros(1)
+    turned = to_ned(
+        {"euler": Channel(now, value), "attitude": Channel(now, from_euler(*value.T))}, mocap
+    )
+    np.testing.assert_allclose(
+        matrix(from_euler(*turned["euler"].value.T)), matrix(turned["attitude"].value), atol=1e-9
+    )
+
+
+@given(st.sampled_from(["z_up", "ned"]), st.sampled_from(["flu", "frd"]))
+def test_every_kind_has_axes_that_are_turned(world, body):
+    mocap = Mocap(format="csv", world_axes=world, body_axes=body)
+    for kind, declared in KINDS.items():
+        value = np.full((1, len(declared.columns)), 0.5)
+        turned = to_ned({kind: Channel(np.zeros(1), value)}, mocap)[kind].value
+        assert turned.shape == value.shape
+        same = {"world": world == "ned", "body": body == "frd", "none": True}[declared.axes]
+        if kind not in ("attitude", "euler"):
+            np.testing.assert_array_equal(turned, value if same else value * [[1, -1, -1]])
+
+
+def test_channels_and_sensors_survive_the_file(tmp_path):
+    sensors = {"velocity_at": [0.1, 0, 0.2], "delay_s": {"velocity": 0.1}}
+    lines = sparse({"depth_m": (SLOW, SLOW), **ANGLES})
+    recording, _ = read(tmp_path, lines, {"sensors": sensors})
+    recording.write(tmp_path / "one.npz")
+    again = Recording.read(tmp_path / "one.npz")
+    assert again.sensors == recording.sensors
+    assert again.sensors.velocity_at == (0.1, 0.0, 0.2)
+    assert again.sensors.delay_s.velocity == 0.1
+    assert again.sensors.delay_s.depth == 0.0
+    for kind, channel in recording.channels.items():
+        np.testing.assert_array_equal(again.channels[kind].value, channel.value)
+        np.testing.assert_array_equal(again.channels[kind].time, channel.time)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "words"),
+    [
+        ({"dvl_at": [0, 0, 0]}, ["mocap.sensors.dvl_at", "velocity_at"]),
+        ({"delay_s": {"dvl": 0.1}}, ["mocap.sensors.delay_s.dvl", "velocity"]),
+        ({"imu_at": [0, 0]}, ["mocap.sensors.imu_at"]),
+    ],
+)
+def test_a_wrong_sensor_is_refused_in_words(tmp_path, sensors, words):
+    with pytest.raises(BadInput) as refusal:
+        read(tmp_path, sparse(ANGLES), {"sensors": sensors})
+    for word in words:
+        assert word in str(refusal.value)
+
+
+def test_dates_become_times_from_the_start(tmp_path):
+    start = 1723306681.25
+    late = {name: (t + start, value) for name, (t, value) in ANGLES.items()}
+    rows = sparse(late)
+    rows[1:] = [
+        f"{t + start:.6f},{row.split(',', 1)[1]}" for t, row in zip(FAST, rows[1:], strict=True)
+    ]
+    recording, _ = read(tmp_path, rows, commands=False)
+    np.testing.assert_allclose(recording.channels["attitude"].time, FAST + 0.25, atol=1e-6)
+    np.testing.assert_allclose(recording.time, FAST + 0.25, atol=1e-6)
+
+
+def test_what_has_no_full_poses_cannot_become_a_motion_yet(tmp_path):
+    recording, _ = read(tmp_path, sparse(ANGLES))
+    assert usable_reason(recording) is None
+    with pytest.raises(BadInput, match=r"run one: no full poses, but the channels attitude"):
+        clean(recording, SignalSettings())
+
+
+def test_a_run_without_commands_has_none_and_nothing_pushes(tmp_path):
+    folder = write_run(tmp_path)
+    content = campaign_content()
+    content["runs"][0]["commands"] = "none"
+    recording, anomalies = read_run(load_campaign(write_campaign(folder, content)), "one")
+    assert recording.commands.value.shape == (0, 2)
+    report = report_quality(recording, anomalies, SignalSettings().outliers)
+    assert report.commands is None
+    motion = clean(recording, SignalSettings())
+    assert motion.usable.any()
+    for kind, columns in (("thruster", 8), ("demand", 6), ("wrench", 6)):
+        nothing = Commands(np.empty(0), np.empty((0, columns)), kind)
+        thrust = model().thrust_path.over_steps(nothing, np.linspace(0.0, 1.0, 11))
+        assert not thrust.force.any()
+        assert not thrust.wrench.any()
+
+
+def test_without_any_commands_the_section_may_be_left_out(tmp_path):
+    recording, _ = read(tmp_path, csv_lines(Swim.ned()), commands=False)
+    assert recording.commands.value.shape == (0, 6)
+    assert recording.commands.kind == "wrench"
+    content = campaign_content("csv")
+    del content["commands"]
+    with pytest.raises(BadInput, match=r"'commands' is missing, and run 'one' has commands"):
+        load_campaign(write_campaign(tmp_path, content))
