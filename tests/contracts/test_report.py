@@ -22,6 +22,7 @@ from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import significant
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import DiagnosisErrors, FittedEffect, FittedValue, Unexplained
+from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import MissedCell
 from synthetic_study import study
@@ -128,6 +129,15 @@ def test_terminal_and_page_say_the_same(content):
     text = " ".join(terminal.tell_diagnosis(found, built_in()).split())
     for remark in explain(found, built_in()).remarks:
         assert " ".join(remark.split()) in text
+
+
+def test_a_campaign_without_a_test_run_is_told_so(content):
+    none = ErrorConditions(models={})
+    said = terminal.tell_comparison({"nominal": None}, none, tested=False)
+    assert "No test run" in said
+    assert "split: test" in said
+    assert "nan" not in said
+    assert "No test run" not in terminal.tell_comparison({"nominal": 0.1}, none, tested=True)
 
 
 def test_sections_without_content_are_left_out(content):

@@ -12,13 +12,15 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import normalized
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
-from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import OPEN_LOOP
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import drive_by_log
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import as_true, interpolate, interpolate_state
+from rovsim.simulation.neighbourhood import derive, embed
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.sharpened import stage_outputs
@@ -88,18 +90,18 @@ def _predict_samples(
     if not spans:
         return found
     true, stride = as_true(model, motion), StepGrid.over(motion, settings.step).stride
-    state, period = true.state, float(motion.time[1] - motion.time[0])
-    starts = [(a * stride, b - a, state[a]) for a, b in spans]
-    paths = np.stack(simulate(model, true, starts, settings))
-    begins = stage_outputs(model, motion)[1:, [a for a, _ in spans], :14]
-    paths = model.mocap_view.report(paths, period, begins)
-    nu, nu_dot = np.full((2, *paths.shape[:-1], 6), np.inf)
-    stayed = np.isfinite(paths).all(axis=(1, 2))
-    if stayed.any():
-        nu[stayed], nu_dot[stayed] = velocities(paths[stayed, :, :7], period, signals)
-    for i, (a, b) in enumerate(spans):
-        at = slice(a + 1, b + 1)
-        found.eta[at], found.nu[at], found.nu_dot[at] = paths[i, 1:, :7], nu[i, 1:], nu_dot[i, 1:]
+    state, period = true.state, time_step(motion.time)
+    within = embed(motion, spans, round(signals.reach / period))
+    starts = [(w.first * stride, w.last + w.after - w.first, state[w.first]) for w in within]
+    stages = stage_outputs(model, motion)[1:, :, :14]
+    paths = [
+        model.mocap_view.report(path, period, stages[:, w.first])[:, :7]
+        for w, path in zip(within, simulate(model, true, starts, settings), strict=True)
+    ]
+    derived = derive(paths, within, motion, signals)
+    for w, path, (nu, nu_dot) in zip(within, paths, derived, strict=True):
+        at, own = slice(w.first + 1, w.last + 1), slice(1, w.last - w.first + 1)
+        found.eta[at], found.nu[at], found.nu_dot[at] = path[own], nu[own], nu_dot[own]
         found.mark_diverged(at)
     return found
 

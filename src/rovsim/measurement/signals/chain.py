@@ -42,6 +42,11 @@ class SignalSettings(Section):
     filter: Filter = Butterworth()
     differentiate: Differentiation = Spline()
 
+    @property
+    def reach(self) -> float:
+        """How far to either side a velocity looks, s: nearer to an end it is poorer."""
+        return self.filter.reach + self.differentiate.margin
+
 
 def clean(recording: Recording, settings: SignalSettings) -> Motion:
     """Turn a recording into a motion.

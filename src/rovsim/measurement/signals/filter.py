@@ -18,6 +18,8 @@ from rovsim.measurement.signals.motion import Poses
 # frequency. Four periods let the filter settle (below 1e-6 at order 3). A longer fit is calmer but
 # misses more of the motion; half a period balances 0.5 mm of noise and 1 m/s of 1 Hz motion.
 EXTENSION, FIT = 4.0, 0.5
+# What lies two periods away or more adds less than 1e-3 to a smoothed sample (order 3).
+REACH = 2.0
 
 
 class Butterworth(Section):
@@ -33,6 +35,11 @@ class Butterworth(Section):
     # at 100 Hz, 2.5 mm/s and 10 mrad/s are left in the velocities
     cutoff: float = Field(default=5.0, gt=0)
     order: int = Field(default=3, ge=2, le=6)
+
+    @property
+    def reach(self) -> float:
+        """How far to either side a smoothed sample looks, s."""
+        return REACH / self.cutoff
 
     def smoothed(self, x: Array, dt: float) -> Array:
         """Filter `x` (..., time, channels), `dt` s apart.
@@ -67,6 +74,11 @@ class SavitzkyGolay(Section):
     window: float = Field(default=0.29, gt=0)
     degree: int = Field(default=3, ge=1, le=5)
 
+    @property
+    def reach(self) -> float:
+        """How far to either side a smoothed sample looks, s."""
+        return 0.5 * self.window
+
     def smoothed(self, x: Array, dt: float) -> Array:
         """Filter `x` (..., time, channels), `dt` s apart; short series get a shorter window."""
         width = odd_window(self.window, dt, x.shape[-2])
@@ -79,6 +91,11 @@ class Unfiltered(Section):
     """No filter."""
 
     kind: Literal["none"] = "none"
+
+    @property
+    def reach(self) -> float:
+        """How far to either side a smoothed sample looks, s."""
+        return 0.0
 
     def smoothed(self, x: Array, dt: float) -> Array:
         """Give back `x`."""

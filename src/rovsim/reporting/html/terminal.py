@@ -4,7 +4,7 @@ import textwrap
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.html.verdict import Missing, explain
+from rovsim.reporting.html.verdict import NO_TEST, Missing, explain
 from rovsim.reporting.wording import short, significant
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis, FittedEffect
@@ -15,8 +15,18 @@ MOST = 6  # findings printed; the report has them all
 RANKED = 5  # effects of the ranking printed
 
 
-def tell_comparison(errors: Mapping[str, float | None], where: ErrorConditions) -> str:
-    """A table {model: normalised 2 s error}, then the findings of the last model searched."""
+def tell_comparison(
+    errors: Mapping[str, float | None], where: ErrorConditions, tested: bool
+) -> str:
+    """A table {model: normalised 2 s error}, then the findings of the last model searched.
+
+    Without a test run (`tested`) a sentence stands for the table.
+    """
+    table = _errors(errors) if tested else ["", *textwrap.wrap(NO_TEST, WIDTH)]
+    return "\n".join([*table, *_findings(where)])
+
+
+def _errors(errors: Mapping[str, float | None]) -> list[str]:
     lines = [
         "",
         "error on the test runs: velocity after being set to the measured state every 2 s,",
@@ -28,7 +38,7 @@ def tell_comparison(errors: Mapping[str, float | None], where: ErrorConditions) 
         f"  {short(n):<{width}}  {_bar((e or 0.0) / most)} {significant(or_nan(e))}"
         for n, e in errors.items()
     ]
-    return "\n".join([*lines, *_findings(where)])
+    return lines
 
 
 def _findings(where: ErrorConditions) -> list[str]:

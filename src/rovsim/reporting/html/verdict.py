@@ -24,6 +24,10 @@ VERDICTS = {
 }
 INTERVAL = 1.96  # standard deviations to either side hold 95 %
 MANY = 1e6  # odds that need no number
+NO_TEST = (
+    "No test run could be used, so there is no error to report; "
+    "`split: test` in campaign.yaml holds a run out."
+)
 
 
 @dataclass(frozen=True)
@@ -105,7 +109,7 @@ def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
     """The error on the test runs before and after, and what a perfect model would show."""
     before, after, floor = map(or_nan, (error.nominal, error.with_effects, error.noise_floor))
     if not math.isfinite(before):
-        return "No test run could be used, so there is no error to report."
+        return NO_TEST
     now = f"falls from {significant(before)} to {significant(after)}"
     text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
     text += " (velocity in 2 s windows, in units of its spread)."

@@ -44,6 +44,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     total(list(found.budgets.values())).write(out / "budget.json")
     found.comparison.write(out / "comparison.json")
     steps = climb(list(data.motions.values()), found.replays)
-    text = tell_comparison({step.model: step.windows_2s for step in steps}, found.where)
+    tested = any(motion.run.split == "test" for motion in data.motions.values())
+    text = tell_comparison({step.model: step.windows_2s for step in steps}, found.where, tested)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
     say(settings, f"{text}\n\n{files}", found.comparison.to_json())
