@@ -124,9 +124,15 @@ def test_an_inert_model_stays_inert_beside_others():
     assert np.abs(found[1, 0, -1, 7:] - START[7:]).max() > 0.01
 
 
-def test_models_with_other_wrench_effects_need_an_engine_for_all():
-    with pytest.raises(BadInput, match="same wrench effects"):
-        Batch([model(), WORLD], tank())
+def test_models_with_another_residual_do_not_go_together():
+    with pytest.raises(BadInput, match="same residual"):
+        Batch([WORLD, replace(WORLD, residual=object())], tank())
+
+
+def test_one_engine_serves_whatever_acts():
+    pushed = model(ConstantWrench(surge=1.0))
+    assert Batch([pushed], tank()).engine is Batch([model(), WORLD], tank()).engine
+    assert Batch([model()], tank()).engine is not Batch([pushed], tank()).engine
 
 
 def test_what_drives_models_alike_is_found_once():

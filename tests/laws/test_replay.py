@@ -169,21 +169,20 @@ def test_batches_do_not_change_the_numbers(monkeypatch):
 
 CHILD = """
 from worlds import model, motion, at_rest, sticks
+from rovsim.dynamics.engine.compiled import engine
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
-world = model()
-simulate(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
-stats = world.engine.integrate.stats
-print(world.engine.__name__, sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
+simulate(model(), motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
+stats = engine([]).integrate.stats
+print(engine([]).__name__, sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
 """
 
 
 def test_another_process_uses_the_compiled_engine():
-    world = model()
-    simulate(world, motion(sticks()), [(0, 5, at_rest())], ReplaySettings())  # fill the cache
+    simulate(model(), motion(sticks()), [(0, 5, at_rest())], ReplaySettings())  # fill the cache
     env = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     done = subprocess.run([sys.executable, "-c", CHILD], env=env, capture_output=True, text=True)
-    assert done.stdout.split() == [world.engine.__name__, "1", "0"], done.stderr
+    assert done.stdout.split() == [engine([]).__name__, "1", "0"], done.stderr
 
 
 KERNEL = """

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import ModuleType
 
 import numpy as np
 from numpy import ndarray as Array
@@ -11,7 +10,6 @@ from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.body import Body, packed
 from rovsim.dynamics.effects.base import Coefficients, Effect, Sensing, Smoothing, Wrench
-from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.dynamics.low_pass import LowPass
@@ -101,15 +99,6 @@ class Model:
         """
         for one in self.effects:
             one.check(site, kind)
-
-    @cached_property
-    def engine(self) -> ModuleType:
-        """The compiled equation of motion with these wrench effects."""
-        return engine([type(wrench) for wrench in self.wrenches])
-
-    def wrench_parameters(self) -> Array:
-        """Their parameters (k,), one after the other."""
-        return np.concatenate([np.zeros(0), *(e.values for e in self.wrenches)])
 
 
 def nominal(vehicle: Vehicle) -> Model:

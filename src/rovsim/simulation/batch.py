@@ -4,6 +4,7 @@ Replay, stepping, training pairs, budget, observer, tank and benchmarks all come
 the kernels take, and in which order, is known to this module and the engine alone.
 """
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Sequence, TypeVar
 
@@ -13,6 +14,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.dynamics.body import packed
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
@@ -69,27 +71,28 @@ class Batch:
     Args:
         models: m of them.
         site: walls, where an effect needs them.
-        slots: wrench effects of an engine that serves models with different ones; such models run
-            without their learned residual. None: the models' own, the same for all, as is the
-            residual.
+        candidates: wrench effects that other models of the same task have.
+        learned: with their residual, which is the same for all.
 
     Raises:
-        BadInput: models that do not go together.
+        BadInput: models with different residuals.
     """
 
     def __init__(
-        self, models: Sequence[Model], site: Site, slots: Sequence[type[Wrench]] | None = None
+        self,
+        models: Sequence[Model],
+        site: Site,
+        *,
+        candidates: Sequence[type[Wrench]] = (),
+        learned: bool = True,
     ) -> None:
-        first = models[0]
         self._residual: Array | None = None
-        if slots is None:
+        if learned:
             _refuse_unlike(models)
-            self._engine = first.engine
-            self._parameters = np.stack([m.wrench_parameters() for m in models])
-            self._residual = first.residual.data if first.residual else None
-        else:
-            self._engine = engine(slots)
-            self._parameters = np.stack([_slotted(m, slots) for m in models])
+            self._residual = models[0].residual.data if models[0].residual else None
+        slots = _slots(models, candidates)
+        self.engine = engine(slots)
+        self._parameters = np.stack([_slotted(m, slots) for m in models])
         self._constants = _constants(models)
         self._place = Place(np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes))
 
@@ -110,7 +113,7 @@ class Batch:
         out = np.empty((int(rows.sum()), 13))
         out[stops - rows] = starts.state.reshape(-1, 13)
         run_jobs(
-            self._engine.integrate, starts.jobs(starts.first * h, stops - rows + 1), h, stride,
+            self.engine.integrate, starts.jobs(starts.first * h, stops - rows + 1), h, stride,
             self._constants, _inputs(drives), self._parameters, self._residual, self._place, out,
         )  # fmt: skip
         paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
@@ -130,7 +133,7 @@ class Batch:
         own, row = _distinct(correction.readings)
         jobs = starts.jobs(correction.ends[starts.first] * h, stops - np.tile(starts.steps, models))
         run_jobs(
-            self._engine.observe, jobs, h, correction.ends, self._constants, _inputs(drives),
+            self.engine.observe, jobs, h, correction.ends, self._constants, _inputs(drives),
             self._parameters, self._place, np.stack(own), row, correction.gains, correction.decay,
             correction.by_velocity, out,
         )  # fmt: skip
@@ -142,7 +145,7 @@ class Batch:
         `memory` (n, 6) is what the water remembers then; empty: nothing.
         """
         out = np.empty((len(times), 6))
-        self._engine.accelerations(
+        self.engine.accelerations(
             times, np.ascontiguousarray(states), memory, self._constants, _inputs([drive]),
             self._parameters, self._residual, self._place, out,
         )  # fmt: skip
@@ -150,7 +153,7 @@ class Batch:
 
     def advance(self, drive: Drive, state: Array, memory: Array, t: float, h: float) -> None:
         """Move the first model's state (13,) and memory (6,) on over all steps, in place."""
-        self._engine.advance(
+        self.engine.advance(
             state, memory, t, h, self._constants, _inputs([drive]), self._parameters,
             self._residual, self._place,
         )  # fmt: skip
@@ -164,7 +167,7 @@ class Batch:
         (k, 6) is an acceleration that nobody logged.
         """
         out = np.empty((len(pushes), 13))
-        self._engine.heun(
+        self.engine.heun(
             state, memory, t, h, pushes, self._constants, _inputs([drive]), self._parameters[0],
             self._residual, self._place, out,
         )  # fmt: skip
@@ -172,15 +175,29 @@ class Batch:
 
 
 def _refuse_unlike(models: Sequence[Model]) -> None:
-    first = models[0]
-    if all(m.engine is first.engine and m.residual is first.residual for m in models):
+    if all(m.residual is models[0].residual for m in models):
         return
     raise BadInput(
         f"models {', '.join(m.name for m in models)}",
         where="one batch",
-        expected="models with the same wrench effects and residual",
+        expected="models with the same residual",
         remedy="Run different models one after the other.",
     )
+
+
+def _slots(models: Sequence[Model], candidates: Sequence[type[Wrench]]) -> list[type[Wrench]]:
+    """Wrench effects of an engine that serves the models, some perhaps twice.
+
+    None where none acts; otherwise all that are known, at no strength where a model lacks them:
+    an engine takes seconds to compile, and a step through all of them takes twice as long as
+    through none.
+    """
+    most = Counter(candidates)
+    for model in models:
+        most |= Counter(type(wrench) for wrench in model.wrenches)
+    if most:
+        most |= Counter(cls for cls in built_in().values() if issubclass(cls, Wrench))
+    return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]
 
 
 def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:

@@ -1,6 +1,5 @@
 """Innovations of many models on one run, in one compiled call."""
 
-from collections import Counter
 from typing import Sequence
 
 import numpy as np
@@ -8,7 +7,6 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.noise import Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
 from rovsim.simulation.initial_memory import remembered_at
@@ -57,15 +55,7 @@ def _accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> 
 
 def serve_all(models: Sequence[Model], run: ObservedRun) -> Batch:
     """One engine for all models, at the site of a run."""
-    return Batch(models, run.motion.site, _slots(models, run.wrenches))
-
-
-def _slots(models: Sequence[Model], known: Sequence[type[Wrench]]) -> list[type[Wrench]]:
-    """Wrench effects of the one engine that serves all candidates, some perhaps twice."""
-    most: Counter[type[Wrench]] = Counter(known)
-    for model in models:
-        most |= Counter(type(w) for w in model.wrenches)
-    return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]
+    return Batch(models, run.motion.site, candidates=run.wrenches, learned=False)
 
 
 def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts]:

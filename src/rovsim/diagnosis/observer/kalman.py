@@ -11,6 +11,14 @@ import numpy as np
 from numba import njit
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.small_matrices import (
+    add_to_diagonal,
+    increase,
+    invert,
+    multiply,
+    transpose,
+)
+
 MOST_DOUBLINGS = 60
 CONVERGED = 1e-13
 # A little noise everywhere keeps the Riccati equation solvable; it is far below the readings'.
@@ -84,32 +92,37 @@ def solve_steady_state(binned, h, d, level, memory, reading, colour, colour_memo
 
     Velocities of bins have no slow error of their own.
     """
-    phi = np.exp(-h / memory)
-    forgets = np.array([1.0, -phi])
+    phi, slow = np.exp(-h / memory), np.exp(-h / colour_memory)
+    n = 2 if binned else 4 if colour > 0.0 else 3
+    F, C, forgets = np.zeros((n, n)), np.zeros(n), np.zeros(3 if n == 4 else 2)
+    Q, r, disturbed = np.zeros((n, n)), reading**2, 1 if binned else 2
+    C[0], forgets[0], forgets[1] = 1.0, 1.0, -phi
+    F[disturbed, disturbed] = phi
     if binned:
-        F = np.array([[np.exp(-d * h), h], [0.0, phi]])
-        C = np.array([1.0, -0.5 * h])  # the mean over a bin is the velocity at its middle
+        F[0, 0], F[0, 1] = np.exp(-d * h), h
+        C[1] = -0.5 * h  # the mean over a bin is the velocity at its middle
     else:
-        F = np.zeros((4, 4))
         F[0, 0], F[0, 1], F[0, 2] = 1.0, h, 0.5 * h * h
-        F[1, 1], F[1, 2], F[2, 2] = 1.0 - d * h, h, phi
-        F[3, 3] = np.exp(-h / colour_memory)
-        C = np.array([1.0, 0.0, 0.0, 1.0])
-        if colour > 0.0:
-            forgets = np.array([1.0, -phi - F[3, 3], phi * F[3, 3]])
-        else:
-            F, C = np.ascontiguousarray(F[:3, :3]), C[:3].copy()
-    n, r = len(C), reading**2
-    disturbed = 1 if binned else 2
-    Q = SOLVABLE * r * np.eye(n)
+        F[1, 1], F[1, 2] = 1.0 - d * h, h
+    add_to_diagonal(Q, SOLVABLE * r)
     Q[disturbed, disturbed] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
     if n == 4:
-        Q[3, 3] = colour**2 * (1.0 - F[3, 3] ** 2)
+        F[3, 3], C[3] = slow, 1.0
+        Q[3, 3] = colour**2 * (1.0 - slow**2)
+        forgets[1], forgets[2] = -phi - slow, phi * slow
     P = solve_riccati(F, C, Q, r)
-    variance = np.dot(C, np.dot(P, C)) + r
-    gain = np.dot(P, C) / variance
-    poles = characteristic(np.dot(F, np.eye(n) - np.outer(gain, C)))
-    return F, C, gain, variance, poles, forgets
+    gain, variance = np.zeros(n), r
+    for i in range(n):
+        for j in range(n):
+            gain[i] += P[i, j] * C[j]
+        variance += C[i] * gain[i]
+    left = np.zeros((n, n))
+    add_to_diagonal(left, 1.0)
+    for i in range(n):
+        gain[i] /= variance
+        for j in range(n):
+            left[i, j] -= gain[i] * C[j]
+    return F, C, gain, variance, characteristic(multiply(F, left)), forgets
 
 
 @njit(cache=True)
@@ -119,15 +132,21 @@ def solve_riccati(F, C, Q, r):
     By structure-preserving doubling (Chu, Fan, Lin & Wang 2004): much faster on matrices this small
     than the general solver, with which a test compares it.
     """
-    A, G, H, unit = np.ascontiguousarray(F.T), np.outer(C, C) / r, Q.copy(), np.eye(len(C))
+    n = len(C)
+    A, G, H = transpose(F), np.zeros((n, n)), np.zeros((n, n))
+    increase(H, Q)
+    for i in range(n):
+        for j in range(n):
+            G[i, j] = C[i] * C[j] / r
     for _ in range(MOST_DOUBLINGS):
-        W = np.linalg.inv(unit + np.dot(G, H))
-        across = np.ascontiguousarray(A.T)
-        more = np.dot(np.dot(across, H), np.dot(W, A))
-        G = G + np.dot(np.dot(A, W), np.dot(G, across))
-        A = np.dot(np.dot(A, W), A)
-        H = H + more
-        if np.max(np.abs(more)) <= CONVERGED * np.max(np.abs(H)):
+        W = multiply(G, H)
+        add_to_diagonal(W, 1.0)
+        W = invert(W)
+        AW, across = multiply(A, W), transpose(A)
+        added, there = increase(H, multiply(multiply(across, H), multiply(W, A)))
+        increase(G, multiply(AW, multiply(G, across)))
+        A = multiply(AW, A)
+        if added <= CONVERGED * there:
             break
     return H
 
@@ -136,10 +155,14 @@ def solve_riccati(F, C, Q, r):
 def characteristic(A):
     """Coefficients of det(z I - A), highest power first (Faddeev-LeVerrier)."""
     n = len(A)
-    found, M = np.ones(n + 1), np.zeros((n, n))
+    found, M = np.zeros(n + 1), np.zeros((n, n))
+    found[0] = 1.0
     for k in range(1, n + 1):
-        M = np.dot(A, M) + found[k - 1] * np.eye(n)
-        found[k] = -np.trace(np.dot(A, M)) / k
+        M = multiply(A, M)
+        add_to_diagonal(M, found[k - 1])
+        AM = multiply(A, M)
+        for i in range(n):
+            found[k] -= AM[i, i] / k
     return found
 
 
