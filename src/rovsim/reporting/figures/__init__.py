@@ -30,27 +30,35 @@ class Kind:
 
 def kinds() -> dict[str, Kind]:
     """Every figure found in this folder, by name."""
-    found = {}
-    for module in iter_modules([str(Path(__file__).parent)]):
-        content = import_module(f"{__name__}.{module.name}")
-        if hasattr(content, "draw"):
-            kind = Kind(module.name, content.draw, content.SECTION, content.CAPTION)
-            found[module.name] = kind
-    return found
+    found = {name: _import(name) for name in _modules()}
+    return {name: kind for name, kind in found.items() if kind}
 
 
 def kind(name: str) -> Kind:
-    """Return the figure called `name`.
+    """Return the figure called `name`; no other is imported, which may take longer than to draw.
 
     Raises:
         BadInput: there is no such figure.
     """
-    found = kinds()
-    if name not in found:
+    found = _import(name) if name in _modules() else None
+    if found is None:
+        known = kinds()
         raise BadInput(
             f"there is no figure '{name}'",
             where="figures",
-            expected=f"one of {', '.join(found)}",
-            remedy=nearest(name, found),
+            expected=f"one of {', '.join(known)}",
+            remedy=nearest(name, known),
         )
-    return found[name]
+    return found
+
+
+def _modules() -> list[str]:
+    return [module.name for module in iter_modules([str(Path(__file__).parent)])]
+
+
+def _import(name: str) -> Kind | None:
+    """The figure of a module; None where it only helps others to draw."""
+    content = import_module(f"{__name__}.{name}")
+    if not hasattr(content, "draw"):
+        return None
+    return Kind(name, content.draw, content.SECTION, content.CAPTION)
