@@ -12,7 +12,7 @@ from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.benchmarks.blind.run import place, read_answers, run
 from rovsim.benchmarks.blind.score import matching, score
 from rovsim.benchmarks.blind.suites import FAMILIES, suite
-from rovsim.benchmarks.blind.summary import detection_limit, judge, summarize
+from rovsim.benchmarks.blind.summary import detection_limit, summarize
 from rovsim.benchmarks.blind.tables import write_markdown
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
@@ -270,7 +270,7 @@ def test_what_was_answered_is_not_asked_again(tmp_path, asked):
     changed = Method("stub", stub, ("rovsim.core.errors", "rovsim.evaluation.latency"))
     run(cases[:1], [changed], tmp_path / "r", 1)
     assert asked() == 3
-    found = summarize(judge(read_answers(cases, method, tmp_path / "r")))
+    found = summarize(read_answers(cases, method, tmp_path / "r"))
     assert found.kinds["single"].exact == 1.0
 
 
@@ -279,7 +279,7 @@ def test_a_crash_is_a_wrong_answer_and_is_told(tmp_path, asked):
     one, method = case(LAG, tank=SHORT), Method("stub", stub, ("rovsim.core.errors",))
     run([one], [method], tmp_path, 1)
     assert "no idea" in read_json(place(tmp_path, method, one))["error"]
-    found = summarize(judge(read_answers([one], method, tmp_path)))
+    found = summarize(read_answers([one], method, tmp_path))
     assert found.failed == (one.id,)
     assert found.kinds["single"].exact == 0.0
 
@@ -291,7 +291,7 @@ def test_the_page_gets_its_tables_between_the_marks(tmp_path):
         digest="", method="diagnosis", case=case(LAG), redrawn=False, seconds=1.5,
         diagnosis=diagnosis("thruster_lag"),
     )  # fmt: skip
-    methods = {"diagnosis": summarize(judge([answer]))}
+    methods = {"diagnosis": summarize([answer])}
     results = BlindSummary(suite="quick", seeds="reporting", methods=methods)
     for _ in range(2):
         replace_tables(page, write_markdown(results))

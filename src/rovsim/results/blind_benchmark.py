@@ -13,8 +13,9 @@ class Rates(Section):
 
     `first`: the first name is right; `exact`: the names are, and nothing else is named; `strict`:
     not counting as right what the method calls indistinguishable from it; `alike`: mean size of
-    those groups; `seconds` an answer; `parameters` judged, their relative errors, and how often the
-    95 % intervals hold.
+    those groups; `worse`: the model it ends with is worse than the nominal on test runs by more
+    than 2 %; `seconds` an answer takes, wall and CPU, the median and what 95 % stay below;
+    `parameters` judged, their relative errors, and how often the 95 % intervals hold.
     """
 
     cases: int
@@ -28,7 +29,11 @@ class Rates(Section):
     unexplained: float | None
     alike: float | None
     redrawn: float | None
+    worse: float | None
     seconds: float | None
+    seconds_95: float | None
+    cpu_seconds: float | None
+    cpu_seconds_95: float | None
     parameters: int
     error_median: float | None
     error_95: float | None
@@ -42,6 +47,41 @@ class EffectRates(Rates):
     instead: tuple[str, ...]
 
 
+class Ranks(Section):
+    """Where true values lie in what was said of them: `counts` (10,) of Φ((truth - value) / std).
+
+    `covered` by 95 % intervals; `stretch`: by what intervals would have to be wider to cover 95 %;
+    `p_value`: chance of counts as uneven as these if intervals are honest, None of too few.
+    """
+
+    values: int
+    covered: float | None
+    stretch: float | None
+    counts: tuple[int, ...]
+    p_value: float | None
+
+
+class Claims(Section):
+    """Names of which a probability between `low` and `high` was claimed, its mean, how many are
+    `right`; no limits where none was claimed."""
+
+    low: float | None
+    high: float | None
+    names: int
+    right: int
+    claimed: float | None
+
+
+class Calibration(Section):
+    """Whether intervals and probabilities are honest: all, by effect, by `effect.parameter`."""
+
+    ranks: Ranks
+    effects: dict[str, Ranks]
+    parameters: dict[str, Ranks]
+    probability: tuple[Claims, ...]
+    without_probability: Claims
+
+
 class MethodSummary(Section):
     """One method: by kind of case, by effect, and by physics outside the catalogue."""
 
@@ -50,6 +90,7 @@ class MethodSummary(Section):
     kinds: dict[str, Rates]
     effects: dict[str, EffectRates]
     outside: dict[str, Rates]
+    calibration: Calibration
 
 
 class BlindSummary(Result):

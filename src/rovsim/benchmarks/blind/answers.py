@@ -12,7 +12,8 @@ from rovsim.results.diagnosis import Answer, Diagnosis
 class KeptAnswer(Result):
     """What a method said to a case as it was flown; `error` where it crashed instead.
 
-    `digest` of all that the answer depends on; `redrawn`: flown again with weaker effects.
+    `digest` of all that the answer depends on; `redrawn`: flown again with weaker effects;
+    `seconds` by the clock, and of the processor.
     """
 
     noun: ClassVar[str] = "kept answer"
@@ -24,5 +25,6 @@ class KeptAnswer(Result):
     case: Case
     redrawn: bool
     seconds: float
+    cpu_seconds: float | None = None
     diagnosis: Diagnosis | Answer | None = None
     error: str | None = None

@@ -68,7 +68,7 @@ def work(job: Job) -> None:
         campaign = Path(folder, "campaign")
         flown = fly(job.case, campaign)
         for method, path, mark in job.methods:
-            begin = time.perf_counter()
+            begin, worked = time.perf_counter(), time.process_time()
             diagnosis, error = _ask(method, campaign, Path(folder, method.name))
             KeptAnswer(
                 digest=mark,
@@ -76,6 +76,7 @@ def work(job: Job) -> None:
                 case=flown,
                 redrawn=flown != job.case,
                 seconds=time.perf_counter() - begin,
+                cpu_seconds=time.process_time() - worked,
                 diagnosis=diagnosis,
                 error=error,
             ).write(path)

@@ -7,10 +7,13 @@ import numpy as np
 from scipy.optimize import isotonic_regression
 
 from rovsim.benchmarks.blind.answers import KeptAnswer
+from rovsim.benchmarks.blind.calibration import calibrate
 from rovsim.benchmarks.blind.case import Case
 from rovsim.benchmarks.blind.score import Score, score
 from rovsim.results.blind_benchmark import EffectRates, MethodSummary, Rates
+from rovsim.results.diagnosis import Answer, Diagnosis
 
+WORSE = 1.02  # of the nominal error: what a user would call worse ; less is chance
 HALF = 0.5 - 1e-12  # a share of one half is one, however a mean of shares is rounded
 
 
@@ -18,7 +21,8 @@ HALF = 0.5 - 1e-12  # a share of one half is one, however a mean of shares is ro
 class Judged:
     """A case as flown, what its answer was worth (None: it crashed), and how long that took.
 
-    `redrawn`: the vehicle left the tank at first, and was flown again with weaker effects.
+    `redrawn`: the vehicle left the tank at first, and was flown again with weaker effects;
+    `worse`: its model errs more than the nominal on test runs (None: it has none).
     """
 
     case: Case
@@ -28,24 +32,39 @@ class Judged:
     first: str
     verdict: str
     error: str | None = None
+    cpu_seconds: float | None = None
+    worse: bool | None = None
 
 
-def judge(answers: Iterable[KeptAnswer]) -> list[Judged]:
+def judge(answers: Sequence[KeptAnswer]) -> list[Judged]:
     """Score the kept answers of one method."""
     return [_judge(one) for one in answers]
 
 
 def _judge(one: KeptAnswer) -> Judged:
     if one.diagnosis is None:
-        return Judged(one.case, one.redrawn, one.seconds, None, "", "error", one.error)
+        return Judged(
+            one.case, one.redrawn, one.seconds, None, "", "error", one.error, one.cpu_seconds
+        )
     selected, verdict = one.diagnosis.selected, one.diagnosis.verdict
     first = selected[0].effect if selected else ""
     worth = score(one.case, one.diagnosis)
-    return Judged(one.case, one.redrawn, one.seconds, worth, first, verdict)
+    return Judged(
+        one.case, one.redrawn, one.seconds, worth, first, verdict,
+        cpu_seconds=one.cpu_seconds, worse=_is_worse(one.diagnosis),
+    )  # fmt: skip
 
 
-def summarize(found: Sequence[Judged]) -> MethodSummary:
+def _is_worse(answer: Answer | Diagnosis) -> bool | None:
+    if not isinstance(answer, Diagnosis) or answer.error.nominal is None:
+        return None
+    reached = answer.error.with_effects
+    return reached is None or reached > WORSE * answer.error.nominal
+
+
+def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
     """Rates of one method by kind of case, by effect, and outside the catalogue."""
+    found = judge(answers)
     outside = [j for j in found if j.case.outside]
     return MethodSummary(
         cases=len(found),
@@ -53,6 +72,7 @@ def summarize(found: Sequence[Judged]) -> MethodSummary:
         kinds={kind: rate(rows) for kind, rows in _grouped(found, lambda j: j.case.kind)},
         effects={name: _rate_effect(rows) for name, rows in _by_effect(found)},
         outside={n: rate(rows) for n, rows in _grouped(outside, lambda j: j.case.outside[0].name)},
+        calibration=calibrate(answers),
     )
 
 
@@ -78,6 +98,7 @@ def rate(found: Sequence[Judged]) -> Rates:
     naming = [s for j, s in zip(found, scores, strict=True) if j.case.names]
     parameters = [p for s in scores if s for p in s.parameters]
     errors = [p.error for p in parameters]
+    worked = [j.cpu_seconds for j in found if j.cpu_seconds is not None]
     return Rates(
         cases=len(found),
         verdict=share([bool(s and s.verdict) for s in scores]),
@@ -90,10 +111,14 @@ def rate(found: Sequence[Judged]) -> Rates:
         unexplained=share([bool(s and s.flagged) for s in scores]),
         alike=_mean([s.alike for s in scores if s]),
         redrawn=share([j.redrawn for j in found]),
-        seconds=float(np.median([j.seconds for j in found])) if found else None,
+        worse=share([j.worse for j in found if j.worse is not None]),
+        seconds=_quantile([j.seconds for j in found], 0.5),
+        seconds_95=_quantile([j.seconds for j in found], 0.95),
+        cpu_seconds=_quantile(worked, 0.5),
+        cpu_seconds_95=_quantile(worked, 0.95),
         parameters=len(errors),
-        error_median=float(np.median(errors)) if errors else None,
-        error_95=float(np.quantile(errors, 0.95)) if errors else None,
+        error_median=_quantile(errors, 0.5),
+        error_95=_quantile(errors, 0.95),
         coverage=share([p.covered for p in parameters if p.covered is not None]),
     )
 
@@ -101,6 +126,10 @@ def rate(found: Sequence[Judged]) -> Rates:
 def share(flags: Sequence[bool]) -> float | None:
     """Share of True; None of nothing."""
     return float(np.mean(flags)) if len(flags) else None
+
+
+def _quantile(values: Sequence[float], share_below: float) -> float | None:
+    return float(np.quantile(values, share_below)) if values else None
 
 
 def _mean(values: Sequence[float]) -> float | None:

@@ -3,14 +3,16 @@
 from typing import Mapping, Sequence
 
 from rovsim.benchmarks.blind.case import SEEDS
+from rovsim.benchmarks.blind.pictures import RANKS, RELIABILITY
 from rovsim.reporting.html import marked
-from rovsim.results.blind_benchmark import BlindSummary, Rates
+from rovsim.results.blind_benchmark import BlindSummary, Calibration, Claims, Ranks, Rates
 
 KIND_COLUMNS = {
     "cases": "cases", "verdict": "verdict right", "first": "first name right",
     "exact_strict": "exact", "exact": "exact, lenient", "false_names": "a false name",
     "error_median": "parameter error", "error_95": "95 % of errors below",
-    "coverage": "intervals hold", "seconds": "s",
+    "coverage": "intervals hold", "worse": "worse than nominal", "seconds": "s",
+    "seconds_95": "95 % below", "cpu_seconds": "CPU s", "cpu_seconds_95": "95 % below",
 }  # fmt: skip
 EFFECT_COLUMNS = {
     "first": "first name right", "exact_strict": "exact", "exact": "exact, lenient",
@@ -19,11 +21,22 @@ EFFECT_COLUMNS = {
 }  # fmt: skip
 OUTSIDE_COLUMNS = {"cases": "cases", "verdict": "flagged", "false_names": "a false name"}
 PERCENT = {"verdict", "first", "exact_strict", "exact", "false_names", "error_median", "error_95",
-           "coverage"}  # fmt: skip
+           "coverage", "worse", "covered", "p_value"}  # fmt: skip
+RANK_COLUMNS = {
+    "values": "values", "covered": "inside 95 %", "stretch": "times too narrow",
+    "p_value": "chance of such ranks", "counts": "ranks", "said": "intervals are",
+}  # fmt: skip
+UNLIKELY = 0.01  # of a histogram of honest ranks
+RARE = 0.001  # chances below are not told apart
+NEARLY = 0.1  # of the width of an interval
+CAPTIONS = {
+    RANKS: "Rank histograms: where the truth lies in what was said of each parameter",
+    RELIABILITY: "Reliability: share of right names against the probability that was claimed",
+}
 
 
-def write_markdown(results: BlindSummary) -> str:
-    """Markdown of `summary.json`."""
+def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
+    """Markdown of `summary.json`, with those of its pictures that were drawn."""
     first, last = SEEDS[results.seeds]
     parts = [
         f"Made by `make benchmark-blind SUITE={results.suite}`; {results.seeds} seeds "
@@ -33,8 +46,50 @@ def write_markdown(results: BlindSummary) -> str:
         parts += [f"### {name}", table(found.kinds, "cases of", KIND_COLUMNS)]
         parts += [table(found.effects, "effect", EFFECT_COLUMNS)]
         parts += [table(found.outside, "outside the catalogue", OUTSIDE_COLUMNS)]
+        parts += _calibration(found.calibration, pictures if name == "diagnosis" else ())
         parts += [f"Crashed: {', '.join(found.failed)}."] if found.failed else []
     return "\n\n".join(part for part in parts if part)
+
+
+def _calibration(found: Calibration, pictures: Sequence[str]) -> list[str]:
+    """Intervals and probabilities; nothing of a method that gives none."""
+    if not found.ranks.values:
+        return []
+    shown = {name: f"![{CAPTIONS[name]}](images/{name}.png)" for name in pictures}
+    parts = ["**Are intervals honest?** All kinds of cases together."]
+    parts += [_table_ranks({"all": found.ranks} | found.effects, "effect")]
+    parts += ["Parameter by parameter:", _table_ranks(found.parameters, "parameter")]
+    parts += [shown.get(RANKS, "")]
+    parts += ["**Are probabilities honest?**", _table_claims(found), shown.get(RELIABILITY, "")]
+    return parts
+
+
+def _table_ranks(rows: Mapping[str, Ranks], head: str) -> str:
+    columns = list(RANK_COLUMNS)[:-1]
+    lines = [[n, *(shown(k, getattr(r, k)) for k in columns), _say(r)] for n, r in rows.items()]
+    return marked.table([head, *RANK_COLUMNS.values()], lines)
+
+
+def _say(ranks: Ranks) -> str:
+    """Whether intervals are honest, in a word."""
+    if ranks.p_value is None or ranks.stretch is None:
+        return "–"
+    if ranks.p_value > UNLIKELY:
+        return "honest, as far as can be seen"
+    if abs(ranks.stretch - 1.0) < NEARLY:
+        return "of the right width, but uneven"
+    return "too narrow" if ranks.stretch > 1.0 else "too wide"
+
+
+def _table_claims(found: Calibration) -> str:
+    rows = [[f"{c.low:g} to {c.high:g}", *_share_right(c)] for c in found.probability]
+    rows += [["none", *_share_right(found.without_probability)]]
+    return marked.table(["probability", "claimed, mean", "names", "right"], rows)
+
+
+def _share_right(claims: Claims) -> list[str]:
+    right = shown("verdict", claims.right / claims.names if claims.names else None)
+    return ["–" if claims.claimed is None else f"{claims.claimed:.4f}", str(claims.names), right]
 
 
 def table(rows: Mapping[str, Rates], head: str, columns: Mapping[str, str]) -> str:
@@ -45,12 +100,18 @@ def table(rows: Mapping[str, Rates], head: str, columns: Mapping[str, str]) -> s
     return marked.table([head, *columns.values()], lines)
 
 
-def shown(key: str, value: float | Sequence[str] | None) -> str:
+def shown(key: str, value: float | Sequence[str] | Sequence[int] | None) -> str:
     """One cell."""
     if value is None or value == ():
         return "–"
+    if key == "counts" and isinstance(value, Sequence):
+        return " ".join(str(v) for v in value)
     if isinstance(value, Sequence):
         return ", ".join(str(v) for v in value)
+    if isinstance(value, int):
+        return str(value)
+    if key == "p_value" and value < RARE:
+        return f"below {100 * RARE:.1f} %"
     if key in PERCENT:
         return f"{100 * value:.0f} %" if value >= 0.1 or value == 0 else f"{100 * value:.1f} %"
     return f"{value:.3g}"

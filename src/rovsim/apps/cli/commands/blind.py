@@ -4,8 +4,8 @@ rovsim blind [blind.suite=quick|standard|full] [blind.seeds=reporting|developmen
              [blind.methods=[diagnosis,stlsq,frols]] [blind.cores=2] [out=results/blind]
 
 One JSON per case and method in OUT/SEEDS/METHOD/; what is there and still true is not asked again.
-Writes OUT/summary.json, and of reporting seeds the tables of docs/benchmark_blind.md. The methods
-beside this project's own need the extra rovsim[benchmark].
+Writes OUT/summary.json, and of reporting seeds tables and pictures of docs/benchmark_blind.md. The
+methods beside this project's own need the extra rovsim[benchmark].
 """
 
 from pathlib import Path
@@ -13,10 +13,11 @@ from pathlib import Path
 from rovsim.application.settings import BlindSettings, CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.blind.methods import chosen
+from rovsim.benchmarks.blind.pictures import write_pictures
 from rovsim.benchmarks.blind.run import read_answers
 from rovsim.benchmarks.blind.run import run as run_cases
 from rovsim.benchmarks.blind.suites import suite
-from rovsim.benchmarks.blind.summary import judge, summarize
+from rovsim.benchmarks.blind.summary import summarize
 from rovsim.benchmarks.blind.tables import write_markdown
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
@@ -38,10 +39,11 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     with reported("blind cases") as progress:
         run_cases(cases, methods, out / asked.seeds, asked.cores, progress)
     found = {m.name: read_answers(cases, m, out / asked.seeds) for m in methods}
-    summaries = {name: summarize(judge(answers)) for name, answers in found.items()}
+    summaries = {name: summarize(answers) for name, answers in found.items()}
     results = BlindSummary(suite=asked.suite, seeds=asked.seeds, methods=summaries)
     results.write(out / "summary.json")
     text = write_markdown(results)
     if asked.seeds == "reporting":
-        replace_tables(Path(asked.page), text)
+        page = Path(asked.page)
+        replace_tables(page, write_markdown(results, write_pictures(page, results)))
     say(settings, f"{text}\n{out / 'summary.json'}", results.to_json())

@@ -1,0 +1,128 @@
+"""Is what answers claim of themselves true? Their intervals, and the probabilities of their names.
+
+Simulation-based calibration (Talts et al. 2018, arXiv:1804.06788): draw a truth, simulate, infer;
+the rank of the truth in what was inferred is uniform if the inference is right. Here what was
+inferred is a Gaussian, so the rank is Φ((truth - value) / std). In strict simulation-based
+calibration truths are drawn from the prior of the inference; here they are drawn by the recipes,
+and only numbers of effects that were named count. So it is the part that tells whether intervals
+are honest where the data decide, not whether the whole inference is coherent.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Callable, Iterable, Iterator, Sequence
+
+import numpy as np
+from scipy.special import ndtr
+from scipy.stats import chisquare
+
+from rovsim.benchmarks.blind.answers import KeptAnswer
+from rovsim.benchmarks.blind.case import Case
+from rovsim.dynamics.catalogue import built_in
+from rovsim.results.blind_benchmark import Calibration, Claims, Ranks
+from rovsim.results.diagnosis import FittedEffect
+
+BINS = 10
+SURE = 1.96  # standard deviations to either side hold 95 % of a Gaussian
+# Claimed probabilities pile up at one, so that bins are finer there.
+EDGES = (0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0)
+EXPECTED = 5  # values a bin, below which the chi-square of a histogram is not one (Cochran 1954)
+COARSER = (10, 5, 2)  # bins of the test, as many as there are values for
+
+
+@dataclass(frozen=True)
+class Miss:
+    """(truth - value) / std of one number of an effect that is hidden and was named."""
+
+    effect: str
+    name: str
+    deviations: float
+
+
+def calibrate(answers: Sequence[KeptAnswer]) -> Calibration:
+    """What the kept answers of one method claim, against the truth."""
+    misses = [miss for one in answers for miss in list_misses(one)]
+    names = [name for one in answers for name in _list_names(one)]
+    told = [(p, right) for p, right in names if p is not None]
+    return Calibration(
+        ranks=rank(misses),
+        effects=_rank_each(misses, lambda m: m.effect),
+        parameters=_rank_each(misses, lambda m: f"{m.effect}.{m.name}"),
+        probability=tuple(_bin_claims(told)),
+        without_probability=_count([(0.0, right) for p, right in names if p is None], None, None),
+    )
+
+
+def list_misses(answer: KeptAnswer) -> Iterator[Miss]:
+    """Of every number with a deviation; one that no recipe hides is at its default."""
+    hidden = {entry.effect: entry for entry in answer.case.hidden}
+    for one in answer.diagnosis.selected if answer.diagnosis else ():
+        if one.effect in hidden:
+            truth = {name: v.value for name, v in hidden[one.effect].parameters.items()}
+            yield from _compare(one, truth)
+
+
+def _compare(one: FittedEffect, truth: dict[str, float]) -> Iterator[Miss]:
+    defaults = {p.name: p.default for p in built_in()[one.effect].parameters}
+    for name, fitted in one.parameters.items():
+        if fitted.value is not None and fitted.std:
+            deviations = (truth.get(name, defaults[name]) - fitted.value) / fitted.std
+            yield Miss(one.effect, name, float(deviations))
+
+
+def rank(misses: Sequence[Miss]) -> Ranks:
+    """How deviations are spread, against a standard Gaussian."""
+    z = np.array([m.deviations for m in misses])
+    at = np.minimum((BINS * ndtr(z)).astype(int), BINS - 1)
+    counts = np.bincount(at, minlength=BINS)
+    return Ranks(
+        values=len(z),
+        covered=float(np.mean(np.abs(z) <= SURE)) if len(z) else None,
+        stretch=float(np.quantile(np.abs(z), 0.95) / SURE) if len(z) else None,
+        counts=tuple(int(c) for c in counts),
+        p_value=_test_evenness(counts),
+    )
+
+
+def _test_evenness(counts: np.ndarray) -> float | None:
+    """Chance of a histogram (BINS,) as uneven as this one; None of too few values."""
+    for bins in COARSER:
+        if counts.sum() >= EXPECTED * bins:
+            return float(chisquare(counts.reshape(bins, -1).sum(axis=1)).pvalue)
+    return None
+
+
+def _rank_each(misses: Iterable[Miss], key: Callable[[Miss], str]) -> dict[str, Ranks]:
+    groups: dict[str, list[Miss]] = {}
+    for one in misses:
+        groups.setdefault(key(one), []).append(one)
+    return {name: rank(group) for name, group in sorted(groups.items())}
+
+
+def _list_names(answer: KeptAnswer) -> Iterator[tuple[float | None, bool]]:
+    """Of each selected name its claimed probability, and whether it is hidden."""
+    for one in answer.diagnosis.selected if answer.diagnosis else ():
+        yield one.probability, one.effect in _names(answer.case)
+
+
+def _names(case: Case) -> set[str]:
+    return {entry.effect for entry in case.hidden}
+
+
+def _bin_claims(told: Sequence[tuple[float, bool]]) -> Iterator[Claims]:
+    """Names by what was claimed of them; bins without a name are left out."""
+    for low, high in pairwise(EDGES):
+        last = high == EDGES[-1]
+        inside = [(p, right) for p, right in told if low <= p and (p < high or last)]
+        if inside:
+            yield _count(inside, low, high)
+
+
+def _count(names: Sequence[tuple[float, bool]], low: float | None, high: float | None) -> Claims:
+    return Claims(
+        low=low,
+        high=high,
+        names=len(names),
+        right=sum(right for _, right in names),
+        claimed=None if low is None else float(np.mean([p for p, _ in names])),
+    )

@@ -1,0 +1,105 @@
+"""The pictures of docs/benchmark_blind.md: rank histograms, and a reliability curve."""
+
+from math import ceil
+from pathlib import Path
+from typing import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from scipy.stats import binom, binomtest
+
+from rovsim.benchmarks.blind.calibration import EXPECTED
+from rovsim.reporting.figures.legends import note, nothing
+from rovsim.reporting.figures.style import save, sheet, styled
+from rovsim.results.blind_benchmark import BlindSummary, Calibration, Ranks
+
+RANKS, RELIABILITY = "blind_ranks", "blind_reliability"
+COLUMNS, ROW = 5, 24  # panels beside each other, mm
+CHANCE = 0.99  # of an honest histogram's bars lie inside the band
+BAR, BAND, LINE = "#0072B2", "#dddddd", "#D55E00"
+CERTAIN = 1e-4  # from one: where a probability of one is drawn
+
+
+def write_pictures(page: Path, results: BlindSummary) -> list[str]:
+    """Draw what the diagnosis claims into the page's images; the names of what there is to show."""
+    found = results.methods.get("diagnosis")
+    if found is None or not found.calibration.ranks.values:
+        return []
+    drawn = {RANKS: draw_ranks, RELIABILITY: draw_reliability}
+    for name, draw in drawn.items():
+        for file in save(draw(found.calibration), page.parent / "images", name):
+            if file.suffix == ".pdf":
+                file.unlink()
+    return list(drawn)
+
+
+@styled()
+def draw_ranks(found: Calibration) -> Figure:
+    """One histogram a parameter that has enough values, all values together first."""
+    shown = {"all": found.ranks} | _with_enough(found.parameters)
+    rows = ceil(len(shown) / COLUMNS)
+    figure = sheet(14 + ROW * rows)
+    panels = figure.subplots(rows, COLUMNS, sharex=True, squeeze=False).ravel()
+    for axes, (name, ranks) in zip(panels, shown.items(), strict=False):
+        _histogram(axes, name, ranks)
+    for axes in panels[len(shown) :]:
+        axes.set_axis_off()
+    fewer = len(found.parameters) - len(shown) + 1
+    note(figure, [
+        "Rank of the truth, Φ((truth − value) / std), and how many values have it.",
+        f"Grey: {100 * CHANCE:.0f} % of the bars of honest intervals lie there.",
+        f"{fewer} parameters have fewer than {2 * EXPECTED} values." if fewer else "",
+    ])  # fmt: skip
+    return figure
+
+
+def _with_enough(parameters: Mapping[str, Ranks]) -> dict[str, Ranks]:
+    return {name: r for name, r in parameters.items() if r.values >= 2 * EXPECTED}
+
+
+def _histogram(axes: Axes, name: str, ranks: Ranks) -> None:
+    """Shares of the values in each bin, over the band in which honest ones lie."""
+    bins = len(ranks.counts)
+    low, high = binom.interval(CHANCE, ranks.values, 1.0 / bins)
+    axes.axhspan(low, high, color=BAND, zorder=0)
+    axes.bar((np.arange(bins) + 0.5) / bins, ranks.counts, width=0.8 / bins, color=BAR)
+    effect, _, parameter = name.partition(".")
+    title = f"{effect}\n{parameter}" if parameter else effect
+    axes.set_title(f"{title} ({ranks.values})", fontsize=6.5)
+    axes.set_xlim(0.0, 1.0)
+    axes.set_xticks([0.0, 0.5, 1.0])
+    axes.tick_params(labelsize=6)
+    axes.locator_params(axis="y", nbins=3, integer=True)
+    axes.grid(False)
+
+
+@styled()
+def draw_reliability(found: Calibration) -> Figure:
+    """Share of right names against the probability that was claimed, with 95 % intervals."""
+    figure = sheet(75)
+    axes = figure.subplots()
+    # what is left to one, so that 0.99 and 0.999 are apart
+    claimed = np.array([max(1.0 - (c.claimed or 0.0), CERTAIN) for c in found.probability])
+    for doubt, bin_ in zip(claimed, found.probability, strict=True):
+        test = binomtest(bin_.right, bin_.names).proportion_ci(method="wilson")
+        share = bin_.right / bin_.names
+        axes.plot([doubt] * 2, [test.low, test.high], color=BAR, linewidth=1.2)
+        axes.plot(doubt, share, "o", color=BAR, markersize=4)
+        axes.annotate(f"{bin_.right} of {bin_.names}", (doubt, share), xytext=(-4, -4),
+                      textcoords="offset points", fontsize=7, ha="right", va="top")  # fmt: skip
+    honest = np.geomspace(CERTAIN, 1.0, 100)
+    axes.plot(honest, 1.0 - honest, color=LINE, label="honest")
+    axes.set_xscale("log")
+    axes.set_xlim(2.0, 0.7 * CERTAIN)
+    ticks = {0.5: "0.5", 0.1: "0.9", 0.01: "0.99", 1e-3: "0.999", CERTAIN: "above"}
+    axes.set_xticks(list(ticks), list(ticks.values()))
+    axes.set_xticks([], minor=True)
+    axes.set(
+        xlabel="probability that was claimed of a name", ylabel="share of names that are right"
+    )
+    axes.set_ylim(0.0, 1.05)
+    axes.legend(loc="lower right")
+    if not found.probability:
+        nothing(axes, "no name had a probability")
+    return figure
