@@ -1,7 +1,7 @@
 """Which run a thing belongs to, what was commanded, and where it was: known to all rooms."""
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import Literal, Mapping
 
 import numpy as np
 from numpy import ndarray as Array
@@ -19,28 +19,41 @@ class RunInfo:
 
 
 @dataclass(frozen=True, eq=False)
+class Logged:
+    """A number that was logged beside the commands: `value` (m,) at `time` (m,) s, increasing."""
+
+    time: Array
+    value: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Commands:
     """What the pilot sent. A line holds until the next one.
 
-    `time` (m,) in s on the MoCap clock, increasing. `value` (m, c): thruster commands in [-1, 1]
-    (`thruster`), demands per axis in [-1, 1] (`demand`) or a body wrench in N, N m (`wrench`).
+    `time` (m,) in s on the MoCap clock, increasing. `value` (m, c): commands of the thrusters in
+    [-1, 1] and angles in rad, as `Vehicle.command_columns` says (`thruster`), demands per axis in
+    [-1, 1] (`demand`) or a body wrench in N, N m (`wrench`). `auxiliary`: what else was logged, by
+    name; `voltage` is that of the battery in V.
     Without lines (m = 0) nothing was commanded: free decay, towing, drifting.
     """
 
     time: Array
     value: Array
     kind: CommandKind
+    auxiliary: Mapping[str, Logged] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
 class Site:
     """Where it was recorded: `tank` (3, 2) low and high walls in NED m (NaN when unknown).
 
-    `axes` (3,) are the signs between the MoCap world axes and NED.
+    `axes` (3,) are the signs between the MoCap world axes and NED. `level` m NED: where a vehicle
+    that floats is at rest.
     """
 
     tank: Array
     axes: Array
+    level: float = 0.0
 
     @staticmethod
     def unknown() -> "Site":

@@ -22,18 +22,24 @@ from rovsim.dynamics.effects.base import (
     Shaping,
     Strength,
 )
-from rovsim.dynamics.vehicle import Thrusters
+from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
 Between = Literal["held", "linear"]
 
 
 @dataclass(frozen=True, eq=False)
 class Thrust:
-    """Means over steps: `force` (k, n) N, `wrench` (k, 6) given directly, `demand` (k, 6)."""
+    """Means over steps: `force` (k, n) N, `wrench` (k, 6) given directly, `demand` (k, 6).
+
+    `heading` (2, k, a) cosine and sine of the angle of each thruster that turns, None where none
+    does; `angle` (k, s) rad of each control surface.
+    """
 
     force: Array
     wrench: Array
     demand: Array
+    heading: Array | None = None
+    angle: Array | None = None
 
 
 class ThrustPath:
@@ -42,6 +48,7 @@ class ThrustPath:
     def __init__(self, thrusters: Thrusters, effects: Sequence[Effect]) -> None:
         ranked = sorted(effects, key=lambda effect: effect.rank)
         self.thrusters = thrusters
+        self.surfaces = sum(len(e.names) for e in ranked if isinstance(e, Surfaces))
         self.clocks = [e for e in ranked if isinstance(e, Clock)]
         self.autopilots = [e for e in ranked if isinstance(e, Autopilot)]
         self.shapings = [e for e in ranked if isinstance(e, Shaping)]
@@ -62,18 +69,59 @@ class ThrustPath:
             time = clock.arrival(time)
         return time
 
-    def thruster_commands(self, value: Array, kind: CommandKind) -> Array:
-        """Thruster commands (m, n) of logged values (m, c)."""
-        if kind == "demand":
-            for autopilot in self.autopilots:
-                value = autopilot.mixed(value)
-        return thruster_commands(value, kind, self.thrusters)
+    def columns(self, kind: CommandKind) -> int:
+        """How many values a logged command has."""
+        own = self.thrusters.count + int(self.thrusters.turning.sum()) + self.surfaces
+        return own if kind == "thruster" else 6
 
-    def static(self, command: Array, t: Array, duration: float) -> Array:
-        """Static forces (m, n) in N of thruster commands (m, n) at times t (m,)."""
+    def thruster_commands(self, value: Array, kind: CommandKind) -> Array:
+        """Thruster commands (m, n) of logged values (m, c); demands are mixed and clipped.
+
+        Raises:
+            BadInput: the number of columns does not fit the vehicle, or it cannot mix demands.
+        """
+        self._refuse(value, kind)
+        if kind == "thruster":
+            return value if value.shape[1] == self.thrusters.count else value[:, self._throttles]
+        for autopilot in self.autopilots:
+            value = autopilot.mixed(value)
+        return np.clip(value @ self.thrusters.mixing.T, -1.0, 1.0)
+
+    def steering(self, value: Array, kind: CommandKind) -> tuple[Array, Array]:
+        """Angles in rad of thrusters that turn (m, a) and of surfaces (m, s): zero but by log."""
+        turning, count = int(self.thrusters.turning.sum()), len(value)
+        if kind != "thruster":
+            return np.zeros((count, turning)), np.zeros((count, self.surfaces))
+        follows = self._throttles[self.thrusters.turning] + 1
+        return value[:, follows], value[:, self.thrusters.count + turning :]
+
+    @cached_property
+    def _throttles(self) -> Array:
+        """Columns (n,) that hold the commands of the thrusters; an angle follows its thruster."""
+        before = np.cumsum(self.thrusters.turning) - self.thrusters.turning
+        return np.arange(self.thrusters.count) + before
+
+    def _refuse(self, value: Array, kind: CommandKind) -> None:
+        expected = self.columns(kind)
+        if value.shape[1] != expected:
+            raise BadInput(
+                f"{value.shape[1]} command columns",
+                where="commands.columns in campaign.yaml",
+                expected=f"{expected} for commands of the kind '{kind}' on this vehicle",
+                remedy="Name one column per thruster (two where it turns) and surface, or the six "
+                "axes for demands.",
+            )
+
+    def static(
+        self, command: Array, t: Array, duration: float, voltage: Array | None = None
+    ) -> Array:
+        """Static forces (m, n) in N of thruster commands (m, n) at times t (m,).
+
+        `voltage` (m,) V of the battery, where it was logged.
+        """
         for shaping in self.shapings:
             command = shaping.shaped(command)
-        force = self.thrusters.static_force(command)
+        force = self.thrusters.static_force(command, voltage)
         for curve in self.curves:
             force = curve.bent(force, self.full_force)
         for strength in self.strengths:
@@ -83,13 +131,13 @@ class ThrustPath:
     @cached_property
     def full_force(self) -> Array:
         """Nominal static forces (2, n) in N at full command backwards and forwards."""
-        forwards = np.ones((1, len(self.thrusters.spin)))
+        forwards = np.ones((1, self.thrusters.count))
         return self.thrusters.static_force(np.concatenate([-forwards, forwards]))
 
     def respond(self, force: Array, h: float, states: list | None) -> tuple[Array, list]:
         """Dynamic mean forces over steps, and the states to go on from."""
-        after = []
-        for i, response in enumerate(self.responses):
+        after: list = []
+        for i, response in enumerate(self.responses if self.thrusters.count else ()):
             force, state = response.respond(force, h, states[i] if states else None)
             after.append(state)
         return force, after
@@ -102,7 +150,7 @@ class ThrustPath:
         """
         arrival = edges[0] + self.arrival(commands.time - edges[0])  # clocks agree at the start
         duration = float(edges[-1] - edges[0])
-        lines = Commands(arrival, commands.value, commands.kind)
+        lines = replace(commands, time=arrival)
         static = self.arrived(lines, edges, float(edges[0]), duration, between)
         force, _ = self.respond(static.force, float(edges[1] - edges[0]), None)
         return replace(static, force=force)
@@ -124,14 +172,17 @@ class ThrustPath:
         def mean(x: Array) -> Array:
             return np.add.reduceat(x * width, first, axis=0) / np.diff(edges)[:, None]
 
-        count, steps = len(self.thrusters.spin), len(edges) - 1
-        none = np.full((steps, 6), np.nan)
+        steps = len(edges) - 1
+        none, still = np.full((steps, 6), np.nan), np.zeros((steps, 6))
         if lines.kind == "wrench":
-            return Thrust(np.zeros((steps, count)), mean(at_middle), none)
+            return Thrust(np.zeros((steps, self.thrusters.count)), mean(at_middle), none)
         command = self.thruster_commands(at_middle, lines.kind)
-        static = mean(self.static(command, middle - start, duration))
+        voltage = _voltage(lines, middle)
+        static = mean(self.static(command, middle - start, duration, voltage))
         demand = mean(at_middle) if lines.kind == "demand" else none
-        return Thrust(static, np.zeros((steps, 6)), demand)
+        azimuth, angle = self.steering(at_middle, lines.kind)
+        heading = np.stack([mean(np.cos(azimuth)), mean(np.sin(azimuth))])
+        return Thrust(static, still, demand, heading, mean(angle))
 
 
 def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
@@ -143,20 +194,7 @@ def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
     return np.stack([np.interp(at, time, column) for column in value.T], axis=1)
 
 
-def thruster_commands(value: Array, kind: CommandKind, thrusters: Thrusters) -> Array:
-    """Thruster commands (m, n) of logged values (m, c); demands go through the mixer, clipped.
-
-    Raises:
-        BadInput: the number of columns does not fit the vehicle.
-    """
-    expected = 6 if kind == "demand" else len(thrusters.spin)
-    if value.shape[1] != expected:
-        raise BadInput(
-            f"{value.shape[1]} command columns",
-            where="commands.columns in campaign.yaml",
-            expected=f"{expected} for commands of the kind '{kind}' on this vehicle",
-            remedy="Name one column per thruster, or the six axes for demands.",
-        )
-    if kind == "demand":
-        return np.clip(value @ thrusters.mixing.T, -1.0, 1.0)
-    return value
+def _voltage(lines: Commands, at: Array) -> Array | None:
+    """Voltage (m,) of the battery at these times, s, where it was logged."""
+    logged = lines.auxiliary.get("voltage")
+    return None if logged is None else np.interp(at, logged.time, logged.value)

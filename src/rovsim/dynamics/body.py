@@ -32,7 +32,12 @@ class Body:
     `center_of_buoyancy` (3,) m; `current` (3,) m/s NED; `B` (6, n) wrench per thruster force and
     `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m; `coupling`
     (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column), never
-    changed by walls; `memory` (6,) force per remembered velocity; `forgets` 1/s, 0 = no memory.
+    changed by walls; `memory` (6,) force per remembered velocity; `forgets` 1/s, 0 = no memory;
+    `waterplane` (3,) stiffness N/m, N m/rad in heave, roll, pitch; `products` (t,) coefficients of
+    products of velocities, `factors` (t, 4) axis of the force and up to three velocities: i, 6 + i
+    for its size, -1 for none; `surfaces` (s, 15) position, normal, chord (3 each), half density
+    times area, lift slope, drag, stall, thruster whose jet it meets (-1: none), square of the jet's
+    speed per newton; `lifting` (s,) factor on the lift of each; `free` (6,) axes that move.
     """
 
     gravity: float
@@ -52,6 +57,12 @@ class Body:
     coupling: Array = field(default_factory=lambda: np.zeros((2, 6, 6)))
     memory: Array = field(default_factory=lambda: np.zeros(6))
     forgets: float = 0.0
+    waterplane: Array = field(default_factory=lambda: np.zeros(3))
+    products: Array = field(default_factory=lambda: np.zeros(0))
+    factors: Array = field(default_factory=lambda: np.zeros((0, 4), np.int64))
+    surfaces: Array = field(default_factory=lambda: np.zeros((0, 15)))
+    lifting: Array = field(default_factory=lambda: np.zeros(0))
+    free: Array = field(default_factory=lambda: np.ones(6, bool))
 
     def add_mass(self, mass: float, place: Array, inertia: Array) -> None:
         """Add a mass in kg at a place (3,), with its own inertia (3, 3), and its weight."""
@@ -61,8 +72,8 @@ class Body:
 
     @property
     def least_inertia(self) -> float:
-        """Smallest eigenvalue of the total inertia: of a body that can exist it is positive."""
-        M = self.M_RB + self.M_A
+        """Smallest eigenvalue of the inertia that moves: positive if such a body can exist."""
+        M = (self.M_RB + self.M_A)[np.ix_(self.free, self.free)]
         return float(np.linalg.eigvalsh(0.5 * (M + M.T))[0])
 
     @property
@@ -82,6 +93,24 @@ class Body:
             remedy="Check the mass, inertia and added mass (all positive), and their changes.",
         )
 
+    @property
+    def M_inv(self) -> Array:
+        """Acceleration per force (6, 6): its inverse; zero where an axis is held.
+
+        Raises:
+            BadInput: no such body exists.
+        """
+        if self.free.all():
+            return np.linalg.inv(self.M)
+        moving, found = np.ix_(self.free, self.free), np.zeros((6, 6))
+        found[moving] = np.linalg.inv(self.M[moving])
+        return found
+
+    @property
+    def goes_further(self) -> bool:
+        """Whether it has a waterplane, products of velocities or surfaces."""
+        return bool(self.waterplane.any() or self.products.size or self.lifting.size)
+
 
 def packed(bodies: Sequence[Body]) -> Constants:
     """Constants of several parameter sets of one vehicle, stacked for the engine."""
@@ -92,7 +121,7 @@ def packed(bodies: Sequence[Body]) -> Constants:
     return Constants(
         M_RB=stack(lambda b: b.M_RB),
         M_A=stack(lambda b: b.M_A),
-        M_inv=stack(lambda b: np.linalg.inv(b.M)),
+        M_inv=stack(lambda b: b.M_inv),
         linear=stack(lambda b: b.linear),
         quadratic=stack(lambda b: b.quadratic),
         heaviness=stack(lambda b: b.weight - b.buoyancy),
@@ -105,4 +134,11 @@ def packed(bodies: Sequence[Body]) -> Constants:
         forgets=stack(lambda b: b.forgets),
         B=stack(lambda b: b.B),
         directions=np.ascontiguousarray(bodies[0].directions, dtype=float),
+        further=stack(lambda b: b.goes_further),
+        waterplane=stack(lambda b: b.waterplane),
+        products=stack(lambda b: b.products),
+        factors=np.ascontiguousarray(bodies[0].factors),
+        surfaces=np.ascontiguousarray(bodies[0].surfaces),
+        lifting=stack(lambda b: b.lifting),
+        free=stack(lambda b: b.free),
     )

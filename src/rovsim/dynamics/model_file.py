@@ -12,7 +12,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.learned.residual import StoredResidual, read_residual
 from rovsim.dynamics.model import BUILT_IN, Model
-from rovsim.dynamics.vehicle import Vehicle, check_layout, known_vehicle, load_vehicle
+from rovsim.dynamics.vehicle import Vehicle, build_vehicle, known_vehicle, load_vehicle
 
 SCHEMA = "rovsim.model/1"
 
@@ -114,8 +114,7 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     if isinstance(file.vehicle, str):
         vehicle = load_vehicle(file.vehicle, beside=path.parent)
     else:
-        vehicle = checked(Vehicle, file.vehicle, f"{path}, vehicle")
-        check_layout(vehicle, path)
+        vehicle = build_vehicle(file.vehicle, f"{path}, vehicle")
     residual = read_residual(file.residual, path.parent) if file.residual else None
     added = [build_effect(entry, catalogue) for entry in file.effects]
     model = Model(path.stem, vehicle, (*vehicle.effects(), *added), residual)
@@ -147,9 +146,14 @@ def describe_model(model: Model) -> dict[str, Any]:
     known = known_vehicle(name) is not None and load_vehicle(name) == model.vehicle
     return {
         "schema": SCHEMA,
-        "vehicle": name if known else model.vehicle.model_dump(mode="json"),
+        "vehicle": name if known else _described(model.vehicle),
         "effects": [describe_effect(one).plain() for one in model.added],
     }
+
+
+def _described(vehicle: Vehicle) -> dict[str, Any]:
+    """What its file says."""
+    return vehicle.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
 
 def write_model(

@@ -33,9 +33,14 @@ RESIDUAL = "learned residual"
 NOMINAL = {  # parts of the vehicle's own effects, in the order in which they are put in
     "net_buoyancy": RESTORING,
     "buoyancy_center": RESTORING,
+    "waterplane_stiffness": RESTORING,
     "added_mass": "added-mass Coriolis",
+    "added_mass_coupling": "added-mass Coriolis",
     "linear_damping": "linear damping",
     "quadratic_damping": "quadratic damping",
+    "coupled_damping": "coupled damping",
+    "cross_flow": "cross-flow",
+    "surfaces": "control surfaces",
 }
 
 
@@ -83,7 +88,7 @@ def _place(effect: Effect) -> int:
 
 def _neutral(effect: Effect) -> Effect:
     """The effect at its defaults, which change nothing; what every vehicle has stays."""
-    return type(effect)() if effect.listed else effect
+    return type(effect)() if effect.listed or effect.id in NOMINAL else effect
 
 
 def _with(model: Model, effects: Sequence[Effect]) -> Model:

@@ -5,7 +5,7 @@ the kernels take, and in which order, is known to this module and the engine alo
 """
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Sequence, TypeVar
 
 import numpy as np
@@ -94,7 +94,10 @@ class Batch:
         self.engine = engine(slots)
         self._parameters = np.stack([_slotted(m, slots) for m in models])
         self._constants = _constants(models)
-        self._place = Place(np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes))
+        self._place = Place(
+            np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
+        )
+        self._free = np.concatenate([np.ones(7), models[0].body.free])
 
     def trajectories(
         self, drives: Sequence[Drive], starts: Starts, h: float, stride: int = 1
@@ -111,6 +114,7 @@ class Batch:
         rows = np.tile(starts.steps // stride + 1, models)
         stops = np.cumsum(rows)
         out = np.empty((int(rows.sum()), 13))
+        starts = replace(starts, state=starts.state * self._free)
         out[stops - rows] = starts.state.reshape(-1, 13)
         run_jobs(
             self.engine.integrate, starts.jobs(starts.first * h, stops - rows + 1), h, stride,
@@ -131,6 +135,7 @@ class Batch:
         stops = np.cumsum(np.tile(starts.steps, models))
         out = np.empty((models * count, 6))
         own, row = _distinct(correction.readings)
+        starts = replace(starts, state=starts.state * self._free)
         jobs = starts.jobs(correction.ends[starts.first] * h, stops - np.tile(starts.steps, models))
         run_jobs(
             self.engine.observe, jobs, h, correction.ends, self._constants, _inputs(drives),
@@ -144,15 +149,16 @@ class Batch:
 
         `memory` (n, 6) is what the water remembers then; empty: nothing.
         """
-        out = np.empty((len(times), 6))
+        out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self._free)
         self.engine.accelerations(
-            times, np.ascontiguousarray(states), memory, self._constants, _inputs([drive]),
+            times, states, memory, self._constants, _inputs([drive]),
             self._parameters, self._residual, self._place, out,
         )  # fmt: skip
         return out
 
     def advance(self, drive: Drive, state: Array, memory: Array, t: float, h: float) -> None:
         """Move the first model's state (13,) and memory (6,) on over all steps, in place."""
+        state *= self._free
         self.engine.advance(
             state, memory, t, h, self._constants, _inputs([drive]), self._parameters,
             self._residual, self._place,
@@ -226,13 +232,13 @@ def _inputs(drives: Sequence[Drive]) -> Inputs:
     own, row = _distinct(drives)
     first = own[0]
     if len(own) == 1:
-        wrench, force, ramp = first.wrench[None], first.force[None], first.ramp[None]
+        wrench, acting, ramp = first.wrench[None], first.acting[None], first.ramp[None]
     else:
-        wrench, force, ramp = (
-            np.stack([getattr(d, name) for d in own]) for name in ("wrench", "force", "ramp")
+        wrench, acting, ramp = (
+            np.stack([getattr(d, name) for d in own]) for name in ("wrench", "acting", "ramp")
         )
     length = np.full(len(first.wrench), first.duration)
-    return Inputs(wrench, force, first.demand, row, length, ramp)
+    return Inputs(wrench, acting, first.demand, row, length, ramp)
 
 
 def _distinct(values: Sequence[T]) -> tuple[list[T], Array]:

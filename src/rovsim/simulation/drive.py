@@ -24,6 +24,7 @@ class Drive:
     `wrench` (k, 6) N and N m of thrusters, autopilots and commands that are a wrench; `force`
     (k, n) N of each thruster; `demand` (k, 6) in [-1, 1], NaN where none was logged; `duration` s
     of the whole run. `ramp` (k, 6) is what the wrench grows by over each step; empty: nothing.
+    `angle` (k, s) rad of each control surface.
     """
 
     wrench: Array
@@ -31,16 +32,28 @@ class Drive:
     demand: Array
     duration: float
     ramp: Array = field(default_factory=lambda: np.empty((0, 6)))
+    angle: Array = field(default_factory=lambda: np.empty((0, 0)))
+
+    @property
+    def acting(self) -> Array:
+        """Forces, then angles (k, n + s), as the engine takes them."""
+        return np.hstack([self.force, self.angle]) if self.angle.size else self.force
 
     @staticmethod
     def by(model: Model, thrust: Thrust, duration: float) -> "Drive":
         """What a thrust does to a model."""
-        wrench = thrust.wrench + model.actuated(thrust.force, thrust.demand)
-        return Drive(wrench, thrust.force, thrust.demand, duration)
+        force = model.thrust_path.thrusters.resolved(thrust.force, thrust.heading)
+        wrench = thrust.wrench + model.actuated(force, thrust.demand)
+        angle = np.zeros((len(force), model.thrust_path.surfaces))
+        if thrust.angle is not None:
+            angle = thrust.angle
+        return Drive(wrench, force, thrust.demand, duration, angle=angle)
 
     def each(self, change: Callable[[Array], Array]) -> "Drive":
-        """Wrench, forces and demand, all changed alike."""
-        return Drive(change(self.wrench), change(self.force), change(self.demand), self.duration)
+        """Wrench, forces, demand and angles, all changed alike."""
+        names = ("wrench", "force", "demand", "angle")
+        changed = {name: change(getattr(self, name)) for name in names}
+        return Drive(duration=self.duration, **changed)
 
     def joined(self, count: int) -> "Drive":
         """The same over steps as long as `count` of these: mean, and first moment as a ramp.
@@ -51,7 +64,7 @@ class Drive:
             return self
         apart = (np.arange(count) + 0.5) / count - 0.5
         parts = self.wrench.reshape(-1, count, 6)
-        long = self.each(lambda x: x.reshape(-1, count, x.shape[-1]).mean(axis=1))
+        long = self.each(lambda x: x.reshape(len(x) // count, count, x.shape[-1]).mean(axis=1))
         # a line r c over -1/2 < c < 1/2 has the first moment r / 12
         return replace(long, ramp=12.0 * np.einsum("j,kji->ki", apart, parts) / count)
 

@@ -63,7 +63,7 @@ def _average_at_samples(drive: Drive, stride: int) -> Drive:
     """At each sample of a uniform clock: the mean of the steps on either side."""
 
     def mean(x: Array) -> Array:
-        x = x.reshape(-1, stride, x.shape[-1]).mean(axis=1)
+        x = x.reshape(len(x) // stride, stride, x.shape[-1]).mean(axis=1)
         return 0.5 * (np.vstack([x[:1], x]) + np.vstack([x, x[-1:]]))
 
     return drive.each(mean)

@@ -52,7 +52,7 @@ class Stepper:
         _refuse_foresight(model)
         _refuse_unknown_duration(model, duration)
         self.model, self.kind, self.duration = model, kind, duration
-        self.columns = len(model.body.directions) if kind == "thruster" else 6
+        self.columns = model.thrust_path.columns(kind)
         self._batch = Batch([model], site)
         self.reset()
 

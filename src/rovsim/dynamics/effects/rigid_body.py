@@ -15,7 +15,7 @@ class RigidBody(Coefficients):
     id = "rigid_body"
     listed = False
     equation = r"M_{RB}\dot\nu + C_{RB}(\nu)\nu"
-    neglects = "products of inertia"
+    neglects = "nothing of a rigid body"
     source = "Fossen 2021, sec. 3.3"
     parameters = (
         Parameter("mass", "kg", "m", low=0.0, scale=1.0),
@@ -24,12 +24,18 @@ class RigidBody(Coefficients):
             for name in ("Ixx", "Iyy", "Izz")
         ),
         *PLACE,
+        *(
+            Parameter(name, "kg m2", f"I_{{{name[1:]}}}", scale=0.05)
+            for name in ("Ixy", "Ixz", "Iyz")
+        ),
     )
 
     def enter(self, body: Body) -> None:
-        """Add mass, inertia and weight at the centre of gravity."""
+        """Add mass, inertia and weight at the centre of gravity (Fossen 2021, eq. 3.25)."""
         mass, *moments = self.values[:4]
-        body.add_mass(mass, self.values[4:], np.diag(moments))
+        xy, xz, yz = self.values[7:]
+        products = np.array([[0.0, xy, xz], [xy, 0.0, yz], [xz, yz, 0.0]])
+        body.add_mass(mass, self.values[4:7], np.diag(moments) - products)
 
 
 class Payload(Coefficients):

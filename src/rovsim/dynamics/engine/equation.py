@@ -12,6 +12,7 @@ State: position NED, quaternion body to world, body velocity. SI, float64, FRD a
 import numpy as np
 
 from rovsim.dynamics.engine.compiled import inline_anew, inline_internal, internal
+from rovsim.dynamics.engine.further import further_forces
 from rovsim.dynamics.engine.types import At, State
 from rovsim.dynamics.engine.vectors import (
     add3,
@@ -108,19 +109,19 @@ def coupled_damping(coupling, v):
 
 
 @internal
-def thrust_loss(force, advance, B, directions, nu_r):
+def thrust_loss(acting, advance, B, directions, nu_r):
     """Change of the thruster wrench with inflow: F -> F (1 - c sign(F) d.v_r)."""
     tau = np.zeros(6)
-    for n in range(force.size):
+    for n in range(B.shape[1]):
         inflow = dot3(vector3(directions[n]), nu_r)
         for i in range(6):
-            tau[i] -= advance * abs(force[n]) * inflow * B[i, n]
+            tau[i] -= advance * abs(acting[n]) * inflow * B[i, n]
     return vector6(tau)
 
 
 @inline_anew
-def accelerate(extra, at, body, p, thrust, force):
-    """Body acceleration under a thruster wrench (6,) made of thruster forces (n,)."""
+def accelerate(extra, at, body, p, thrust, acting, level):
+    """Body acceleration under a thruster wrench (6,), of the forces in `acting` (n + s,)."""
     tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
     tau = add6(tau, -1.0, coriolis(body.M_A, at.nu_r))
     tau = add6(tau, 1.0, at.drag)
@@ -130,8 +131,12 @@ def accelerate(extra, at, body, p, thrust, force):
     if body.coupled != 0.0:
         tau = add6(tau, 1.0, coupled_damping(body.coupling, at.nu_r))
     if body.advance != 0.0:
-        loss = thrust_loss(force, body.advance, body.B, body.directions, at.nu_r)
+        loss = thrust_loss(acting, body.advance, body.B, body.directions, at.nu_r)
         tau = add6(tau, 1.0, loss)
+    if body.further != 0.0:
+        rare = (body.waterplane, body.products, body.factors, body.surfaces, body.lifting)
+        depth, count = at.position[2] - level, body.B.shape[1]
+        tau = add6(tau, 1.0, further_forces(rare, depth, at.R[2], at.nu_r, acting, count))
     return times6(body.M_inv, tau)
 
 
@@ -146,13 +151,16 @@ def diagonal(a, b):
 
 @inline_anew
 def slope(extra, t, x, body, p, step, correction, site):
-    """Rate of change of the state at time t; `correction` (6,) adds to the acceleration."""
-    thrust, force, demand, duration = step
+    """Rate of change of the state at time t; `correction` (6,) adds to the acceleration.
+
+    Axes that are held stay so: `M_inv` is zero there, and so must be the correction.
+    """
+    thrust, acting, demand, duration = step
     R = rotation(x.attitude)
     nu_r, nu_c_dot = flow(body.current, R, x.nu)
     drag, inertia = damping(body.linear, body.quadratic, nu_r), diagonal(body.M_RB, body.M_A)
     at = At(
         t, duration, x.position, R, x.nu, nu_r, nu_c_dot, drag, inertia, demand, site[0], site[1]
     )
-    nu_dot = add6(accelerate(extra, at, body, p, thrust, force), 1.0, correction)
+    nu_dot = add6(accelerate(extra, at, body, p, thrust, acting, site[2]), 1.0, correction)
     return State(into_world(R, x.nu), quaternion_rate(x.attitude, x.nu), nu_dot)

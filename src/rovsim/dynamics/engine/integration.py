@@ -95,7 +95,7 @@ def learned(extra, t, x, body, p, step, push, data, site, features, a_res):
     base = slope(extra, t, x, body, p, step, push, site)
     assemble_one(data, x.nu, base.nu, step[0], rotation(x.attitude), features)
     evaluate(data, features, a_res)
-    return vector6(a_res)
+    return each6(body.free, vector6(a_res))
 
 
 @inline_internal
@@ -107,14 +107,16 @@ def constants_of(bodies, m):
         vector3(bodies.righting[m]), vector3(bodies.current[m]), bodies.advance[m],
         bodies.coupled[m], bodies.coupling[m], vector6(bodies.memory[m]), bodies.forgets[m],
         bodies.B[m], bodies.directions,
+        bodies.further[m], vector3(bodies.waterplane[m]), bodies.products[m], bodies.factors,
+        bodies.surfaces, bodies.lifting[m], vector6(bodies.free[m]),
     )  # fmt: skip
 
 
 @inline_internal
 def step_of(inputs, row, k):
-    """Commands of step k: thruster wrench, thruster forces, demand, duration of the recording."""
+    """Commands of step k: wrench, forces and angles, demand, duration of the recording."""
     return (
-        vector6(inputs.wrench[row, k]), inputs.force[row, k], vector6(inputs.demand[k]),
+        vector6(inputs.wrench[row, k]), inputs.acting[row, k], vector6(inputs.demand[k]),
         inputs.duration[k],
     )  # fmt: skip
 
@@ -146,10 +148,10 @@ def store(x, out):
 
 @inline_internal
 def site_of(site):
-    """Walls (low, high per world axis) and MoCap axes as tuples."""
+    """Walls (low, high per world axis) and MoCap axes as tuples, and where what floats rests."""
     tank = site.tank
     walls = ((tank[0, 0], tank[0, 1]), (tank[1, 0], tank[1, 1]), (tank[2, 0], tank[2, 1]))
-    return walls, vector3(site.axes)
+    return walls, vector3(site.axes), site.level
 
 
 @inline_anew

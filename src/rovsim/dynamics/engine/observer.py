@@ -88,10 +88,11 @@ def observe(
     disturbance over one step; `out` (.., 6) innovations, m or m/s and rad or rad/s.
     """
     place, fade = site_of(site), vector6(decay)
-    gain_pose, gain_nu, gain_a = vector6(gains[0]), vector6(gains[1]), vector6(gains[2])
     for job in range(jobs.first.size):
         m, first, at, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
         x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), p[m]
+        gain_pose, gain_nu = vector6(gains[0]), each6(body.free, vector6(gains[1]))
+        gain_a = each6(body.free, vector6(gains[2]))
         a, n = ZERO6, ends[first]
         memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
         for k in range(first + 1, first + 1 + jobs.steps[job]):

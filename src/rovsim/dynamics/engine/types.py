@@ -62,7 +62,9 @@ class Constants(NamedTuple):
     `advance` (m,) s/m; `coupling` (m, 2, 6, 6) linear and quadratic damping between axes, read only
     where `coupled` (m,) is not 0; `memory` (m, 6) force per remembered velocity, `forgets` (m,) 1/s
     (0: nothing is remembered); `B` (m, 6, n) thruster allocation; `directions` (n, 3) of positive
-    thrust.
+    thrust. Read only where `further` (m,) is not 0, as in `Body`: `waterplane` (m, 3), `products`
+    (m, t) and their `factors` (t, 4), `surfaces` (s, 15), `lifting` (m, s). `free` (m, 6) is 1 for
+    axes that move, 0 where they are held.
     """
 
     M_RB: Array
@@ -80,10 +82,19 @@ class Constants(NamedTuple):
     forgets: Array
     B: Array
     directions: Array
+    further: Array
+    waterplane: Array
+    products: Array
+    factors: Array
+    surfaces: Array
+    lifting: Array
+    free: Array
 
 
 class Inputs(NamedTuple):
-    """Mean thrust over each step: `wrench` (r, k, 6), `force` (r, k, n), `demand` (k, 6).
+    """Mean thrust over each step: `wrench` (r, k, 6), `acting` (r, k, n + s), `demand` (k, 6).
+
+    `acting`: forces N of the n thrusters, then angles rad of the s control surfaces.
 
     `row` (m,) says which of the r rows belongs to each parameter set; `duration` (k,) is the
     length in s of the recording the step belongs to. `ramp` (r, k, 6) is what the wrench grows by
@@ -91,7 +102,7 @@ class Inputs(NamedTuple):
     """
 
     wrench: Array
-    force: Array
+    acting: Array
     demand: Array
     row: Array
     duration: Array
@@ -116,7 +127,11 @@ class Jobs(NamedTuple):
 
 
 class Place(NamedTuple):
-    """`tank` (3, 2) low and high walls in NED, `axes` (3,) signs of the MoCap axes."""
+    """`tank` (3, 2) low and high walls in NED, `axes` (3,) signs of the MoCap axes.
+
+    `level` m NED: where what floats is at rest.
+    """
 
     tank: Array
     axes: Array
+    level: float = 0.0

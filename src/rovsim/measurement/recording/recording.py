@@ -8,9 +8,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.files import read_arrays, write_arrays
-from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.core.run import Commands, Logged, RunInfo, Site
 from rovsim.measurement.recording.channels import Channel, by_name, from_names
 from rovsim.measurement.sensors import Sensors
+
+BESIDE = "beside_"  # what was logged beside the commands
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,17 +72,24 @@ class Recording:
 
 def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:
     """The arrays that every stage of a run carries along."""
+    beside = commands.auxiliary
     return {
         "run": np.array([run.id, run.control, run.split, commands.kind]),
         "tank": site.tank,
         "axes": site.axes,
+        "level": np.array(site.level),
         "command_time": commands.time,
         "command_value": commands.value,
+        **{f"{BESIDE}{name}": np.stack([x.time, x.value]) for name, x in beside.items()},
     }
 
 
 def unlabelled(a: dict[str, Array]) -> tuple[RunInfo, Site, Commands]:
     """Undo `labels`."""
     *run, kind = (str(s) for s in a["run"])
-    commands = Commands(a["command_time"], a["command_value"], kind)  # type: ignore[arg-type]
-    return RunInfo(*run), Site(a["tank"], a["axes"]), commands
+    beside = {
+        name.removeprefix(BESIDE): Logged(a[name][0], a[name][1]) for name in a if BESIDE in name
+    }
+    value = a["command_value"]
+    commands = Commands(a["command_time"], value, kind, beside)  # type: ignore[arg-type]
+    return RunInfo(*run), Site(a["tank"], a["axes"], float(a["level"])), commands

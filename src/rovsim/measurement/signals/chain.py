@@ -3,6 +3,7 @@
 Recordings that bring their own bin-mean velocities pass the first stages unchanged.
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -87,8 +88,16 @@ def filtered(stage: Stage, settings: SignalSettings) -> Stage:
 def differentiated(stage: Stage, settings: SignalSettings) -> Motion:
     """Third stage: a motion, of either sort."""
     if isinstance(stage, Recording):
-        return bin_motion(stage)
-    return differentiate_poses(stage, settings)
+        return _at_level(bin_motion(stage))
+    return _at_level(differentiate_poses(stage, settings))
+
+
+def _at_level(motion: Motion) -> Motion:
+    """With the depth about which it moved, where a vehicle that floats is at rest: the median."""
+    if not motion.usable.any():
+        return motion
+    level = float(np.median(motion.eta[motion.usable, 2]))
+    return replace(motion, site=replace(motion.site, level=level))
 
 
 def read_stage(path: Path) -> Stage:

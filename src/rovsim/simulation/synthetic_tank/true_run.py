@@ -76,7 +76,7 @@ class _TrueVehicle:
         site = Site(tank, HALF_TURN_X)
         self.kind: CommandKind = "demand" if settings.log.kind == "demand" else "thruster"
         model.check(site, self.kind)
-        columns = 6 if self.kind == "demand" else len(model.body.directions)
+        columns = model.thrust_path.columns(self.kind)
         self.times, self.commands = np.empty(0), np.empty((0, columns))
         self.lag: list | None = None
         self.memory = np.zeros(6)
@@ -118,7 +118,10 @@ class _TrueVehicle:
         static = path.static(command, middle, self.duration)
         force, self.lag = path.respond(static, self.h, self.lag)
         demand = held if self.kind == "demand" else np.full((steps, 6), np.nan)
-        drive = Drive.by(self.model, Thrust(force, np.zeros((steps, 6)), demand), self.duration)
+        azimuth, angle = path.steering(held, self.kind)
+        heading = np.stack([np.cos(azimuth), np.sin(azimuth)])
+        thrust = Thrust(force, np.zeros((steps, 6)), demand, heading, angle)
+        drive = Drive.by(self.model, thrust, self.duration)
         return self.batch.advance_by_heun(drive, pushes, state, self.memory, t, self.h)
 
 

@@ -1,0 +1,92 @@
+"""Forces that few vehicles have: of a waterplane, of products of velocities, of control surfaces.
+
+The equation of motion comes here only for vehicles that have one of them.
+"""
+
+from math import atan2, pi, sin, sqrt
+
+import numpy as np
+
+from rovsim.dynamics.engine.compiled import inline_internal, internal
+from rovsim.dynamics.engine.vectors import add3, cross, dot3, vector3, vector6
+
+
+@inline_internal
+def float_up(waterplane, depth, down):
+    """Restoring of what floats `depth` below its rest: heave, roll, pitch (Fossen 2021, 4.2).
+
+    `down` is the world's down in body axes; the angles are Euler's, all small.
+    """
+    x, y, z = down
+    roll, pitch = atan2(y, z), atan2(-x, sqrt(y * y + z * z))
+    return -waterplane[0] * depth, -waterplane[1] * roll, -waterplane[2] * pitch
+
+
+@inline_internal
+def product(factors, v):
+    """Product of velocities; a factor of 6 and more is a size, one below 0 is none."""
+    found = 1.0
+    for k in range(1, 4):
+        if factors[k] >= 6:
+            found *= abs(v[factors[k] - 6])
+        elif factors[k] >= 0:
+            found *= v[factors[k]]
+    return found
+
+
+@inline_internal
+def coefficients(alpha, slope, stall):
+    """Lift and drag of a plate at an angle of attack, rad; the drag of its profile apart.
+
+    Linear up to the stall; beyond, a flat plate (Viterna & Janetzke 1982) that meets it there. The
+    force stands on the plate: no suction at its nose.
+    """
+    plate = slope * stall / sin(2.0 * stall)
+    turned = alpha - 2.0 * pi * round(alpha / (2.0 * pi))
+    lift = slope * turned if abs(turned) <= stall else plate * sin(2.0 * turned)
+    return lift, 2.0 * plate * sin(turned) ** 2
+
+
+@inline_internal
+def surface_force(s, lifting, v, angle, thrust):
+    """Force (3,) of a surface (row s of `Body.surfaces`) that meets the water at v (3,)."""
+    normal, chord = vector3(s[3:]), vector3(s[6:])
+    ahead, across = dot3(chord, v), dot3(normal, v)
+    jet = s[14] * thrust
+    if jet > 0.0:
+        square = ahead * abs(ahead) + jet
+        ahead = sqrt(square) if square > 0.0 else -sqrt(-square)
+    speed = sqrt(ahead * ahead + across * across)
+    if speed == 0.0:
+        return 0.0, 0.0, 0.0
+    lift, drag = coefficients(angle - atan2(across, ahead), s[10], s[12])
+    lift, drag = lifting * lift, drag + s[11]
+    along = -s[9] * speed * (lift * across + drag * ahead)
+    outward = s[9] * speed * (lift * ahead - drag * across)
+    return add3((along * chord[0], along * chord[1], along * chord[2]), outward, normal)
+
+
+@internal
+def further_forces(body, depth, down, v, acting, count):
+    """Wrench of waterplane, products and surfaces at a velocity v (6,) through the water.
+
+    `body`: the last of `Constants`, from `waterplane` to `lifting`; `acting`: forces of the `count`
+    components of the thrusters, then angles of the surfaces.
+    """
+    waterplane, products, factors, surfaces, lifting = body
+    tau = np.zeros(6)
+    tau[2], tau[3], tau[4] = float_up(waterplane, depth, down)
+    for k in range(products.size):
+        tau[factors[k, 0]] += products[k] * product(factors[k], v)
+    for k in range(lifting.size):
+        s = surfaces[k]
+        place, thrust = vector3(s), 0.0
+        if s[13] >= 0.0:
+            thrust = acting[int(s[13])]
+        local = add3(v[:3], 1.0, cross(v[3:], place))
+        force = surface_force(s, lifting[k], local, acting[count + k], thrust)
+        moment = cross(place, force)
+        for i in range(3):
+            tau[i] += force[i]
+            tau[3 + i] += moment[i]
+    return vector6(tau)

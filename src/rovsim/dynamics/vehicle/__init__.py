@@ -1,0 +1,23 @@
+"""What a vehicle file says, and the nominal effects it stands for.
+
+curves          command -> force of one thruster
+thrusters       where thrusters push, fixed or turning
+hydrodynamics   added mass and damping, as six numbers or as a matrix
+cross_flow      forces of products of velocities, named as by SNAME
+surfaces        rudders and fins
+file            the whole file
+check           whether its parts fit together
+"""
+
+from rovsim.dynamics.vehicle.file import Vehicle, build_vehicle, known_vehicle, load_vehicle
+from rovsim.dynamics.vehicle.surfaces import Surfaces
+from rovsim.dynamics.vehicle.thrusters import Thrusters
+
+__all__ = [
+    "Surfaces",
+    "Thrusters",
+    "Vehicle",
+    "build_vehicle",
+    "known_vehicle",
+    "load_vehicle",
+]

@@ -1,0 +1,102 @@
+"""Whether the parts of a vehicle file fit together."""
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Iterator
+
+import numpy as np
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput, nearest
+
+if TYPE_CHECKING:
+    from rovsim.dynamics.vehicle.file import Vehicle
+
+UNIT = 0.01  # how far the length of a direction may be from 1
+HANGING = ("heave", "roll", "pitch")  # axes on which weight and buoyancy act
+Finding = tuple[str, str, str]  # found, expected, remedy
+
+
+def check_vehicle(vehicle: "Vehicle", where: Path | str) -> None:
+    """Refuse parts that do not fit together.
+
+    Raises:
+        BadInput: names the first.
+    """
+    for find in (_names, _mixer, _thrusters, _surfaces, _inertia, _buoyancy, _products):
+        for found, expected, remedy in find(vehicle):
+            raise BadInput(found, where=where, expected=expected, remedy=remedy)
+
+
+def _names(vehicle: "Vehicle") -> Iterator[Finding]:
+    for name, count in Counter(vehicle.command_columns).items():
+        if count > 1:
+            found = f"{count} command columns are called {name}"
+            yield found, "a name of its own for each thruster and surface", "Rename one of them."
+    if "all" in [one.name for one in vehicle.surfaces]:
+        yield "a surface is called all", "another name: all means all of them", "Rename it."
+
+
+def _mixer(vehicle: "Vehicle") -> Iterator[Finding]:
+    count, mixer = len(vehicle.thrusters.units), vehicle.thrusters.mixer
+    for axis in AXES if mixer else ():
+        row = getattr(mixer, axis)
+        if len(row) != count:
+            found = f"mixer.{axis} has {len(row)} numbers for {count} thrusters"
+            yield found, "one number per thruster", "Complete that row."
+
+
+def _thrusters(vehicle: "Vehicle") -> Iterator[Finding]:
+    for unit in vehicle.thrusters.units:
+        length = float(np.linalg.norm(unit.direction))
+        if abs(length - 1.0) > UNIT:
+            found = f"thruster {unit.name} has a direction of length {length:.3f}"
+            yield found, "a unit vector", "Divide the direction by its length."
+        if unit.azimuth and abs(unit.direction[2]) > UNIT:
+            found = f"thruster {unit.name} turns about the z axis and points along {unit.direction}"
+            yield (
+                found,
+                "a direction in the plane of x and y",
+                "Set z to 0, or take azimuth out.",
+            )
+        if not (unit.force_curve or vehicle.thrusters.force_curve):
+            found = f"thruster {unit.name} has no force_curve"
+            yield found, "thrusters.force_curve, or one of its own", "Add one."
+
+
+def _surfaces(vehicle: "Vehicle") -> Iterator[Finding]:
+    jets = [unit.name for unit in vehicle.thrusters.units if not unit.azimuth]
+    for one in vehicle.surfaces:
+        normal = np.array(one.normal)
+        length = float(np.linalg.norm(normal))
+        if abs(length - 1.0) > UNIT or abs(normal[0]) > 0.9:
+            found = f"surface {one.name} has the normal {one.normal}"
+            yield found, "a unit vector across the x axis", "Rudder: [0, 1, 0]; fin: [0, 0, -1]."
+        if one.in_wake_of is not None and one.in_wake_of not in jets:
+            found = f"surface {one.name} is in the wake of '{one.in_wake_of}'"
+            yield found, "the name of a thruster that does not turn", nearest(one.in_wake_of, jets)
+
+
+def _inertia(vehicle: "Vehicle") -> Iterator[Finding]:
+    moments = {"roll": "Ixx", "pitch": "Iyy", "yaw": "Izz"}
+    for axis, name in moments.items():
+        if axis in vehicle.degrees_of_freedom and getattr(vehicle.rigid_body.inertia, name) is None:
+            found = f"'rigid_body.inertia.{name}' is missing"
+            remedy = f"Add it, or leave {axis} out of degrees_of_freedom."
+            yield found, f"a value for it, since the vehicle moves in {axis}", remedy
+
+
+def _buoyancy(vehicle: "Vehicle") -> Iterator[Finding]:
+    if vehicle.floats or not set(HANGING) & set(vehicle.degrees_of_freedom):
+        return
+    for name in ("displaced_volume", "center_of_buoyancy"):
+        if getattr(vehicle.rigid_body, name) is None:
+            remedy = "Add it; what floats has a 'waterplane' and may do without."
+            yield f"'rigid_body.{name}' is missing", f"a value for 'rigid_body.{name}'", remedy
+
+
+def _products(vehicle: "Vehicle") -> Iterator[Finding]:
+    for name in vehicle.cross_flow:
+        if name in vehicle.hydrodynamics.cross_flow:
+            found = f"'{name}' stands in cross_flow and in hydrodynamics.cross_flow"
+            yield found, "one value", "Remove one of them."
