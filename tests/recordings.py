@@ -7,9 +7,12 @@ import numpy as np
 import yaml
 from numpy import ndarray as Array
 
+import bags
 from rovsim.core.rotations import axes_signs, from_euler, from_matrix, matrix, to_euler
 
-FORMATS = {"qtm_tsv": "poses.tsv", "csv": "poses.csv"}
+TEXT = {"qtm_tsv": "poses.tsv", "csv": "poses.csv"}
+FORMATS = {**TEXT, "rosbag2": "poses"}
+CLOCKS = {"rosbag2": bags.START}  # s, where a recording does not start at zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,16 +82,25 @@ def csv_lines(swim: Swim) -> list[str]:
 
 
 def pose_lines(name: str, swim: Swim) -> list[str]:
-    """Lines of the swim in the format `name`; every registered format needs one here."""
+    """Lines of the swim in the format `name` of text."""
     return {"qtm_tsv": qtm_lines, "csv": csv_lines}[name](swim)
 
 
-def command_lines(seconds: float = 4.0) -> list[str]:
-    """Two PWM columns at 50 Hz."""
+def write_poses(folder: Path, name: str, swim: Swim) -> Path:
+    """The swim in the format `name`; every registered format needs a way here."""
+    path = folder / FORMATS[name]
+    if name in TEXT:
+        return write_lines(path, pose_lines(name, swim))
+    return {"rosbag2": bags.write_swim}[name](path, swim)
+
+
+def command_lines(seconds: float = 4.0, name: str = "csv") -> list[str]:
+    """Two PWM columns at 50 Hz, on the clock of recordings in the format `name`."""
+    start = CLOCKS.get(name, 0.0)
     t = np.arange(0.0, seconds, 0.02)
     value = np.round(1500 + 200 * np.sin(3 * t))
     pairs = zip(t, value, strict=True)
-    return ["time_s,t1,t2", *(f"{a:.4f},{b:.0f},{3000 - b:.0f}" for a, b in pairs)]
+    return ["time_s,t1,t2", *(f"{start + a:.4f},{b:.0f},{3000 - b:.0f}" for a, b in pairs)]
 
 
 def write_lines(path: Path, lines: list[str], end: str = "\n") -> Path:
@@ -106,7 +118,7 @@ def campaign_content(name: str = "qtm_tsv") -> dict:
         "tank": {"x": [0, 10], "y": [0, 5], "z": [0, 3]},
         "mocap": {
             "format": name,
-            "body": "BlueROV2",
+            "body": "/mocap/BlueROV2/pose" if name == "rosbag2" else "BlueROV2",
             "world_axes": "z_up",
             "body_axes": "flu",
         },
@@ -136,6 +148,6 @@ def write_run(folder: Path, name: str = "qtm_tsv", swim: Swim | None = None) -> 
     content = campaign_content(name)
     axes = content["mocap"]["world_axes"], content["mocap"]["body_axes"]
     swim = (swim or Swim.ned()).along(*axes)
-    write_lines(folder / FORMATS[name], pose_lines(name, swim))
-    write_lines(folder / "commands.csv", command_lines())
+    write_poses(folder, name, swim)
+    write_lines(folder / "commands.csv", command_lines(name=name))
     return write_campaign(folder, content)

@@ -119,9 +119,8 @@ def test_a_bad_recording_is_refused_in_words(tmp_path, name, file, edit, words):
     ("section", "name", "words"),
     [
         ("mocap", "motive_csv", ["mocap.format", "not readable in this version", "Convert"]),
-        ("mocap", "rosbag2", ["mocap.format", "not readable in this version", "Write its poses"]),
         ("mocap", "qtm_tvs", ["mocap.format", "not known", "Did you mean 'qtm_tsv'"]),
-        ("commands", "rosbag2", ["commands.format", "not readable in this version", "csv"]),
+        ("commands", "rosbag", ["commands.format", "not known", "Did you mean 'rosbag2'"]),
     ],
 )
 def test_a_format_without_reader_is_refused_in_words(tmp_path, section, name, words):

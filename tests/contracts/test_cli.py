@@ -180,7 +180,8 @@ def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, mon
 def test_help_is_quick_because_it_imports_nothing_heavy(words):
     code = (
         f"import sys; from rovsim.apps.cli.main import main; main({words});"
-        "print(sorted({'hydra','matplotlib','mlflow','nicegui','numba','scipy','torch'}"
+        "print(sorted({'hydra','matplotlib','mlflow','nicegui','numba','pymavlink',"
+        "'rosbags','scipy','torch'}"
         " & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

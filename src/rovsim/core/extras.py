@@ -9,6 +9,7 @@ PACKAGES = {
     "learn": ("torch", "gpytorch", "sklearn"),
     "tracking": ("mlflow",),
     "workbench": ("nicegui",),
+    "recordings": ("rosbags", "pymavlink"),
     "fmi": ("pythonfmu",),
     "benchmark": ("pykdtree", "pysindy", "threadpoolctl"),
 }

@@ -5,128 +5,15 @@ import re
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, Field
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_yaml
-from rovsim.core.rotations import BodyAxes, WorldAxes, axes_signs
-from rovsim.core.schema import Section, checked
-from rovsim.measurement.sensors import Sensors
-
-
-def _as_text(value: Any) -> Any:
-    # `id: 115750` is a number in YAML, and a name to its author
-    return str(value) if type(value) in (int, float) else value
-
-
-def _file_name(text: str) -> str:
-    """Refuse what cannot be part of a path on every system, or of a Snakemake wildcard."""
-    unsafe = re.search(r'[/\\:*?"<>|{}\x00-\x1f\x7f]', text)
-    if unsafe or not text or len(text) > 100 or text[0] in ".-~" or text != text.strip():
-        raise ValueError(
-            'a name that can be a file name: at most 100 characters, no / \\ : * ? " < > | { }, '
-            "no '.', '-' or '~' in front, no space around it"
-        )
-    return text
-
-
-def _interval(value: list[float]) -> list[float]:
-    if value[0] >= value[1]:
-        raise ValueError("[low, high] with low below high, in m")
-    return value
-
-
-def _distinct(names: list[str]) -> list[str]:
-    if len(set(names)) < len(names):
-        raise ValueError("different names, each named once")
-    return names
-
-
-Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1)]
-FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
-Interval = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_interval)]
-
-
-class Tank(Section):
-    """Walls, floor and surface in MoCap world axes, m; an axis left out is unbounded."""
-
-    x: Interval | None = None
-    y: Interval | None = None
-    z: Interval | None = None
-
-
-class Mocap(Section):
-    """How the motion was exported; `body` is the rigid body (or topic) to read.
-
-    `velocity`: whether body velocities beside poses are means from this line to the next, or hold
-    at the line's time.
-    """
-
-    format: str
-    body: Annotated[str, BeforeValidator(_as_text)] = ""
-    world_axes: WorldAxes
-    body_axes: BodyAxes
-    velocity: Literal["mean", "instant"] = "mean"
-    sensors: Sensors = Sensors()
-
-
-class CommandLog(Section):
-    """How the commands were logged.
-
-    `pwm` in us and `normalized` are per thruster, in the vehicle's order; `demand` and `wrench`
-    are per axis: the columns carry axis names, or are six in the order surge ... yaw.
-    """
-
-    format: str
-    kind: Literal["pwm", "normalized", "demand", "wrench"]
-    columns: Annotated[list[Text], Field(min_length=1), AfterValidator(_distinct)]
-
-    @property
-    def per_axis(self) -> bool:
-        """Whether a column is an axis of the body and not a thruster."""
-        return self.kind in ("demand", "wrench")
-
-    @property
-    def axes(self) -> list[int]:
-        """For `demand` and `wrench`: the axis, 0 to 5, of every column."""
-        if all(column in AXES for column in self.columns):
-            return [AXES.index(column) for column in self.columns]
-        return list(range(len(AXES)))
-
-
-class Run(Section):
-    """One run: its files, relative to the folder of the recordings.
-
-    `commands` is `none` where nothing was commanded (free decay, towing, drifting).
-    """
-
-    id: FileName
-    control: Literal["3dof", "6dof"]
-    split: Literal["train", "test"]
-    mocap: Text
-    commands: Text
-
-    @property
-    def commanded(self) -> bool:
-        """Whether there is a log of commands."""
-        return self.commands != "none"
-
-
-class CampaignFile(Section):
-    """The keys of `campaign.yaml`."""
-
-    name: FileName
-    vehicle: Text
-    tank: Tank | None = None
-    mocap: Mocap
-    commands: CommandLog | None = None  # not needed where no run has commands
-    runs: Annotated[list[Run], Field(min_length=1)]
-    folder: str = ""  # where the recordings lie when they are not beside this file
-    source: str = ""  # where to get them, told when they are missing
+from rovsim.core.rotations import axes_signs
+from rovsim.core.schema import checked
+from rovsim.measurement.campaign_file import CampaignFile, CommandLog, Mocap, Run, Tank
 
 
 @dataclass(frozen=True)
@@ -239,12 +126,12 @@ def _check_commands(content: CampaignFile, file: Path) -> None:
             expected="'commands' with format, kind and columns",
             remedy="Add it, or write 'commands: none' in each run in which nothing was commanded.",
         )
-    if log is not None and log.per_axis and len(log.axes) != len(log.columns):
+    if log is not None and log.per_axis and len(log.axis_numbers) != len(log.columns):
         raise BadInput(
             f"'commands.columns' names {len(log.columns)} columns for kind {log.kind}",
             where=file,
             expected=f"columns named after the axes, or six in the order {', '.join(AXES)}",
-            remedy="List all six columns, or name them after their axes.",
+            remedy="List all six columns, name them after their axes, or give 'axes' as well.",
         )
 
 

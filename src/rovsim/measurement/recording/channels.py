@@ -11,7 +11,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import axes_signs, half_turn, multiply
-from rovsim.measurement.campaign import Mocap
+from rovsim.measurement.campaign_file import Mocap
 
 Axes = Literal["world", "body", "none"]
 

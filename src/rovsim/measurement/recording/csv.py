@@ -9,10 +9,15 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.rotations import from_euler, normalized
-from rovsim.measurement.campaign import Mocap
+from rovsim.core.rotations import from_euler
+from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.channels import Channel, measured
-from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader
+from rovsim.measurement.recording.readers import (
+    Export,
+    finite_rows,
+    mocap_reader,
+    unit_quaternions,
+)
 from rovsim.measurement.recording.table import (
     Lines,
     column_places,
@@ -143,13 +148,10 @@ def _velocities(columns: Columns, nu: Array) -> dict[str, Channel]:
 
 def _attitude(values: Array) -> tuple[Array, Array]:
     """Unit quaternions (n, 4) of Euler angles (n, 3) or quaternions (n, 4), and where found."""
+    if values.shape[1] == 4:
+        return unit_quaternions(values)
     found = finite_rows(values)
-    if values.shape[1] == 3:
-        return from_euler(*np.where(found[:, None], values, 0.0).T), found
-    length = np.linalg.norm(values, axis=1)
-    # far from unit length it is no rotation: trackers write zeros where the body was not found
-    found &= np.abs(length - 1.0) < 0.1
-    return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
+    return from_euler(*np.where(found[:, None], values, 0.0).T), found
 
 
 def _known_columns(lines: Lines) -> list[str]:

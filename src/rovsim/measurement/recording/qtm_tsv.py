@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
 from rovsim.core.rotations import from_matrix
-from rovsim.measurement.campaign import Mocap
+from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader
 from rovsim.measurement.recording.table import Lines, numbers, split_lines, times, without_cut_line
 

@@ -10,8 +10,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
+from rovsim.core.rotations import normalized
 from rovsim.core.run import CommandKind
-from rovsim.measurement.campaign import CommandLog, Mocap
+from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.channels import Channels
 
 # What a kind of logged command drives.
@@ -24,7 +25,6 @@ KIND: dict[str, CommandKind] = {
 # Named in the campaign format but not readable yet, and the way around.
 LATER = {
     "motive_csv": "Convert the take to 'csv' (time_s, x_m, y_m, z_m, qw, qx, qy, qz).",
-    "rosbag2": "Write its poses and commands to 'csv' files and name those.",
 }
 
 
@@ -126,6 +126,16 @@ def reader_of(name: str, readers: dict[str, R], where: object) -> R:
 def finite_rows(*arrays: Array) -> Array:
     """Rows (n,) in which every one of `arrays` (n, k) is finite."""
     return np.logical_and.reduce([np.isfinite(a).all(axis=1) for a in arrays])
+
+
+def unit_quaternions(values: Array) -> tuple[Array, Array]:
+    """Quaternions (n, 4) of unit length, and which of `values` (n, 4) are rotations at all.
+
+    Far from unit length it is none: trackers write zeros where the body was not found.
+    """
+    with np.errstate(over="ignore"):
+        found = finite_rows(values) & (np.abs(np.linalg.norm(values, axis=1) - 1.0) < 0.1)
+    return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
 
 
 def _discover() -> None:

@@ -10,7 +10,8 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import axes_signs, half_turn, multiply
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.campaign import Campaign, CommandLog, Mocap, Run
+from rovsim.measurement.campaign import Campaign
+from rovsim.measurement.campaign_file import CommandLog, Mocap, Run
 from rovsim.measurement.recording import channels
 from rovsim.measurement.recording.readers import (
     KIND,
@@ -137,9 +138,9 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
 def _check_overlap(measured: Array, commands: Array, path: Path) -> None:
     if commands[0] >= measured[-1] or commands[-1] <= measured[0]:
         raise BadInput(
-            f"the commands run from {commands[0]:g} to {commands[-1]:g} s, "
-            f"what was measured from {measured[0]:g} to {measured[-1]:g} s",
-            where=f"{path}, column 'time_s'",
+            f"the commands run from {commands[0]:.10g} to {commands[-1]:.10g} s, "
+            f"what was measured from {measured[0]:.10g} to {measured[-1]:.10g} s",
+            where=path,
             expected="commands on the clock of the motion capture",
             remedy="Shift the command times to that clock.",
         )

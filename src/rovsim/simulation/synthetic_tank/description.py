@@ -6,7 +6,7 @@ from rovsim import AXES
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.measurement.campaign import CampaignFile
+from rovsim.measurement.campaign_file import CampaignFile
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 BODY = "BlueROV2"

@@ -1,0 +1,147 @@
+"""The keys of `campaign.yaml`, each a typed value."""
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from rovsim import AXES
+from rovsim.core.rotations import BodyAxes, WorldAxes
+from rovsim.core.schema import Section
+from rovsim.measurement.sensors import Sensors
+
+
+def _as_text(value: Any) -> Any:
+    # `id: 115750` is a number in YAML, and a name to its author
+    return str(value) if type(value) in (int, float) else value
+
+
+def _file_name(text: str) -> str:
+    """Refuse what cannot be part of a path on every system, or of a Snakemake wildcard."""
+    unsafe = re.search(r'[/\\:*?"<>|{}\x00-\x1f\x7f]', text)
+    if unsafe or not text or len(text) > 100 or text[0] in ".-~" or text != text.strip():
+        raise ValueError(
+            'a name that can be a file name: at most 100 characters, no / \\ : * ? " < > | { }, '
+            "no '.', '-' or '~' in front, no space around it"
+        )
+    return text
+
+
+def _interval(value: list[float]) -> list[float]:
+    if value[0] >= value[1]:
+        raise ValueError("[low, high] with low below high, in m")
+    return value
+
+
+def _distinct(names: list[str]) -> list[str]:
+    if len(set(names)) < len(names):
+        raise ValueError("different names, each named once")
+    return names
+
+
+Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
+Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1)]
+FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
+Interval = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_interval)]
+
+
+class Tank(Section):
+    """Walls, floor and surface in MoCap world axes, m; an axis left out is unbounded."""
+
+    x: Interval | None = None
+    y: Interval | None = None
+    z: Interval | None = None
+
+
+class Topics(Section):
+    """Topics of a bag, by what is read of them."""
+
+    pose: Text | None = None
+    odometry: Text | None = None
+    imu: Text | None = None
+    depth: Text | None = None
+    velocity: Text | None = None
+    battery: Text | None = None
+
+
+class Mocap(Section):
+    """How the motion was exported; `body` is the rigid body (or topic) to read.
+
+    `velocity`: whether body velocities beside poses are means from this line to the next, or hold
+    at the line's time.
+    """
+
+    format: str
+    body: Annotated[str, BeforeValidator(_as_text)] = ""
+    world_axes: WorldAxes
+    body_axes: BodyAxes
+    velocity: Literal["mean", "instant"] = "mean"
+    sensors: Sensors = Sensors()
+    topics: Topics | None = None
+
+
+class CommandLog(Section):
+    """How the commands were logged.
+
+    `pwm` in us and `normalized` are per thruster, in the vehicle's order; `demand` and `wrench`
+    are per axis: `axes` says which, or the columns carry axis names, or they are six in the order
+    surge ... yaw. A minus before a column turns its sign. `topic` is that of a bag.
+    """
+
+    format: str
+    kind: Literal["pwm", "normalized", "demand", "wrench"]
+    columns: Annotated[list[Text], Field(min_length=1), AfterValidator(_distinct)]
+    axes: Annotated[list[Axis], AfterValidator(_distinct)] = Field(default_factory=list)
+    topic: Text | None = None
+
+    @property
+    def names(self) -> list[str]:
+        """The columns as the file calls them."""
+        return [column.removeprefix("-") for column in self.columns]
+
+    @property
+    def signs(self) -> list[float]:
+        """1 or -1 for each column."""
+        return [-1.0 if column.startswith("-") else 1.0 for column in self.columns]
+
+    @property
+    def per_axis(self) -> bool:
+        """Whether a column is an axis of the body and not a thruster."""
+        return self.kind in ("demand", "wrench")
+
+    @property
+    def axis_numbers(self) -> list[int]:
+        """For `demand` and `wrench`: the axis, 0 to 5, of every column."""
+        named = self.axes or (self.names if set(self.names) <= set(AXES) else AXES)
+        return [AXES.index(axis) for axis in named]
+
+
+class Run(Section):
+    """One run: its files, relative to the folder of the recordings.
+
+    `commands` is `none` where nothing was commanded (free decay, towing, drifting).
+    """
+
+    id: FileName
+    control: Literal["3dof", "6dof"]
+    split: Literal["train", "test"]
+    mocap: Text
+    commands: Text
+
+    @property
+    def commanded(self) -> bool:
+        """Whether there is a log of commands."""
+        return self.commands != "none"
+
+
+class CampaignFile(Section):
+    """The keys of `campaign.yaml`."""
+
+    name: FileName
+    vehicle: Text
+    tank: Tank | None = None
+    mocap: Mocap
+    commands: CommandLog | None = None  # not needed where no run has commands
+    runs: Annotated[list[Run], Field(min_length=1)]
+    folder: str = ""  # where the recordings lie when they are not beside this file
+    source: str = ""  # where to get them, told when they are missing

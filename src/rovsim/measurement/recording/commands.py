@@ -1,0 +1,80 @@
+"""Logged values become commands, whatever file they stood in."""
+
+from typing import Callable
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.measurement.campaign_file import CommandLog
+from rovsim.measurement.recording.readers import KIND, CommandExport, finite_rows
+
+# PWM = 1500 us + 400 us * c (the vehicle file's comment). Beyond 1100 .. 1900 us a speed
+# controller gives no more; beyond 800 .. 2200 us no servo signal is valid.
+PWM_CENTER, PWM_SPAN = 1500.0, 400.0
+ALLOWED = {
+    "pwm": (800.0, 2200.0, "pulses of 800 to 2200 us"),
+    "normalized": (-1.05, 1.05, "commands in [-1, 1]"),
+    "demand": (-1.05, 1.05, "demands in [-1, 1]"),
+    "wrench": (-np.inf, np.inf, "a finite wrench in N, N m"),
+}
+
+Place = Callable[[int, int], str]  # where the value in (line, column) stands, for people
+
+
+def as_commands(
+    time: Array,
+    value: Array,
+    log: CommandLog,
+    place: Place,
+    counts: dict[str, int] | None = None,
+    *,
+    pulses: bool = False,
+    notes: tuple[str, ...] = (),
+) -> CommandExport:
+    """Commands of logged values (m, c), a column each; lines with a NaN are left out and counted.
+
+    `pulses`: the values are pulses of a radio control in us, also where they mean a demand.
+
+    Raises:
+        BadInput: values no such command can have.
+    """
+    unit = "pwm" if pulses else log.kind
+    _check_range(value, log, unit, place)
+    whole = finite_rows(value)
+    value, clipped = _normalized(value[whole], log, unit)
+    counts = {**(counts or {}), "dropped": int(np.sum(~whole)), "clipped": clipped}
+    return CommandExport(time[whole], value, KIND[log.kind], counts, notes)
+
+
+def _check_range(value: Array, log: CommandLog, unit: str, place: Place) -> None:
+    low, high, expected = ALLOWED[unit]
+    bad = np.argwhere((value < low) | (value > high) | np.isinf(value))
+    if bad.size:
+        line, column = (int(k) for k in bad[0])
+        raise BadInput(
+            f"the value {value[line, column]:g} ({len(bad)} such cells)",
+            where=place(line, column),
+            expected=f"{expected}, as 'commands.kind: {log.kind}' says",
+            remedy="Correct 'commands.kind' in campaign.yaml, or that value.",
+        )
+
+
+def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:
+    """Values (m, c) as the model takes them, and how many lines reached beyond [-1, 1]."""
+    if unit == "pwm":
+        value = (value - PWM_CENTER) / PWM_SPAN
+    value = value * log.signs
+    if log.per_axis:
+        value = _all_axes(value, log.axis_numbers)
+    if log.kind == "wrench":
+        return value, 0
+    return np.clip(value, -1.0, 1.0), int(np.sum((np.abs(value) > 1.0).any(axis=1)))
+
+
+def _all_axes(value: Array, axes: list[int]) -> Array:
+    """Values (m, 6), surge to yaw; an axis without a column got no command."""
+    full = np.zeros((len(value), len(AXES)))
+    full[:, axes] = value
+    return full

@@ -1,0 +1,28 @@
+"""What a damaged file makes of a foreign library becomes one message."""
+
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Iterator
+
+from rovsim.core.errors import BadInput
+
+
+@contextmanager
+def read_by(library: str, path: Path, expected: str, remedy: str) -> Iterator[None]:
+    """Around calls of a library that reads `path`: whatever it raises is about the file.
+
+    Raises:
+        BadInput: the library could not read it.
+    """
+    try:
+        yield
+    except BadInput:
+        raise
+    except Exception as error:  # of any type: damaged bytes end wherever they are met
+        said = " ".join(str(error).split())[:200]
+        raise BadInput(
+            f"cannot be read ({library}: {type(error).__name__}{f': {said}' if said else ''})",
+            where=path,
+            expected=expected,
+            remedy=remedy,
+        ) from None

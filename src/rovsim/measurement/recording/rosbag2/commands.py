@@ -1,0 +1,125 @@
+"""Commands in a bag: pulses, arrays of numbers, wrenches, joysticks, or fields of any message."""
+
+import re
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput, nearest
+from rovsim.measurement.campaign_file import CommandLog
+from rovsim.measurement.recording.commands import PWM_CENTER, as_commands
+from rovsim.measurement.recording.readers import CommandExport, command_reader
+from rovsim.measurement.recording.rosbag2.bag import Bag, Messages, opened
+
+LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
+PULSES = ("RCOut", "OverrideRCIn", "RCIn")
+# MAVLink MANUAL_CONTROL as ArduSub takes it: x, y, r in -1000 .. 1000, z in 0 .. 1000 and up
+MANUAL = {"surge": ("x", 0, 1000), "sway": ("y", 0, 1000), "heave": ("z", 500, -500)}
+MANUAL |= {"yaw": ("r", 0, 1000)}
+FORCES = dict(zip(AXES, [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"],
+                  strict=True))  # fmt: skip
+
+Get = Callable[[Any], float]
+
+
+@command_reader("rosbag2")
+def read_commands(path: Path, log: CommandLog) -> CommandExport:
+    """Read the topic `commands.topic`, by default the only one that looks like commands.
+
+    A column is a field (`thrust.port`, `data[0]`), or ends in the number of its value, from 1
+    (`t1`, `SERVO3`, `RC5`), or is an axis; other names stand for the values in their order.
+
+    Raises:
+        BadInput: no bag, no such topic or column, or values no such command can have.
+    """
+    with opened(path, by="commands.format: rosbag2") as bag:
+        found = bag.messages(log.topic or _only_topic(bag), "commands.topic")
+        gets = [_getter(found, log, k, path) for k in range(len(log.names))]
+        rows = [[_number(get, message) for get in gets] for message in found.content]
+        value = np.array(rows, dtype=float).reshape(len(rows), len(gets))
+
+    def place(line: int, column: int) -> str:
+        return f"{path}, {found.topic}, message {line + 1}, column '{log.names[column]}'"
+
+    pulses = found.kind.endswith(PULSES) and log.kind != "wrench"
+    value, notes = _without_pulse(value, found) if pulses else (value, ())
+    notes = (*found.notes, *notes)
+    return as_commands(found.time, value, log, place, pulses=pulses, notes=notes)
+
+
+def _only_topic(bag: Bag) -> str:
+    likely = [t for t, kind in bag.topics.items() if any(word in kind for word in LIKELY)]
+    if len(likely) == 1:
+        return likely[0]
+    raise BadInput(
+        f"{len(likely)} topics that look like commands: {', '.join(likely) or 'none'}",
+        where=bag.path,
+        expected="the topic to read as 'commands.topic'",
+        remedy="Name one." if likely else nearest("", bag.topics),
+    )
+
+
+def _without_pulse(value: Array, found: Messages) -> tuple[Array, tuple[str, ...]]:
+    """Values (m, c) with 0 and 65535 taken for what they mean.
+
+    An output without pulses is a thruster that stands; an input of 0 or 65535 is none.
+    """
+    none = (value == 0.0) | (value == 65535.0)
+    if not none.any():
+        return value, ()
+    if found.kind.endswith("RCOut"):
+        said = f"{found.topic}: {int(none.sum())} outputs without a pulse stand for no command."
+        return np.where(none, PWM_CENTER, value), (said,)
+    return np.where(none, np.nan, value), ()
+
+
+def _getter(found: Messages, log: CommandLog, k: int, path: Path) -> Get:
+    """What takes column k out of a message."""
+    name, first = log.names[k], found.content[0]
+    axis = log.axes[k] if log.axes else name
+    if found.kind.endswith("ManualControl") and axis in MANUAL:
+        field, center, span = MANUAL[axis]
+        return lambda message: (getattr(message, field) - center) / span
+    inner = getattr(first, "wrench", first)
+    if hasattr(inner, "force") and axis in FORCES:
+        return _walk(("wrench." if inner is not first else "") + FORCES[axis])
+    if re.fullmatch(r"[A-Za-z]\w*([.[].*)?", name) and hasattr(first, re.split(r"[.[]", name)[0]):
+        return _walk(name)
+    arrays = [f for f in getattr(first, "__dataclass_fields__", {}) if _is_array(first, f)]
+    number = re.search(r"(\d+)$", name)
+    if len(arrays) == 1:
+        return _walk(f"{arrays[0]}[{int(number[1]) - 1 if number else k}]")
+    fields = ", ".join(getattr(first, "__dataclass_fields__", {}))
+    raise BadInput(
+        f"no value for the column '{name}' in {found.kind} (fields {fields})",
+        where=f"{path}, {found.topic}",
+        expected="columns that are fields of the message, such as 'data[0]' or 'thrust.port'",
+        remedy="Correct 'commands.columns'.",
+    )
+
+
+def _is_array(message: Any, field: str) -> bool:
+    return isinstance(getattr(message, field), np.ndarray)
+
+
+def _walk(name: str) -> Get:
+    """A field of a field, and places in arrays counted from 0: `a.b[2].c`."""
+    steps = re.findall(r"(\w+)|\[(\d+)\]", name)
+
+    def get(message: Any) -> float:
+        for field, place in steps:
+            message = message[int(place)] if place else getattr(message, field)
+        return float(message)
+
+    return get
+
+
+def _number(get: Get, message: Any) -> float:
+    """The value; NaN where an array is too short for it."""
+    try:
+        return get(message)
+    except IndexError:
+        return float("nan")

@@ -1,0 +1,104 @@
+"""Types of messages: those of ROS, of mavros, and those that a bag defines itself."""
+
+import re
+from functools import cache
+from typing import Any
+
+from rovsim.core.errors import BadInput
+
+# Bags of sqlite3 before ROS 2 Iron hold no definitions, and rosbags knows only those of ROS itself.
+# Fields as in github.com/mavlink/mavros, mavros_msgs/msg (branch ros2).
+MAVROS = {
+    "mavros_msgs/msg/RCIn": "std_msgs/Header header\nuint8 rssi\nuint16[] channels\n",
+    "mavros_msgs/msg/RCOut": "std_msgs/Header header\nuint16[] channels\n",
+    "mavros_msgs/msg/OverrideRCIn": "uint16[18] channels\n",
+    "mavros_msgs/msg/ManualControl": (
+        "std_msgs/Header header\nfloat32 x\nfloat32 y\nfloat32 z\nfloat32 r\nuint16 buttons\n"
+    ),
+}
+TYPE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)+")
+FIELD_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+@cache
+def _known() -> Any:
+    """The types of ROS 2 Humble (their layouts are those of its successors) and of mavros."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in MAVROS.items():
+        store.register(get_types_from_msg(text, name))
+    return store
+
+
+def store_for(connection: Any, where: str) -> Any:
+    """A store that knows the type of one connection of a bag.
+
+    Raises:
+        BadInput: neither ROS nor mavros nor the bag defines it.
+    """
+    defined = connection.msgdef.data
+    if defined:
+        return _defined(connection.msgtype, connection.msgdef.format.name, defined, where)
+    if connection.msgtype not in _known().fielddefs:
+        raise BadInput(
+            f"messages of the type {connection.msgtype}, which the bag does not define",
+            where=where,
+            expected="a type of ROS 2 or mavros, or a bag that holds its definition",
+            remedy="Record with MCAP or ROS 2 Iron or later, which store definitions, or republish "
+            "it as a standard type.",
+        )
+    return _known()
+
+
+@cache
+def _defined(name: str, language: str, text: str, where: str) -> Any:
+    from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+
+    if language == "IDL":
+        parts = re.split(r"^=+\nIDL: [^\n]*\n", text, flags=re.MULTILINE)
+        types: dict = {}
+        for part in parts:
+            types |= get_types_from_idl(part) if part.strip() else {}
+    else:
+        types = dict(get_types_from_msg(text, name))
+    store = get_typestore(Stores.EMPTY)
+    # rosbags writes Python code from definitions: only plain names may get there, and no values
+    store.register({_plain(one, where): ([], _fields(of, where)) for one, of in types.items()})
+    return store
+
+
+def _fields(definition: Any, where: str) -> list:
+    for field, _ in definition[1]:
+        if not FIELD_NAME.fullmatch(field):
+            raise _refused(field, where)
+    for described in _named_types(definition[1]):
+        _plain(described, where)
+    return list(definition[1])
+
+
+def _named_types(fields: Any) -> list[str]:
+    """Types that fields refer to by name, those of elements of arrays included."""
+    from rosbags.interfaces import Nodetype
+
+    found = []
+    for _, (kind, of) in fields:
+        inner = (kind, of) if kind in (Nodetype.BASE, Nodetype.NAME) else of[0]
+        if inner[0] == Nodetype.NAME:
+            found.append(inner[1])
+    return found
+
+
+def _plain(name: str, where: str) -> str:
+    if not TYPE_NAME.fullmatch(name):
+        raise _refused(name, where)
+    return name
+
+
+def _refused(name: str, where: str) -> BadInput:
+    return BadInput(
+        f"a definition with the name {name!r}",
+        where=where,
+        expected="letters, digits and underscores in the names of a message",
+        remedy="Record the bag again; this definition is damaged.",
+    )
