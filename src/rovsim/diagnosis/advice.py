@@ -5,6 +5,12 @@ from typing import Sequence
 from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 
+FIX_SCALE = (
+    "To fix the common scale of thrust, inertia and drag, measure one force: the pull on a spring "
+    "balance at a steady command, for the force curve of the vehicle file, or how far a known "
+    "weight heels the vehicle, for its centre of buoyancy."
+)
+
 
 def advise(
     found: TrainDiagnosis,
@@ -33,6 +39,8 @@ def advise(
         )
     if joint:
         parts.append(_apart(joint, catalogue))
+    if found.scale:
+        parts.append(FIX_SCALE)
     if found.still:
         axes = ", ".join(found.still)
         parts.append(f"Move {axes} in a train run: nothing can be said about what acts there.")

@@ -7,6 +7,7 @@ search          add, refit, swap, prune; against what chance gives to the best o
 held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows
 gate            it must replay stretches well that took no part in choosing
 structure       what is left, and no candidate explains
+common scale    does a factor of all forces stay open?
 joint fit       where there is some: all that could be wrong together, pruned; it competes
 replay fit      where there is some: values that replay best, rather than foresee the next reading
 test runs       opened once, for the errors that are reported
@@ -18,6 +19,7 @@ from typing import Callable, Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from rovsim.diagnosis.checks.common_scale import CommonScale, include_scale
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.observer.camera import find_smoothing
@@ -62,7 +64,7 @@ class TrainDiagnosis:
     """What was found on the train runs.
 
     `still` axes that nobody moved; `seconds` that could be used; `fit` of the base and all selected
-    effects, None where there was too little to judge.
+    effects, None where there was too little to judge; `scale` of all forces, where it is unknown.
     """
 
     base: Model
@@ -73,6 +75,7 @@ class TrainDiagnosis:
     ranking: Sequence[Ranked] = ()
     rivals: Sequence[Rival] = ()
     structures: Sequence[Structure] = ()
+    scale: CommonScale | None = None
 
     @property
     def enough(self) -> bool:
@@ -139,13 +142,14 @@ def _diagnose(
         better = gate.prefers(found.selection, joint.selection)
         found = found if better or (better is None and found.score >= joint.score) else joint
     rivals = found.selection.named_rivals
-    selected = rank_selected(base, found.fit, rivals, usable.runs)
+    wider, scale = include_scale(found.fit, usable.runs)
+    selected = rank_selected(base, wider, rivals, usable.runs)
     if smoothing:
         selected = [rank_smoothing(base, smoothing, usable.runs), *selected]
     return TrainDiagnosis(
         base, usable.still, usable.seconds, found.fit, selected=selected,
         ranking=rank_alone(workspace, nothing, found.fit),
-        rivals=rivals, structures=found.structures,
+        rivals=rivals, structures=found.structures, scale=scale,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from pydantic import JsonValue
 from scipy.sparse.csgraph import connected_components
 
 from rovsim.diagnosis.advice import advise
+from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
@@ -19,6 +20,7 @@ from rovsim.results.diagnosis import (
     FittedNoise,
     FittedValue,
     RivalEffect,
+    ScaleOfForces,
     Unexplained,
 )
 from rovsim.results.error_conditions import ConditionShare
@@ -44,13 +46,14 @@ def report(
         catalogue: what the effects are.
     """
     alike = group_indistinguishable(found.rivals)
-    joint = group_joint_parameters(found.fit) if found.fit else []
+    joint = _list_joint(found)
     return Diagnosis(
         verdict=found.verdict,
         selected=tuple(_fitted(one, one.std) for one in found.selected),
         ranking=tuple(_fitted(one, {}) for one in _listed(found)),
         indistinguishable=tuple(map(tuple, alike)),
         known_together=tuple(map(tuple, joint)),
+        common_scale=_say_scale(found.scale),
         where=tuple(where),
         unexplained=describe_structures(found),
         next_experiment=advise(found, alike, joint, catalogue),
@@ -65,6 +68,20 @@ def report(
         base=dict(base),
         ladder=ladder,
     )
+
+
+def _list_joint(found: TrainDiagnosis) -> list[list[str]]:
+    """Parameters known only together, but for those that the common scale holds together."""
+    if found.fit is None:
+        return []
+    scaled = set(found.scale.parameters) if found.scale else set()
+    return [g for g in group_joint_parameters(found.fit) if not set(g) <= scaled]
+
+
+def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
+    if scale is None:
+        return None
+    return ScaleOfForces(std=_rounded(scale.std), parameters=scale.parameters)
 
 
 def _errors(ladder: Ladder) -> DiagnosisErrors:

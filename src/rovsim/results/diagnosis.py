@@ -53,6 +53,16 @@ class RivalEffect(Section):
     deficit: float | None
 
 
+class ScaleOfForces(Section):
+    """A factor of all forces and inertia that the runs leave open, and what goes along with it.
+
+    `std` relative; `parameters` as `effect.parameter`.
+    """
+
+    std: float | None
+    parameters: tuple[str, ...]
+
+
 class FittedNoise(Sparse):
     """Six values each: disturbance m/s2, rad/s2; its memory s; reading m, rad. Empty if unknown.
 
@@ -86,6 +96,7 @@ class Diagnosis(Result):
     ranking: tuple[FittedEffect, ...]
     indistinguishable: tuple[tuple[str, ...], ...]
     known_together: tuple[tuple[str, ...], ...] = ()
+    common_scale: ScaleOfForces | None = None
     where: tuple[ConditionShare, ...]
     unexplained: Unexplained
     next_experiment: str

@@ -14,6 +14,7 @@ from rovsim.results.diagnosis import (
     FittedEffect,
     FittedValue,
     RivalEffect,
+    ScaleOfForces,
 )
 
 VERDICTS = {
@@ -61,6 +62,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
     remarks = [
         error_sentence(found.error, bool(found.selected)),
         *apart_sentences(found),
+        *scale_sentences(found.common_scale),
         *unexplained_sentences(found),
         *still_sentences(found.not_excited),
     ]
@@ -133,6 +135,18 @@ def apart_sentences(found: Diagnosis) -> list[str]:
         if behind:
             sentences.append(_runner_up(min(behind, key=lambda r: or_nan(r.deficit))))
     return sentences
+
+
+def scale_sentences(scale: ScaleOfForces | None) -> list[str]:
+    """That forces are known to a common factor only, where they are."""
+    if scale is None:
+        return []
+    owners = listed(list(dict.fromkeys(name.split(".")[0] for name in scale.parameters)))
+    return [
+        f"Forces are known up to one factor, uncertain by {percent(scale.std)} (one standard "
+        "deviation): with more thrust, inertia and drag by the same share a vehicle moves alike. "
+        f"What goes along with it is in {owners}; the intervals include it."
+    ]
 
 
 def _runner_up(rival: RivalEffect) -> str:

@@ -1,0 +1,95 @@
+"""One factor that thrust, inertia and drag share, where nothing of known size fixes it.
+
+Newton's law holds as well for s M, s D, s g and s τ: a vehicle that is heavier, has more drag and
+stronger thrusters, all by the same factor, moves alike. Only what is not free fixes the factor: the
+weight beside a known centre of buoyancy, the dry mass, the thrust curve. Where inertia and drag
+were selected and the gain of the thrusters was not, their values are right up to the gain that was
+assumed. So the gain is freed once more, within what a vehicle file's is known to, and what it
+leaves open widens the intervals of all that would go with it.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.nominal_terms import DRAG, GAIN, ONE_GAIN
+from rovsim.dynamics.effects.thrusters import ThrusterGain
+
+INERTIA = ("added_mass", "payload")
+GAIN_NAME = f"{ThrusterGain.id}.{ONE_GAIN[0]}"
+SCALE = next(p.scale for p in ThrusterGain.parameters if p.name in ONE_GAIN)
+UNKNOWN = 0.03  # relative standard deviation: a scale that is known better misleads nobody
+GOES_ALONG = 0.5  # of a value's variance comes from the scale
+
+
+@dataclass(frozen=True)
+class CommonScale:
+    """A factor that the runs leave open: its relative `std`, and what goes along with it.
+
+    `parameters` are `effect.parameter`.
+    """
+
+    std: float
+    parameters: tuple[str, ...]
+
+
+def include_scale(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
+    """A fit whose intervals hold the common scale as well, and the scale where it is unknown.
+
+    Args:
+        found: the final fit.
+        runs: those it was fitted to.
+    """
+    if not _may_share(found.hypothesis, runs):
+        return found, None
+    names = _name(found.hypothesis)
+    if GAIN_NAME in names:
+        gain = names.index(GAIN_NAME)
+        variance = float(found.covariance[gain, gain])
+        along = found.covariance[gain] / variance
+    else:
+        variance, along = _free_gain(found, runs)
+        both = found.covariance + variance * np.outer(along, along)
+        found = replace(found, covariance=both)
+    return found, _describe(found, names, variance, along)
+
+
+def _free_gain(found: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
+    """Variance of the gain once it is free, and how the parameters (k,) follow it, all scaled."""
+    freed = found.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN))
+    bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
+    seen = bank.linearise(freed)
+    k = _name(freed).index(GAIN_NAME)
+    if not seen.finite:
+        return 0.0, np.zeros(len(found.std))
+    J = bank.whiten(seen.J, found.noise)
+    H = inner_products(J.reshape(len(J), -1))
+    others = np.delete(np.arange(len(H)), k)
+    along = -solve(H[np.ix_(others, others)], H[others, k])
+    told = max(float(H[k, k] + H[k, others] @ along), 0.0)  # by the runs, of the gain
+    return 1.0 / (told + (SCALE / GAIN) ** 2), along
+
+
+def _describe(found: Fit, names: list[str], variance: float, along: Array) -> CommonScale | None:
+    std = SCALE * np.sqrt(variance)
+    share = variance * along**2 / np.maximum(np.diag(found.covariance), 1e-300)
+    moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
+    return CommonScale(float(std), tuple(moved)) if std > UNKNOWN and moved else None
+
+
+def _name(h: Hypothesis) -> list[str]:
+    return [f"{term.id}.{p.name}" for term in h.terms for p in term.parameters]
+
+
+def _may_share(h: Hypothesis, runs: Sequence[ObservedRun]) -> bool:
+    """Whether inertia and drag were fitted to commands whose force nobody measured."""
+    named = {term.id for term in h.terms}
+    logged = {run.motion.commands.kind for run in runs}
+    return bool(named & set(INERTIA)) and bool(named & set(DRAG)) and "wrench" not in logged
