@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 import bags
 from rovsim.core.rotations import axes_signs, from_euler, from_matrix, matrix, to_euler
 
-TEXT = {"qtm_tsv": "poses.tsv", "csv": "poses.csv"}
+TEXT = {"qtm_tsv": "poses.tsv", "csv": "poses.csv", "motive_csv": "take.csv"}
 FORMATS = {**TEXT, "rosbag2": "poses"}
 CLOCKS = {"rosbag2": bags.START}  # s, where a recording does not start at zero
 
@@ -81,9 +81,32 @@ def csv_lines(swim: Swim) -> list[str]:
     return [names, *(",".join(f"{x:.7f}" for x in row) for row in rows)]
 
 
+def motive_lines(swim: Swim, body: str = "BlueROV2") -> list[str]:
+    """All lines of a Motive export of quaternions, mm, format version 1.23."""
+    what = ["Rotation"] * 4 + ["Position"] * 3 + ["Mean Marker Error"]
+    lines = [
+        "Format Version,1.23,Take Name,Take 1,Capture Frame Rate,100.000000,Export Frame Rate,"
+        f"100.000000,Total Exported Frames,{len(swim.time)},Rotation Type,Quaternion,Length Units,"
+        "Millimeters,Coordinate Space,Global",
+        "",
+        ",".join([",Type", *["Rigid Body"] * 8]),
+        ",".join([",Name", *[body] * 8]),
+        ",".join([",ID", *["5F"] * 8]),
+        ",".join([",Parent", *[""] * 8]),
+        ",".join([",", *what]),
+        "Frame,Time (Seconds),X,Y,Z,W,X,Y,Z,",
+    ]
+    q = from_matrix(swim.rotation)
+    for k, t in enumerate(swim.time):
+        w, x, y, z = q[k]
+        cells = [*(f"{c:.6f}" for c in (x, y, z, w)), *(f"{1e3 * p:.6f}" for p in swim.position[k])]
+        lines.append(",".join([str(k), f"{t:.6f}", *cells, "0.1"]))
+    return lines
+
+
 def pose_lines(name: str, swim: Swim) -> list[str]:
     """Lines of the swim in the format `name` of text."""
-    return {"qtm_tsv": qtm_lines, "csv": csv_lines}[name](swim)
+    return {"qtm_tsv": qtm_lines, "csv": csv_lines, "motive_csv": motive_lines}[name](swim)
 
 
 def write_poses(folder: Path, name: str, swim: Swim) -> Path:

@@ -79,6 +79,21 @@ CSV = {
     "NaN time": (cell(7, 0, "nan", ","), ["line 8", "column 'time_s'", "'nan'", "Correct"]),
     "infinite time": (cell(7, 0, "inf", ","), ["line 8", "column 'time_s'", "'inf'", "Correct"]),
 }  # fmt: skip
+MOTIVE = {
+    "empty": (lambda lines: [], ["the file is empty", "Export Tracking Data"]),
+    "no header": (lambda lines: lines[2:], ["line 1", "Format Version", "header information"]),
+    "header only": (lambda lines: lines[:8], ["no frames", "Export the run again"]),
+    "no columns": (lambda lines: lines[:3], ["no columns of a rigid body", "version 1.23"]),
+    "only markers": (replaced("Rigid Body", "Marker"), ["no columns of a rigid body"]),
+    "an old version": (lambda lines: ["Format Version,1.1,Take Name,x", "", "frameindex,1"],
+                       ["no columns of a rigid body (format version 1.1)"]),
+    "local": (replaced("Global", "Local"), ["line 1", "'Local'", "Global"]),
+    "wrong body": (replaced("BlueROV2", "BlueROV"), ["no rigid body 'BlueROV2'", "'BlueROV'"]),
+    "inches": (replaced("Millimeters", "Inches"), ["'Inches'", "millimeters"]),
+    "another order": (replaced("Quaternion", "XYZ"), ["'XYZ' with 4 columns", "Euler angles"]),
+    "no time": (replaced("Time (Seconds)", "Clock"), ["line 8", "no column 'Time (Seconds)'"]),
+    "word": (cell(20, 3, "far", ","), ["line 21", "'far'", "Correct"]),
+}  # fmt: skip
 COMMANDS = {
     "empty": (lambda lines: [], ["the file is empty", "Export"]),
     "header only": (lambda lines: lines[:1], ["no commands", "Export the commands again"]),
@@ -96,6 +111,7 @@ COMMANDS = {
 }  # fmt: skip
 CASES = [("qtm_tsv", "poses.tsv", case, *QTM[case]) for case in QTM]
 CASES += [("csv", "poses.csv", case, *CSV[case]) for case in CSV]
+CASES += [("motive_csv", "take.csv", case, *MOTIVE[case]) for case in MOTIVE]
 CASES += [("csv", "commands.csv", case, *COMMANDS[case]) for case in COMMANDS]
 
 
@@ -118,7 +134,6 @@ def test_a_bad_recording_is_refused_in_words(tmp_path, name, file, edit, words):
 @pytest.mark.parametrize(
     ("section", "name", "words"),
     [
-        ("mocap", "motive_csv", ["mocap.format", "not readable in this version", "Convert"]),
         ("mocap", "qtm_tvs", ["mocap.format", "not known", "Did you mean 'qtm_tsv'"]),
         ("commands", "rosbag", ["commands.format", "not known", "Did you mean 'rosbag2'"]),
     ],

@@ -27,7 +27,7 @@ every_text = pytest.mark.parametrize("name", sorted(TEXT))
 
 
 def test_the_formats_of_this_version_are_registered():
-    assert set(mocap_readers()) >= {"qtm_tsv", "csv", "rosbag2"}
+    assert set(mocap_readers()) >= {"qtm_tsv", "csv", "rosbag2", "motive_csv"}
     assert set(command_readers()) >= {"csv", "rosbag2"}
     assert set(mocap_readers()) == set(FORMATS)
 
@@ -47,7 +47,7 @@ def test_every_format_gives_the_swim_in_ned_and_frd(tmp_path, name, world, body)
     np.testing.assert_allclose(matrix(recording.attitude), swim.rotation, atol=3e-6)
     assert recording.found.all()
     assert recording.rate == pytest.approx(100.0)
-    assert not any(vars(anomalies).values())
+    assert not any(anomalies.counts.values())
     assert usable_reason(recording) is None
 
 

@@ -13,16 +13,19 @@ import numpy as np
 import scipy
 from numpy import ndarray as Array
 
-WorldAxes = Literal["z_up", "ned"]
-BodyAxes = Literal["flu", "frd"]
+WorldAxes = Literal["z_up", "ned", "y_up"]
+BodyAxes = Literal["flu", "frd", "fur"]
 
 # A half turn about x: z-up <-> NED and FLU <-> FRD (contract, section 2).
 HALF_TURN_X = np.array([1.0, -1.0, -1.0])
 
 
 def axes_signs(axes: WorldAxes | BodyAxes) -> Array:
-    """Signs (3,) that turn components along `axes` into NED or FRD components, and back."""
-    return HALF_TURN_X if axes in ("z_up", "flu") else np.ones(3)
+    """Signs (3,) that turn components along `axes` into NED or FRD components, and back.
+
+    Readers turn `y_up` into `z_up` and `fur` (forward, up, right) into `flu`, whose signs hold.
+    """
+    return np.ones(3) if axes in ("ned", "frd") else HALF_TURN_X
 
 
 def half_turn(signs: Array) -> Array:

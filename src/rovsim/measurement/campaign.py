@@ -82,6 +82,7 @@ def load_campaign(path: Path) -> Campaign:
     file = _campaign_file(Path(path).expanduser()).absolute()
     content = checked(CampaignFile, read_yaml(file), file)
     _check_ids(content.runs, file)
+    _check_axes(content.mocap, file)
     _check_commands(content, file)
     fields = dict(content) | {"runs": tuple(content.runs), "folder": _folder(content.folder, file)}
     campaign = Campaign(file=file, **fields)
@@ -114,6 +115,18 @@ def _check_ids(runs: list[Run], file: Path) -> None:
                 remedy="Rename one of them.",
             )
         seen[key] = run.id
+
+
+def _check_axes(mocap: Mocap, file: Path) -> None:
+    """Refuse the axes of one motion capture software where another wrote the file."""
+    turned = [axes for axes in (mocap.world_axes, mocap.body_axes) if axes in ("y_up", "fur")]
+    if turned and mocap.format != "motive_csv":
+        raise BadInput(
+            f"the axes '{turned[0]}' with 'mocap.format: {mocap.format}'",
+            where=file,
+            expected="z_up or ned, and flu or frd; y_up and fur are those of motive_csv",
+            remedy="Turn the file's axes, or name those it has.",
+        )
 
 
 def _check_commands(content: CampaignFile, file: Path) -> None:

@@ -22,10 +22,6 @@ KIND: dict[str, CommandKind] = {
     "demand": "demand",
     "wrench": "wrench",
 }
-# Named in the campaign format but not readable yet, and the way around.
-LATER = {
-    "motive_csv": "Convert the take to 'csv' (time_s, x_m, y_m, z_m, qw, qx, qy, qz).",
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +109,11 @@ def reader_of(name: str, readers: dict[str, R], where: object) -> R:
     """
     if name in readers:
         return readers[name]
-    remedy = LATER.get(name) or nearest(name, readers)
-    found = "is not readable in this version" if name in LATER else "is not known"
     raise BadInput(
-        f"the format '{name}' {found}",
+        f"the format '{name}' is not known",
         where=where,
         expected=f"one of {', '.join(sorted(readers))}",
-        remedy=remedy,
+        remedy=nearest(name, readers),
     )
 
 

@@ -1,0 +1,203 @@
+"""OptiTrack Motive, csv export of format version 1.2x."""
+
+import csv
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import scipy
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.files import read_text
+from rovsim.core.rotations import conjugate, multiply, rotate
+from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.readers import (
+    Export,
+    finite_rows,
+    mocap_reader,
+    unit_quaternions,
+)
+from rovsim.measurement.recording.table import numbers, split_lines, times, without_cut_line
+
+RE_EXPORT = (
+    "In Motive: Edit, Export Tracking Data, CSV, with Rigid Bodies, header information on, "
+    "coordinates Global."
+)
+METRES = {"meters": 1.0, "centimeters": 1e-2, "millimeters": 1e-3}
+ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
+TALLEST = 30  # lines above the data that can be column names
+# A quarter turn about x takes (x, up, z) to (x, -z, up): y_up to z_up, and fur to flu.
+QUARTER = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+CHECK_UP = (
+    "Motive exports y up unless its Axis Convention was changed, and the file does not say: check "
+    "'mocap.world_axes' (y_up) and 'mocap.body_axes' (fur)."
+)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Header values by key, the line of column names, columns of rotation and position by body."""
+
+    header: dict[str, str]
+    line: int
+    names: list[str]
+    bodies: dict[str, tuple[list[int], list[int]]]
+
+
+@mocap_reader("motive_csv")
+def read_motive(path: Path, mocap: Mocap) -> Export:
+    """Read one rigid body; `y_up` and `fur` are turned into `z_up` and `flu` here.
+
+    Raises:
+        BadInput: not such a file, or no such body in it; names the line and the column.
+    """
+    text = read_text(path)
+    lines = text.split("\n")
+    layout = _layout(path, lines)
+    turns, places = _body(path, layout, mocap.body)
+    rows = split_lines(path, lines, layout.line, layout.names, ",", ended=text.endswith("\n"))
+    table, cut = without_cut_line(rows, [*turns, *places])
+    time = times(table, _time_column(path, layout))
+    position = numbers(table, places) * _metres(path, layout)
+    attitude, found = _attitude(path, layout, numbers(table, turns))
+    found &= finite_rows(position)
+    position, attitude = _upright(position, attitude, mocap)
+    notes = () if mocap.world_axes == "y_up" else (CHECK_UP,)
+    return Export(
+        time, position, attitude, found, _rate(layout), counts={"cut_lines": cut}, notes=notes
+    )
+
+
+def _upright(position: Array, attitude: Array, mocap: Mocap) -> tuple[Array, Array]:
+    """Positions (n, 3) and attitudes (n, 4) along z_up and flu, where they are along y_up, fur."""
+    if mocap.world_axes == "y_up":
+        position, attitude = rotate(QUARTER, position), multiply(QUARTER, attitude)
+    if mocap.body_axes == "fur":
+        attitude = multiply(attitude, conjugate(QUARTER))
+    return position, attitude
+
+
+def _attitude(path: Path, layout: Layout, values: Array) -> tuple[Array, Array]:
+    """Quaternions (n, 4), scalar first, of the columns x, y, z, w or of angles in degrees."""
+    kind = layout.header.get("rotation type", "Quaternion").strip()
+    if values.shape[1] == 4 and kind.lower() == "quaternion":
+        return unit_quaternions(values[:, [3, 0, 1, 2]])
+    if values.shape[1] == 3 and kind.upper() in ORDERS:
+        found = finite_rows(values)
+        # each angle about the axis as the earlier ones left it (OptiTrack: relative angles)
+        places = ["XYZ".index(axis) for axis in kind.upper()]
+        angles = np.where(found[:, None], values, 0.0)[:, places]
+        turned = scipy.spatial.transform.Rotation.from_euler(kind.upper(), angles, degrees=True)
+        return turned.as_quat(scalar_first=True), found
+    raise BadInput(
+        f"Rotation Type is '{kind}' with {values.shape[1]} columns",
+        where=path,
+        expected=f"Quaternion, or Euler angles in an order such as {ORDERS[0]}",
+        remedy=RE_EXPORT,
+    )
+
+
+def _layout(path: Path, lines: list[str]) -> Layout:
+    """Find the column names: the line that starts with Frame, and those above it."""
+    top = [next(csv.reader(io.StringIO(line)), []) for line in lines[:TALLEST]]
+    cells = [[cell.strip() for cell in row] for row in top]
+    named = next((n for n, row in enumerate(cells) if row and row[0] == "Frame"), None)
+    header = _header(path, cells, lines)
+    kinds = next((n for n, row in enumerate(cells[:named]) if "Rigid Body" in row[2:]), None)
+    if named is None or kinds is None or kinds + 2 > named - 1:
+        raise BadInput(
+            f"no columns of a rigid body (format version {header.get('format version', '?')})",
+            where=path,
+            expected="lines of types, names, Rotation and Position above the line 'Frame, Time'",
+            remedy=RE_EXPORT,
+        )
+    bodies = _bodies(cells[kinds], cells[kinds + 1], cells[named - 1])
+    return Layout(header, named, cells[named], bodies)
+
+
+def _header(path: Path, cells: list[list[str]], lines: list[str]) -> dict[str, str]:
+    if not any(line.strip() for line in lines):
+        raise BadInput("the file is empty", where=path, expected="a Motive csv", remedy=RE_EXPORT)
+    first = cells[0]
+    if not first or first[0] != "Format Version":
+        raise BadInput(
+            f"the first line starts with {(first or [''])[0]!r}",
+            where=f"{path}, line 1",
+            expected="'Format Version', as Motive writes with its header information",
+            remedy=RE_EXPORT,
+        )
+    header = {key.lower(): value for key, value in zip(first[::2], first[1::2], strict=False)}
+    space = header.get("coordinate space", "Global")
+    if space.lower() != "global":
+        raise BadInput(
+            f"Coordinate Space is '{space}'",
+            where=f"{path}, line 1",
+            expected="Global: positions in the tank, not in another body",
+            remedy=RE_EXPORT,
+        )
+    return header
+
+
+def _bodies(
+    kinds: list[str], names: list[str], what: list[str]
+) -> dict[str, tuple[list[int], list[int]]]:
+    found: dict[str, tuple[list[int], list[int]]] = {}
+    for column, (kind, name, meaning) in enumerate(zip(kinds, names, what, strict=False)):
+        if kind == "Rigid Body" and meaning in ("Rotation", "Position"):
+            found.setdefault(name, ([], []))[meaning == "Position"].append(column)
+    return found
+
+
+def _body(path: Path, layout: Layout, name: str) -> tuple[list[int], list[int]]:
+    bodies = layout.bodies
+    chosen = name or (next(iter(bodies)) if len(bodies) == 1 else "")
+    if chosen not in bodies:
+        raise BadInput(
+            f"no rigid body '{name}'; the file has {', '.join(bodies) or 'none'}",
+            where=path,
+            expected="the body named by 'mocap.body' in campaign.yaml",
+            remedy=nearest(name, bodies),
+        )
+    turns, places = bodies[chosen]
+    if len(places) != 3 or len(turns) not in (3, 4):
+        raise BadInput(
+            f"{len(turns)} columns of rotation and {len(places)} of position for '{chosen}'",
+            where=path,
+            expected="four of a quaternion or three angles, and three of position",
+            remedy=RE_EXPORT,
+        )
+    return turns, places
+
+
+def _time_column(path: Path, layout: Layout) -> int:
+    for name in ("Time (Seconds)", "Time"):
+        if name in layout.names:
+            return layout.names.index(name)
+    raise BadInput(
+        f"no column 'Time (Seconds)', but {', '.join(layout.names[:3])}",
+        where=f"{path}, line {layout.line + 1}",
+        expected="the time of every frame",
+        remedy=RE_EXPORT,
+    )
+
+
+def _metres(path: Path, layout: Layout) -> float:
+    unit = layout.header.get("length units", "Meters")
+    if unit.lower() not in METRES:
+        raise BadInput(
+            f"Length Units are '{unit}'",
+            where=f"{path}, line 1",
+            expected=f"one of {', '.join(METRES)}",
+            remedy=RE_EXPORT,
+        )
+    return METRES[unit.lower()]
+
+
+def _rate(layout: Layout) -> float | None:
+    try:
+        rate = float(layout.header.get("export frame rate", ""))
+    except ValueError:
+        return None
+    return rate if np.isfinite(rate) and rate > 0 else None
