@@ -8,10 +8,12 @@ import yaml
 from numpy import ndarray as Array
 
 import bags
+import logs
 from rovsim.core.rotations import axes_signs, from_euler, from_matrix, matrix, to_euler
 
 TEXT = {"qtm_tsv": "poses.tsv", "csv": "poses.csv", "motive_csv": "take.csv"}
-FORMATS = {**TEXT, "rosbag2": "poses"}
+FORMATS = {**TEXT, "rosbag2": "poses", "ardupilot": "log.BIN"}
+AXES = {"ardupilot": ("ned", "frd")}  # of formats that have no others
 CLOCKS = {"rosbag2": bags.START}  # s, where a recording does not start at zero
 
 
@@ -114,7 +116,7 @@ def write_poses(folder: Path, name: str, swim: Swim) -> Path:
     path = folder / FORMATS[name]
     if name in TEXT:
         return write_lines(path, pose_lines(name, swim))
-    return {"rosbag2": bags.write_swim}[name](path, swim)
+    return {"rosbag2": bags.write_swim, "ardupilot": logs.write_dataflash}[name](path, swim)
 
 
 def command_lines(seconds: float = 4.0, name: str = "csv") -> list[str]:
@@ -135,6 +137,7 @@ def write_lines(path: Path, lines: list[str], end: str = "\n") -> Path:
 
 def campaign_content(name: str = "qtm_tsv") -> dict:
     """Keys of a one-run campaign with poses in the format `name`."""
+    world_axes, body_axes = AXES.get(name, ("z_up", "flu"))
     return {
         "name": "hand-written",
         "vehicle": "bluerov2_heavy",
@@ -142,8 +145,8 @@ def campaign_content(name: str = "qtm_tsv") -> dict:
         "mocap": {
             "format": name,
             "body": "/mocap/BlueROV2/pose" if name == "rosbag2" else "BlueROV2",
-            "world_axes": "z_up",
-            "body_axes": "flu",
+            "world_axes": world_axes,
+            "body_axes": body_axes,
         },
         "commands": {"format": "csv", "kind": "pwm", "columns": ["t1", "t2"]},
         "runs": [

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from recordings import (
+    AXES,
     FORMATS,
     TEXT,
     Swim,
@@ -16,6 +17,7 @@ from recordings import (
     write_poses,
     write_run,
 )
+from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality import assess, usable_reason
@@ -27,9 +29,16 @@ every_text = pytest.mark.parametrize("name", sorted(TEXT))
 
 
 def test_the_formats_of_this_version_are_registered():
-    assert set(mocap_readers()) >= {"qtm_tsv", "csv", "rosbag2", "motive_csv"}
-    assert set(command_readers()) >= {"csv", "rosbag2"}
+    assert set(mocap_readers()) >= {"qtm_tsv", "csv", "rosbag2", "motive_csv", "ardupilot"}
+    assert set(command_readers()) >= {"csv", "rosbag2", "ardupilot"}
     assert set(mocap_readers()) == set(FORMATS)
+
+
+def swum(recording):
+    """Positions and attitudes that were measured, as poses or each by itself."""
+    if recording.posed:
+        return recording.position, recording.attitude
+    return recording.channels["position"].value, recording.channels["attitude"].value
 
 
 @every_format
@@ -41,11 +50,17 @@ def test_every_format_gives_the_swim_in_ned_and_frd(tmp_path, name, world, body)
     swim = Swim.ned()
     write_poses(tmp_path, name, swim.along(world, body))
     write_lines(tmp_path / "commands.csv", command_lines(name=name))
-    recording, anomalies = read_run(load_campaign(write_campaign(tmp_path, content)), "one")
+    campaign = load_campaign(write_campaign(tmp_path, content))
+    if AXES.get(name, (world, body)) != (world, body):
+        with pytest.raises(BadInput, match=f"the axes {world} and {body}"):
+            read_run(campaign, "one")
+        return
+    recording, anomalies = read_run(campaign, "one")
+    position, attitude = swum(recording)
     np.testing.assert_allclose(recording.time, swim.time, atol=1e-6)
-    np.testing.assert_allclose(recording.position, swim.position, atol=1e-6)
-    np.testing.assert_allclose(matrix(recording.attitude), swim.rotation, atol=3e-6)
-    assert recording.found.all()
+    np.testing.assert_allclose(position, swim.position, atol=1e-6)
+    np.testing.assert_allclose(matrix(attitude), swim.rotation, atol=3e-6)
+    assert recording.found.all() == recording.posed
     assert recording.rate == pytest.approx(100.0)
     assert not any(anomalies.counts.values())
     assert usable_reason(recording) is None
@@ -93,7 +108,8 @@ def test_a_recording_survives_its_file(tmp_path, name):
     recording.write(tmp_path / "one.npz")
     again = Recording.read(tmp_path / "one.npz")
     np.testing.assert_array_equal(again.attitude, recording.attitude)
-    np.testing.assert_array_equal(again.site.tank, [[0, 10], [-5, 0], [-3, 0]])
+    signs = recording.site.axes[:, None]
+    np.testing.assert_array_equal(again.site.tank, np.sort(signs * [[0, 10], [0, 5], [0, 3]]))
     assert again.run == recording.run
 
 

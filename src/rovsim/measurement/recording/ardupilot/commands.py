@@ -1,0 +1,82 @@
+"""Commands in an ArduPilot log: outputs to thrusters (SERVO1 …) or the pilot's radio (RC1 …)."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.measurement.campaign_file import CommandLog
+from rovsim.measurement.recording.ardupilot.logs import needs, open_log
+from rovsim.measurement.recording.ardupilot.series import Log, Series
+from rovsim.measurement.recording.commands import PWM_CENTER, as_commands
+from rovsim.measurement.recording.readers import CommandExport, command_reader
+
+# Kind of log -> kind of column -> type of message, and the field of a number.
+SOURCES = {
+    "dataflash": {"SERVO": ("RCOU", "C{}"), "RC": ("RCIN", "C{}")},
+    "telemetry": {
+        "SERVO": ("SERVO_OUTPUT_RAW", "servo{}_raw"),
+        "RC": ("RC_CHANNELS", "chan{}_raw"),
+    },
+}
+
+
+@command_reader("ardupilot")
+def read_commands(path: Path, log: CommandLog) -> CommandExport:
+    """Read columns SERVO1, SERVO2, … or RC1, RC2, …, pulses in us.
+
+    Raises:
+        BadInput: no such log, no such column in it, or other kinds of command.
+    """
+    wanted, numbers = _wanted(path, log)
+    held = open_log(path)
+    series, field = _series(held, wanted)
+    names = [field.format(number) for number in numbers]
+    missing = [log.names[k] for k, name in enumerate(names) if name not in series.fields]
+    if missing:
+        raise BadInput(
+            f"no output or channel {', '.join(missing)} in {SOURCES[held.kind][wanted][0]}",
+            where=path,
+            expected="columns that the log holds",
+            remedy="Correct 'commands.columns'.",
+        )
+    value, notes = _without_pulse(series.of(names), wanted)
+
+    def place(line: int, column: int) -> str:
+        return f"{path}, at {series.time[line]:.3f} s, column '{log.names[column]}'"
+
+    return as_commands(series.time, value, log, place, pulses=True, notes=notes)
+
+
+def _wanted(path: Path, log: CommandLog) -> tuple[str, list[int]]:
+    """SERVO or RC, and the numbers of the columns."""
+    parts = [re.fullmatch(r"(SERVO|RC)([1-9]\d?)", name) for name in log.names]
+    kinds = {part[1] for part in parts if part}
+    if len(kinds) != 1 or not all(parts) or log.kind == "wrench":
+        raise BadInput(
+            f"the columns {', '.join(log.names)} of the kind {log.kind}",
+            where="commands.columns in campaign.yaml",
+            expected=f"SERVO1, SERVO2, … or RC1, RC2, … of {path.name}, pulses in us, for "
+            "thrusters or as demands",
+            remedy="Correct 'commands.columns' and 'commands.kind'.",
+        )
+    return kinds.pop(), [int(part[2]) for part in parts if part]
+
+
+def _series(held: Log, wanted: str) -> tuple[Series, str]:
+    name, field = SOURCES[held.kind][wanted]
+    if name not in held.series:
+        raise needs(held, [name], "no commands")
+    series = held.series[name]
+    return series, field
+
+
+def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
+    """Values (m, c) with 0 and 65535 taken for what they mean, as in a bag of mavros."""
+    none = (value == 0.0) | (value == 65535.0)
+    if wanted == "RC" or not none.any():
+        return np.where(none, np.nan, value), ()
+    said = f"{int(none.sum())} outputs without a pulse stand for no command."
+    return np.where(none, PWM_CENTER, value), (said,)

@@ -1,0 +1,155 @@
+"""What an ArduPilot log measured: attitude, rates, specific force, depth, position, voltage."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import from_euler
+from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.ardupilot.logs import needs, open_log
+from rovsim.measurement.recording.ardupilot.series import Log, Series
+from rovsim.measurement.recording.channels import Channel, measured
+from rovsim.measurement.recording.readers import Export, mocap_reader
+
+DEGREE = np.pi / 180.0
+MILLI_G = 9.80665e-3  # m/s2: RAW_IMU of ArduPilot is in milli-g
+KF_POSITION = ("PN", "PE", "PD")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Fields of a type of message, and the factor that makes them SI."""
+
+    series: str
+    fields: tuple[str, ...]
+    factor: float = 1.0
+
+
+# Kind of channel -> where it stands, the first that the log has. Altitudes are up.
+SOURCES = {
+    "dataflash": {
+        "attitude": [Source("ATT", ("Roll", "Pitch", "Yaw"), DEGREE)],
+        "rates": [Source("IMU", ("GyrX", "GyrY", "GyrZ"))],
+        "specific_force": [Source("IMU", ("AccX", "AccY", "AccZ"))],
+        "depth": [Source("CTUN", ("BAlt",), -1.0), Source("BARO", ("Alt",), -1.0)],
+        "position": [Source("XKF1", KF_POSITION), Source("NKF1", KF_POSITION)],
+        "voltage": [Source("BAT", ("Volt",)), Source("CURR", ("Volt",))],
+    },
+    "telemetry": {
+        "attitude": [Source("ATTITUDE", ("roll", "pitch", "yaw"))],
+        "rates": [Source("ATTITUDE", ("rollspeed", "pitchspeed", "yawspeed"))],
+        "specific_force": [Source("RAW_IMU", ("xacc", "yacc", "zacc"), MILLI_G)],
+        "depth": [Source("VFR_HUD", ("alt",), -1.0)],
+        "position": [Source("LOCAL_POSITION_NED", ("x", "y", "z"))],
+        "voltage": [Source("SYS_STATUS", ("voltage_battery",), 1e-3)],
+    },
+}
+# What the filter says of itself, in the same bits in both kinds of log (nav_filter_status).
+STATUS = {"dataflash": [("XKF4", "SS"), ("NKF4", "SS")]}
+STATUS["telemetry"] = [("EKF_STATUS_REPORT", "flags")]
+POSITION_KNOWN, POSITION_ASSUMED = 0b11000, 0b10000000  # relative or absolute; constant
+NO_VOLTAGE = 65.535  # V: UINT16_MAX
+MODES = {0: "STABILIZE", 1: "ACRO", 2: "ALT_HOLD", 3: "AUTO", 4: "GUIDED", 7: "CIRCLE"}
+MODES |= {9: "SURFACE", 16: "POSHOLD", 19: "MANUAL", 20: "MOTOR_DETECT", 21: "SURFTRAK"}
+
+
+@mocap_reader("ardupilot")
+def read_log(path: Path, mocap: Mocap) -> Export:
+    """Read the channels of a log.
+
+    Raises:
+        BadInput: no such log, other axes than ArduPilot's, or nothing measured in it.
+    """
+    _check_axes(mocap, path)
+    log = open_log(path)
+    found = {kind: _read(log, sources) for kind, sources in SOURCES[log.kind].items()}
+    channels = {kind: one for kind, one in found.items() if one is not None and len(one.time)}
+    if not channels:
+        names = [source.series for options in SOURCES[log.kind].values() for source in options]
+        raise needs(log, list(dict.fromkeys(names)), "nothing of the motion")
+    notes = log.notes + _adapt(log, channels) + _modes(log)
+    return Export.of_channels(channels, notes=notes)
+
+
+def _check_axes(mocap: Mocap, path: Path) -> None:
+    if (mocap.world_axes, mocap.body_axes) != ("ned", "frd"):
+        raise BadInput(
+            f"the axes {mocap.world_axes} and {mocap.body_axes} for an ArduPilot log",
+            where=path,
+            expected="world_axes: ned and body_axes: frd, which ArduPilot logs",
+            remedy="Correct them in campaign.yaml.",
+        )
+
+
+def _read(log: Log, sources: list[Source]) -> Channel | None:
+    source = next((s for s in sources if s.series in log.series), None)
+    if source is None:
+        return None
+    series = log.series[source.series]
+    return measured(series.time, series.of(source.fields) * source.factor)
+
+
+def _adapt(log: Log, channels: dict[str, Channel]) -> tuple[str, ...]:
+    """Make what the log holds what the channels mean; say what was left out."""
+    notes = []
+    if "attitude" in channels:
+        time, angles = channels["attitude"].time, channels["attitude"].value
+        whole = np.isfinite(angles).all(axis=1)
+        channels["attitude"] = Channel(time[whole], from_euler(*angles[whole].T))
+    if "voltage" in channels:
+        time, volts = channels["voltage"].time, channels["voltage"].value
+        given = (volts[:, 0] > 0.0) & (volts[:, 0] != NO_VOLTAGE)
+        channels["voltage"] = Channel(time[given], volts[given])
+    if "depth" in channels and log.submarine is False:
+        del channels["depth"]
+        notes.append("The vehicle is no submarine: its altitude is not read as a depth.")
+    if "position" in channels:
+        notes += _believed_position(log, channels)
+    return tuple(notes)
+
+
+def _believed_position(log: Log, channels: dict[str, Channel]) -> list[str]:
+    """Keep the filter's position where it says that it knows it; its height beside no depth."""
+    position = channels.pop("position")
+    known = _known(log, position.time)
+    if not known.any():
+        return ["The filter never knew where the vehicle was: its position is not measured."]
+    value = position.value[known]
+    if "depth" in channels:  # the filter's height is made of it
+        value = np.where([True, True, False], value, np.nan)
+    channels["position"] = Channel(position.time[known], value)
+    left = int(np.sum(~known))
+    return [f"{left} positions that the filter did not know were left out."] if left else []
+
+
+def _known(log: Log, time: Array) -> Array:
+    """Where the last status of the filter said that the horizontal position is estimated."""
+    given = next(((s, f) for s, f in STATUS[log.kind] if s in log.series), None)
+    if given is None:
+        return np.zeros(len(time), bool)
+    status = _in_order(log.series[given[0]])
+    flags = np.nan_to_num(status.of([given[1]])[:, 0]).astype(np.int64)
+    good = (flags & POSITION_KNOWN != 0) & (flags & POSITION_ASSUMED == 0)
+    last = np.searchsorted(status.time, time, side="right") - 1
+    return np.where(last >= 0, good[np.maximum(last, 0)], False)
+
+
+def _in_order(series: Series) -> Series:
+    return series.where(np.argsort(series.time, kind="stable"))
+
+
+def _modes(log: Log) -> tuple[str, ...]:
+    """In which flight modes it was recorded: all but MANUAL have the autopilot in the loop."""
+    name, field = ("MODE", "ModeNum") if log.kind == "dataflash" else ("HEARTBEAT", "custom_mode")
+    if name not in log.series or log.submarine is False:
+        return ()
+    modes = log.series[name]
+    number = modes.of([field if field in modes.fields else "Mode"])[:, 0]
+    number = np.unique(number[np.isfinite(number)]).astype(int)
+    if not len(number):
+        return ()
+    named = ", ".join(MODES.get(int(n), f"number {n}") for n in number)
+    return (f"Flight modes in this log: {named}. In all but MANUAL the autopilot adds its own.",)

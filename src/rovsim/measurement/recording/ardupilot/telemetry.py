@@ -1,0 +1,135 @@
+"""Telemetry logs (.tlog): MAVLink packets, each behind the time at which it was received."""
+
+import struct
+from collections import defaultdict
+from pathlib import Path
+from typing import Any, Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.extras import require
+from rovsim.measurement.recording.ardupilot.series import Log, Series, no_log
+
+# https://mavlink.io/en/guide/serialization.html: marker, lengths around the payload
+MARKERS = {0xFD: 12, 0xFE: 8}
+SIGNED, SIGNATURE = 0x01, 13
+WANTED = ["HEARTBEAT", "ATTITUDE", "RAW_IMU", "VFR_HUD", "LOCAL_POSITION_NED", "SYS_STATUS"]
+WANTED += ["EKF_STATUS_REPORT", "SERVO_OUTPUT_RAW", "RC_CHANNELS"]
+NO_AUTOPILOT, SUBMARINE = 8, 12  # MAV_AUTOPILOT_INVALID, MAV_TYPE_SUBMARINE
+REBOOT = 1.0  # s by which the time since boot may step back and still be a late packet
+
+Received = tuple[float, Any]  # s since 1970, message
+
+
+def read_telemetry(path: Path) -> Log:
+    """Read the types of messages that matter, of the vehicle itself.
+
+    Raises:
+        BadInput: no such file, or nothing in it can be read.
+    """
+    require("recordings", by="mocap.format: ardupilot with a .tlog")
+    from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+    raw = path.read_bytes()
+    numbers = {m.id for m in dialect.mavlink_map.values() if m.msgname in WANTED}
+    found = list(_messages(raw, dialect, numbers))
+    if not found:
+        said = f"no message of a known type in {len(raw)} bytes" if raw else "the file is empty"
+        raise no_log(path, said)
+    found, submarine = _of_vehicle(found)
+    by_type: dict[str, list[Received]] = defaultdict(list)
+    for received, message in found:
+        by_type[message.get_type()].append((received, message))
+    offset, notes = _boot(found)
+    series = {name: _series(messages, offset) for name, messages in by_type.items()}
+    return Log(path, "telemetry", series, submarine, notes)
+
+
+def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]:
+    """Whole messages of these numbers; damaged bytes are passed over."""
+    decoder = dialect.MAVLink(None)
+    at = 0
+    while at + 8 + 6 < len(raw):
+        length = _length(raw, at + 8)
+        packet = raw[at + 8 : at + 8 + length]
+        if not length or len(packet) < length:
+            at += 1
+            continue
+        if _number(packet) not in numbers:
+            # a packet that nobody reads is believed when another one follows it
+            following = at + 16 + length
+            at += 8 + length if following >= len(raw) or raw[following] in MARKERS else 1
+            continue
+        try:
+            message = decoder.decode(bytearray(packet))
+        except dialect.MAVError:
+            at += 1
+            continue
+        yield struct.unpack_from(">Q", raw, at)[0] * 1e-6, message
+        at += 8 + length
+
+
+def _length(raw: bytes, at: int) -> int:
+    """Length of the packet at a place; 0 where there is none."""
+    around = MARKERS.get(raw[at], 0)
+    if not around:
+        return 0
+    signed = raw[at] == 0xFD and raw[at + 2] & SIGNED
+    return around + raw[at + 1] + (SIGNATURE if signed else 0)
+
+
+def _number(packet: bytes) -> int:
+    return int.from_bytes(packet[7:10], "little") if packet[0] == 0xFD else packet[5]
+
+
+def _of_vehicle(found: list[Received]) -> tuple[list[Received], bool | None]:
+    """Messages of the first autopilot (not of ground stations or cameras), and what it steers."""
+    beats = [m for _, m in found if m.get_type() == "HEARTBEAT" and m.autopilot != NO_AUTOPILOT]
+    if not beats:
+        return found, None
+    first = beats[0]
+    source = (first.get_srcSystem(), first.get_srcComponent())
+    own = [(t, m) for t, m in found if (m.get_srcSystem(), m.get_srcComponent()) == source]
+    return own, first.type == SUBMARINE
+
+
+def _since_boot(message: Any) -> float:
+    """Seconds since boot that a message carries; NaN where it carries none."""
+    fields = message.get_fieldnames()
+    if "time_boot_ms" in fields:
+        return message.time_boot_ms * 1e-3
+    return message.time_usec * 1e-6 if "time_usec" in fields else float("nan")
+
+
+def _boot(found: list[Received]) -> tuple[float, tuple[str, ...]]:
+    """When the vehicle was booted (s since 1970), NaN where its clock does not serve.
+
+    The median difference: the usual delay of the radio link counts as none.
+    """
+    received = np.array([t for t, _ in found])
+    boot = np.array([_since_boot(m) for _, m in found])
+    known = np.isfinite(boot)
+    if not known.any():
+        return float("nan"), ()
+    boot, received = boot[known], received[known]
+    back = np.diff(boot)
+    late = received - boot
+    if len(back) and (back.min() < -REBOOT or np.ptp(np.percentile(late, [5, 95])) > REBOOT):
+        note = "The vehicle's clock does not go on (a reboot?): the times of reception hold."
+        return float("nan"), (note,)
+    return float(np.median(late)), ()
+
+
+def _series(messages: list[Received], offset: float) -> Series:
+    time = np.array([t for t, _ in messages])
+    if np.isfinite(offset):
+        boot = np.array([_since_boot(m) for _, m in messages]) + offset
+        time = np.where(np.isfinite(boot), boot, time)
+    first = messages[0][1]
+    names = [n for n in first.get_fieldnames() if isinstance(getattr(first, n), int | float)]
+    return Series(time, {name: _values(messages, name) for name in names})
+
+
+def _values(messages: list[Received], name: str) -> Array:
+    return np.array([float(getattr(m, name)) for _, m in messages])
