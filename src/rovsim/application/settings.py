@@ -55,8 +55,9 @@ class BenchSettings(Section):
 
 
 class BlindSettings(Section):
-    """The blind benchmark: which cases, who answers, on how many cores."""
+    """The blind benchmark: which cases, who flies and who answers, on how many cores."""
 
+    simulator: Literal["tank", "independent"] = "tank"
     suite: Literal["quick", "standard", "full"] = "quick"
     seeds: Literal["development", "reporting"] = "reporting"
     methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")

@@ -104,4 +104,5 @@ class BlindSummary(Result):
     )
     suite: str
     seeds: str
+    simulator: str = "tank"
     methods: dict[str, MethodSummary]

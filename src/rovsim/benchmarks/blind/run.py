@@ -14,17 +14,13 @@ from typing import Callable, Iterator, Sequence
 from rovsim.application.provenance import digest
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import Case
-from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.flight import SIMULATORS, fly
 from rovsim.benchmarks.blind.methods import Method
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json
 from rovsim.results.diagnosis import Answer, Diagnosis
 
-TANK = (
-    "rovsim.simulation.synthetic_tank",
-    "rovsim.benchmarks.blind.flight",
-    "rovsim.benchmarks.blind.outside",
-)
+FLIGHT = "rovsim.benchmarks.blind.flight"
 ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 Progress = Callable[[int, int], None]
 
@@ -35,6 +31,7 @@ class Job:
 
     case: Case
     methods: tuple[tuple[Method, Path, str], ...]
+    simulator: str
 
 
 def place(folder: Path, method: Method, case: Case) -> Path:
@@ -48,14 +45,17 @@ def fingerprint(case: Case, code: str) -> str:
     return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
-def pending(cases: Sequence[Case], methods: Sequence[Method], folder: Path) -> Iterator[Job]:
-    """Jobs for what is missing or was answered by other code."""
-    codes = {m.name: digest(*TANK, *m.code) for m in methods}
-    for case in cases:
+def pending(
+    cases: Sequence[Case], methods: Sequence[Method], folder: Path, simulator: str = "tank"
+) -> Iterator[Job]:
+    """Jobs for what is missing or was answered by other code, of cases the simulator can fly."""
+    flown_by = SIMULATORS[simulator]
+    codes = {m.name: digest(FLIGHT, *flown_by.code, *m.code) for m in methods}
+    for case in filter(flown_by.states, cases):
         wanted = [(m, place(folder, m, case), fingerprint(case, codes[m.name])) for m in methods]
         left = tuple(w for w in wanted if not _answered(w[1], w[2]))
         if left:
-            yield Job(case, left)
+            yield Job(case, left, simulator)
 
 
 def _answered(path: Path, mark: str) -> bool:
@@ -66,7 +66,7 @@ def work(job: Job) -> None:
     """Fly a case once, ask every method, keep each answer as soon as it is there."""
     with tempfile.TemporaryDirectory() as folder:
         campaign = Path(folder, "campaign")
-        flown = fly(job.case, campaign)
+        flown = fly(job.case, campaign, job.simulator)
         for method, path, mark in job.methods:
             begin, worked = time.perf_counter(), time.process_time()
             diagnosis, error = _ask(method, campaign, Path(folder, method.name))
@@ -96,9 +96,10 @@ def run(
     folder: Path,
     cores: int,
     progress: Progress = lambda done, total: None,
+    simulator: str = "tank",
 ) -> None:
     """Answer all cases by all methods; what is there already is not asked again."""
-    jobs = list(pending(cases, methods, folder))
+    jobs = list(pending(cases, methods, folder, simulator))
     if cores == 1:
         for done, job in enumerate(jobs):
             progress(done, len(jobs))

@@ -26,6 +26,7 @@ RANK_COLUMNS = {
     "values": "values", "covered": "inside 95 %", "stretch": "times too narrow",
     "p_value": "chance of such ranks", "counts": "ranks", "said": "intervals are",
 }  # fmt: skip
+_FLOWN = {"tank": "tank", "independent": "independent simulator"}
 UNLIKELY = 0.01  # of a histogram of honest ranks
 RARE = 0.001  # chances below are not told apart
 NEARLY = 0.1  # of the width of an interval
@@ -40,7 +41,7 @@ def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
     first, last = SEEDS[results.seeds]
     parts = [
         f"Made by `make benchmark-blind SUITE={results.suite}`; {results.seeds} seeds "
-        f"{first} to {last}.",
+        f"{first} to {last}; flown in the {_FLOWN[results.simulator]}.",
     ]
     for name, found in results.methods.items():
         parts += [f"### {name}", table(found.kinds, "cases of", KIND_COLUMNS)]

@@ -1,0 +1,156 @@
+"""A campaign of the second simulator: raw exports and `campaign.yaml`, nothing of the truth."""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.spatial.transform import Rotation
+
+from rovsim.benchmarks.blind.independent.exports import BODY, write_commands, write_poses
+from rovsim.benchmarks.blind.independent.motion import Mover, Vehicle
+from rovsim.benchmarks.blind.independent.pilot import Pilot, draw_pushes
+from rovsim.benchmarks.blind.independent.thrusters import Thrusters
+from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Hidden, read_constants
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_yaml, write_yaml
+from rovsim.core.shipped import conf_file
+
+# Effects of the catalogue that are stated here once more. Not a loop on board, whose set-points
+# the log would hold, nor a current that wanders, with which no observer can drift.
+STATED = frozenset({
+    "net_buoyancy", "buoyancy_center", "payload", "constant_wrench", "linear_damping",
+    "quadratic_damping", "cubic_damping", "dry_friction", "coupled_damping", "added_mass",
+    "added_mass_coupling", "lift", "fluid_memory", "current", "tether_tension", "tether_drag",
+    "wall_proximity", "surface_proximity", "thruster_lag", "input_delay", "clock_drift",
+    "thruster_deadband", "force_curve", "thruster_gain", "thrust_asymmetry", "voltage_sag",
+    "advance_loss", "propeller_torque", "pose_filter", "marker_offset", "marker_misalignment",
+    "world_tilt",
+})  # fmt: skip
+
+
+class OutOfTank(BadInput):
+    """The vehicle reached a wall, the floor or the surface."""
+
+
+def record_campaign(settings: Mapping[str, Any], out: Path) -> None:
+    """Fly all runs of a tank's settings, given as plain data, and write the campaign to `out`.
+
+    Raises:
+        OutOfTank: what is hidden is stronger than the pilot.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    seeds = np.random.SeedSequence(settings["seed"]).spawn(len(settings["runs"]))
+    for run, seed in zip(settings["runs"], seeds, strict=True):
+        _record(settings, run, out, np.random.default_rng(seed))
+    write_yaml(out / "campaign.yaml", _describe(settings))
+
+
+def _record(
+    settings: Mapping[str, Any], run: Mapping[str, Any], out: Path, random: np.random.Generator
+) -> None:
+    file = read_yaml(conf_file(f"vehicle/{settings['vehicle']}.yaml") or Path(settings["vehicle"]))
+    hidden = _list_hidden(settings)
+    tank = np.sort(np.array([settings["tank"][k] for k in "xyz"]) * UPSIDE[:, None], axis=1)
+    seconds, tick = float(settings["duration"]), 1.0 / settings["log"]["rate"]
+    thrusters = Thrusters(file, hidden, seconds)
+    flight = Flight(
+        Mover(read_constants(file, hidden), thrusters, hidden, tank),
+        Pilot(run["control"], tank, seconds, random), tick, 1.0 / settings["camera"]["rate"],
+    )  # fmt: skip
+    ticks, wind = round(seconds / tick), settings["turbulence"]
+    pushes = draw_pushes(wind["force"], wind["moment"], wind["time_constant"], tick, ticks, random)
+    frames = list(flight.fly(pushes, tank))
+    attitudes = Rotation.from_matrix(np.array([frame.R for frame in frames]))
+    write_poses(
+        out / f"{run['id']}_6D.tsv", np.array([frame.place for frame in frames]), attitudes,
+        settings["camera"], hidden, random,
+    )  # fmt: skip
+    write_commands(
+        out / f"{run['id']}_commands.csv", flight.stamps, flight.commands, settings["log"], random
+    )
+
+
+class Flight:
+    """One run, tick by tick; remembers what was commanded."""
+
+    def __init__(self, mover: Mover, pilot: Pilot, tick: float, frame: float) -> None:
+        self.mover, self.pilot, self.tick, self.frame = mover, pilot, tick, frame
+        self.stamps: list[float] = []
+        self.acts: list[float] = []
+        self.commands: list[Array] = []
+
+    def fly(self, pushes: Sequence[Array], tank: Array) -> Iterator[Vehicle]:
+        """The vehicle at every frame, the first at the start, under pushes of one tick each.
+
+        Raises:
+            OutOfTank: the pilot lost it.
+        """
+        thrusters = self.mover.thrusters
+        now = self.pilot.begin(len(self.mover.own.position))
+        for k, push in enumerate(pushes):
+            begin, end = k * self.tick, (k + 1) * self.tick
+            command = thrusters.command(self.pilot.steer(begin, now, self.tick))
+            stamp, acts = thrusters.log(begin)
+            self.stamps.append(stamp)
+            self.acts.append(acts)
+            self.commands.append(command)
+            if k == 0:
+                yield now
+                spun_up = thrusters.force(command)
+                now = Vehicle(now.place, now.R, now.velocity, spun_up, now.memory)
+            now, seen = self._advance(now, push, begin, end)
+            if np.any(now.place < tank[:, 0]) or np.any(now.place > tank[:, 1]):
+                raise _lost(end)
+            # the last instant is the end of the run, which has no frame
+            yield from seen if k + 1 < len(pushes) else seen[:-1]
+
+    def _advance(
+        self, now: Vehicle, push: Array, begin: float, end: float
+    ) -> tuple[Vehicle, list[Vehicle]]:
+        """Over one tick; commands change wherever they act inside it."""
+        changes = [t for t in self.acts if begin < t < end]
+        frames = [k * self.frame for k in range(round(begin / self.frame) + 1,
+                                                round(end / self.frame) + 1)]  # fmt: skip
+        seen: list[Vehicle] = []
+        for a, b in pairwise([begin, *changes, end]):
+            k = int(np.searchsorted(self.acts, 0.5 * (a + b), side="right")) - 1
+            static = self.mover.thrusters.force(self.commands[max(k, 0)])
+            wanted = [min(t, b) for t in frames if a + 1e-9 < t <= b + 1e-9]
+            now, found = self.mover.carry(now, static, push, (a, b), wanted)
+            seen += found
+        return now, seen
+
+
+def _lost(t: float) -> OutOfTank:
+    return OutOfTank(
+        f"the vehicle left the tank after {t:.1f} s",
+        where="independent simulator",
+        expected="a run that stays between walls, floor and surface",
+        remedy="Hide weaker effects, or make the tank larger.",
+    )
+
+
+def _list_hidden(settings: Mapping[str, Any]) -> Hidden:
+    """Parameters given, by effect."""
+    return {
+        one["effect"]: {k: float(v["value"]) for k, v in one["parameters"].items()}
+        for one in settings["effects"]
+    }
+
+
+def _describe(settings: Mapping[str, Any]) -> dict[str, Any]:
+    count = 8
+    return {
+        "name": settings["name"], "vehicle": settings["vehicle"],
+        "tank": {k: list(settings["tank"][k]) for k in "xyz"},
+        "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
+        "commands": {"format": "csv", "kind": "pwm",
+                     "columns": [f"t{k + 1}" for k in range(count)]},
+        "runs": [
+            {"id": run["id"], "control": run["control"], "split": run["split"],
+             "mocap": f"{run['id']}_6D.tsv", "commands": f"{run['id']}_commands.csv"}
+            for run in settings["runs"]
+        ],
+    }  # fmt: skip

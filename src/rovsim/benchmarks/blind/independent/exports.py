@@ -1,0 +1,129 @@
+"""What the cameras and the log make of a run: a QTM export and a CSV of commands."""
+
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.signal import lfilter
+from scipy.spatial.transform import Rotation
+
+from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Hidden
+from rovsim.core.files import write_text
+
+BODY = "BlueROV2"
+
+
+def write_poses(
+    path: Path,
+    places: Array,
+    attitudes: Rotation,
+    camera: Mapping[str, Any],
+    hidden: Hidden,
+    random: np.random.Generator,
+) -> None:
+    """Poses (n, 3) NED and n attitudes, one a frame, as Qualisys Track Manager exports them."""
+    rate, count = float(camera["rate"]), len(places)
+    places, attitudes = _sense(places, attitudes, hidden)
+    lasting = _draw_lasting(count, 1.0 / (rate * camera["colour_time"]), random)
+    shift = camera["position_noise"] * random.normal(size=(count, 3))
+    turn = camera["attitude_noise"] * random.normal(size=(count, 3))
+    places = places + shift + camera["colour_noise"] * lasting[:, :3]
+    turn = turn + camera["colour_attitude"] * lasting[:, 3:]
+    attitudes = attitudes * Rotation.from_rotvec(turn)
+    places, attitudes = _smooth(places, attitudes, rate, hidden)
+    swapped = random.random(count) < camera["outliers_per_minute"] / (60.0 * rate)
+    away = random.normal(size=(count, 3))
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    smallest, largest = camera["outlier_size"]
+    size = random.uniform(smallest, largest, size=(count, 1))
+    places = places + swapped[:, None] * size * away
+    rows = _format(places, attitudes, random)
+    for first in np.flatnonzero(random.random(count) < camera["bursts_per_minute"] / (60 * rate)):
+        lost = slice(first, first + int(random.integers(1, camera["longest_burst"] + 1)))
+        rows[lost] = [*np.zeros(6), -1.0, *np.zeros(9)]
+    write_text(path, _header(count, rate) + _table(rows, rate))
+
+
+def _sense(places: Array, attitudes: Rotation, hidden: Hidden) -> tuple[Array, Rotation]:
+    """Another body point, other body axes, a world that is not level (contract, section 2)."""
+    offset, turn = hidden.get("marker_offset", {}), hidden.get("marker_misalignment", {})
+    tilt = hidden.get("world_tilt", {})
+    level = Rotation.from_rotvec([tilt.get("roll", 0.0), tilt.get("pitch", 0.0), 0.0])
+    markers = attitudes.apply([offset.get(k, 0.0) for k in "xyz"])
+    inner = Rotation.from_rotvec([turn.get(k, 0.0) for k in ("roll", "pitch", "yaw")])
+    return level.apply(places + markers), level * attitudes * inner
+
+
+def _smooth(
+    places: Array, attitudes: Rotation, rate: float, hidden: Hidden
+) -> tuple[Array, Rotation]:
+    """Two equal first-order low-passes, on the place and along the geodesic of the attitude."""
+    if "pose_filter" not in hidden:
+        return places, attitudes
+    keep = float(np.exp(-2.0 * np.pi * hidden["pose_filter"]["cutoff"] / rate))
+    for _ in range(2):
+        first = places[:1]
+        places = first + lfilter([1.0 - keep], [1.0, -keep], places - first, axis=0)
+        followed = [attitudes[0]]
+        for one in attitudes[1:]:
+            behind = (followed[-1].inv() * one).as_rotvec()
+            followed.append(followed[-1] * Rotation.from_rotvec((1.0 - keep) * behind))
+        attitudes = Rotation.concatenate(followed)
+    return places, attitudes
+
+
+def _draw_lasting(count: int, step: float, random: np.random.Generator) -> Array:
+    """Six errors (count, 6) that last, of unit variance; `step` in time constants."""
+    keep = np.exp(-step)
+    kicks = np.sqrt(1.0 - keep**2) * random.normal(size=(count, 6))
+    kicks[0] /= np.sqrt(1.0 - keep**2)
+    return lfilter([1.0], [1.0, -keep], kicks, axis=0)
+
+
+def _format(places: Array, attitudes: Rotation, random: np.random.Generator) -> Array:
+    """Millimetres, degrees, residual, and body to world column by column: z up, x y z forward."""
+    flip = np.diag(UPSIDE)
+    R = flip @ attitudes.as_matrix() @ flip
+    yaw_pitch_roll = Rotation.from_matrix(R).as_euler("ZYX", degrees=True)
+    columns = np.swapaxes(R, 1, 2).reshape(-1, 9)
+    residual = random.uniform(0.2, 0.7, size=(len(places), 1))
+    return np.hstack([1000.0 * places * UPSIDE, yaw_pitch_roll[:, ::-1], residual, columns])
+
+
+def _header(frames: int, rate: float) -> str:
+    known = {
+        "NO_OF_FRAMES": frames, "NO_OF_CAMERAS": 8, "NO_OF_BODIES": 1, "FREQUENCY": f"{rate:g}",
+        "DESCRIPTION": "--", "DATA_INCLUDED": "6D", "BODY_NAMES": BODY,
+    }  # fmt: skip
+    names = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
+    lines = [f"{key}\t{value}" for key, value in known.items()]
+    return "\n".join([*lines, "\t".join(["Frame", "Time", f"{BODY} X", *names])]) + "\n"
+
+
+def _table(rows: Array, rate: float) -> str:
+    lines = (
+        "\t".join([str(k + 1), f"{k / rate:.5f}", *(f"{x:.4f}" for x in row[:7]),
+                   *(f"{x:.6f}" for x in row[7:])])
+        for k, row in enumerate(rows)
+    )  # fmt: skip
+    return "\n".join(lines) + "\n"
+
+
+def write_commands(
+    path: Path,
+    stamps: Sequence[float],
+    commands: Sequence[Array],
+    log: Mapping[str, Any],
+    random: np.random.Generator,
+) -> None:
+    """Pulse widths in whole microseconds; some lines are lost."""
+    times = np.array(stamps) + log["jitter"] * random.normal(size=len(stamps))
+    kept = random.random(len(times)) >= log["missing"]
+    kept[0] = True
+    lines = ["time_s," + ",".join(f"t{k + 1}" for k in range(len(commands[0])))]
+    for time, command, keep in zip(times, commands, kept, strict=True):
+        if keep:
+            widths = np.rint(1500.0 + 400.0 * command).astype(int)
+            lines.append(f"{time:.4f}," + ",".join(map(str, widths)))
+    write_text(path, "\n".join(lines) + "\n")

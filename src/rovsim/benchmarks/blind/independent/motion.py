@@ -1,0 +1,164 @@
+"""The motion of the vehicle from its momentum in the world (Kirchhoff; Lamb 1932, art. 120-124).
+
+In water that moves steadily everything is as in still water, seen by someone who drifts along. For
+that observer the momentum P of vehicle and water, and its moment L about a fixed point, change by
+the forces alone: P' = F, L' = M + x x F. Velocity follows from (R^T P, R^T (L - x x P)) = M nu, and
+there is no Coriolis matrix. Attitude is the rotation matrix itself, R' = R [omega]x, made
+orthogonal again after every tick.
+"""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.integrate import DOP853
+from scipy.spatial.transform import Rotation
+
+from rovsim.benchmarks.blind.independent.pushes import ARM, Instant, Push, cross, list_pushes
+from rovsim.benchmarks.blind.independent.thrusters import Thrusters
+from rovsim.benchmarks.blind.independent.vehicle import Constants, Hidden, skew
+
+TOLERANCE = 1e-7  # of one step of some 20 ms, relative; a tenth of it absolute, in m, 1, kg m/s, N
+
+
+@dataclass(frozen=True, eq=False)
+class Vehicle:
+    """Place (3,) NED, attitude R (3, 3) body to world, velocity (6,) in the body's axes.
+
+    `thrust` (n,) N and `memory` (6,) of the water are states as well.
+    """
+
+    place: Array
+    R: Array
+    velocity: Array
+    thrust: Array
+    memory: Array
+
+
+class Mover:
+    """Carries a vehicle through time under static forces that are held."""
+
+    def __init__(
+        self, own: Constants, thrusters: Thrusters, hidden: Hidden, tank: Array,
+        tolerance: float = TOLERANCE,
+    ) -> None:  # fmt: skip
+        self.own, self.thrusters, self.tolerance = own, thrusters, tolerance
+        self.pushes: Sequence[Push] = list_pushes(own, hidden, tank)
+        self.M_inv = np.linalg.inv(own.M)
+        self.weight = float(own.weights[:, 0].sum())
+        self.hang = own.weights[:, 0] @ own.weights[:, 1:]
+        given = hidden.get("current", {})
+        self.current = np.array([given.get(k, 0.0) for k in ("north", "east", "down")])
+        self.lag = hidden.get("thruster_lag", {}).get("time_constant", 0.0)
+        self.sags = "voltage_sag" in hidden
+        wake = hidden.get("fluid_memory", {})
+        self.wake = wake.get("coefficient", 0.0) * ARM
+        self.wake_time = wake.get("time_constant", 0.0)
+        self.loss = hidden.get("advance_loss", {}).get("coefficient", 0.0)
+        arm = hidden.get("propeller_torque", {}).get("ratio", 0.0)
+        turning = np.cross(own.position, own.direction) + arm * own.spin[:, None] * own.direction
+        self.wrenches = np.hstack([own.direction, turning])  # of one newton of each
+
+    def carry(
+        self,
+        start: Vehicle,
+        static: Array,
+        push: Array,
+        span: tuple[float, float],
+        wanted: Sequence[float] = (),
+    ) -> tuple[Vehicle, list[Vehicle]]:
+        """The vehicle at the end of a span of time, and at the wanted instants inside it.
+
+        Args:
+            start: the vehicle at its beginning.
+            static: static forces (n,) that are held, of a full battery.
+            push: wrench (6,) in body axes that nothing explains, held.
+            span: begin and end, s.
+            wanted: rising, s.
+        """
+        flow, (begin, end) = _Flow(self, start, static, push, span[0]), span
+        solver = DOP853(
+            flow.change, begin, flow.begin, end, first_step=end - begin, rtol=self.tolerance,
+            atol=0.1 * self.tolerance,
+        )  # fmt: skip
+        seen, left = [], list(wanted)
+        while solver.status == "running":
+            solver.step()
+            between = solver.dense_output() if left and left[0] < solver.t else None
+            while left and left[0] <= solver.t:
+                t = left.pop(0)
+                y = between(t) if between is not None and t < solver.t else solver.y
+                seen.append(flow.see(t, y))
+        last = flow.see(end, solver.y)
+        square = Rotation.from_matrix(last.R).as_matrix()
+        return Vehicle(last.place, square, last.velocity, last.thrust, last.memory), seen
+
+
+class _Flow:
+    """The differential equation over one span, about the place where it begins.
+
+    y = place less that of the start, for an observer who drifts; R row by row; P; L; thrust where
+    it lags; memory where there is one.
+    """
+
+    def __init__(
+        self, mover: Mover, start: Vehicle, static: Array, push: Array, begin: float
+    ) -> None:
+        self.mover, self.start, self.static, self.push = mover, start, static, push
+        self.t0, self.lags, self.remembers = begin, mover.lag > 0.0, mover.wake_time > 0.0
+        v = start.velocity.copy()
+        v[:3] -= start.R.T @ mover.current
+        momentum = (mover.own.M @ v).reshape(2, 3) @ start.R.T
+        parts = [np.zeros(3), start.R.ravel(), momentum.ravel()]
+        parts += [start.thrust] if self.lags else []
+        self.begin = np.concatenate(parts + ([start.memory] if self.remembers else []))
+        self.steady = not (self.lags or mover.sags or mover.loss)
+        self.thrust = static @ mover.wrenches
+
+    def see(self, t: float, y: Array) -> Vehicle:
+        """The vehicle over ground."""
+        R, v = self._motion(y)
+        place = self.start.place + y[:3] + (t - self.t0) * self.mover.current
+        velocity = np.concatenate([v[:3] + R.T @ self.mover.current, v[3:]])
+        thrust = y[18 : 18 + len(self.static)] if self.lags else self._battery(t) * self.static
+        return Vehicle(place, R, velocity, thrust, y[-6:] if self.remembers else np.zeros(6))
+
+    def _motion(self, y: Array) -> tuple[Array, Array]:
+        R, momentum = y[3:12].reshape(3, 3), y[12:18].copy()
+        momentum[3:] -= cross(y[:3], momentum[:3])
+        return R, self.mover.M_inv @ (momentum.reshape(2, 3) @ R).ravel()
+
+    def _battery(self, t: float) -> float:
+        return self.mover.thrusters.battery(t) if self.mover.sags else 1.0
+
+    def change(self, t: float, y: Array) -> Array:
+        """y'."""
+        mover, (R, v) = self.mover, self._motion(y)
+        place = self.start.place + y[:3] + (t - self.t0) * mover.current
+        at, wrench, beside = Instant(place, R, v), self.push, []
+        if self.steady:
+            wrench = wrench + self.thrust
+        else:
+            asked = self._battery(t) * self.static
+            acting = y[18 : 18 + len(asked)] if self.lags else asked
+            wrench = wrench + self._thrust(acting, v)
+            beside += [(asked - acting) / mover.lag] if self.lags else []
+        for one in mover.pushes:
+            wrench = wrench + one(at)
+        if self.remembers:
+            wrench = wrench - mover.wake * (v - y[-6:])
+            beside += [(v - y[-6:]) / mover.wake_time]
+        forces = wrench.reshape(2, 3) @ R.T
+        hang = R @ mover.hang
+        forces[0, 2] += mover.weight
+        forces[1, 0] += hang[1]
+        forces[1, 1] -= hang[0]
+        forces[1] += cross(y[:3], forces[0])
+        return np.concatenate([R @ v[:3], (R @ skew(v[3:])).ravel(), forces.ravel(), *beside])
+
+    def _thrust(self, force: Array, v: Array) -> Array:
+        if self.mover.loss:
+            inflow = self.mover.own.direction @ v[:3]
+            force = force * (1.0 - self.mover.loss * np.sign(force) * inflow)
+        return force @ self.mover.wrenches

@@ -1,0 +1,75 @@
+"""A pilot of another school: sines on the sticks around slow journeys from place to place."""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.benchmarks.blind.independent.motion import Vehicle
+
+SINES, SLOWEST, FASTEST = 8, 0.04, 0.7  # on each stick; Hz: what a hand does
+# RMS of the sticks: demands in surge, sway, heave and yaw, angles in rad in roll and pitch
+STICKS = {
+    "3dof": np.array([0.15, 0.15, 0.10, 0.0, 0.0, 0.0]),
+    "6dof": np.array([0.15, 0.14, 0.10, 0.25, 0.25, 0.12]),
+}
+JOURNEY = 12.0  # s from place to place
+ROOM = np.array([1.4, 1.1, 0.4])  # m about the middle, and half of what the tank leaves
+PLACE, SPEED, TRIM = 0.2, 0.25, 0.025  # demand per m, per m/s, per m s
+UPRIGHT, RATE = 0.3, 0.12  # demand per rad, per rad/s
+MOST = 0.4  # demand of an axis
+LATE = 10  # ticks of 20 ms: the reaction time of an eye and a hand
+
+
+class Pilot:
+    """Steers by what was seen a moment ago."""
+
+    def __init__(
+        self, control: str, tank: Array, seconds: float, random: np.random.Generator
+    ) -> None:
+        low, high = tank[:, 0] + 0.6, tank[:, 1] - 0.6  # m, half the vehicle and a hand's breadth
+        half = np.minimum(0.25 * (high - low), ROOM)
+        count = int(seconds / JOURNEY) + 2
+        self.places = 0.5 * (low + high) + half * random.uniform(-1.0, 1.0, (count, 3))
+        self.hertz = random.uniform(SLOWEST, FASTEST, (SINES, 6))
+        self.phase = random.uniform(0.0, 2.0 * np.pi, (SINES, 6))
+        self.size = STICKS[control] * np.sqrt(2.0 / SINES)
+        self.heading = float(random.uniform(-np.pi, np.pi))
+        self.trim, self.seen = np.zeros(3), []  # type: tuple[Array, list[Vehicle]]
+
+    def begin(self, thrusters: int) -> Vehicle:
+        """At rest at the first place."""
+        c, s = np.cos(self.heading), np.sin(self.heading)
+        R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return Vehicle(self.places[0], R, np.zeros(6), np.zeros(thrusters), np.zeros(6))
+
+    def steer(self, t: float, now: Vehicle, tick: float) -> Array:
+        """Demand (6,) at time t."""
+        self.seen.append(now)
+        old = self.seen[max(0, len(self.seen) - 1 - LATE)]
+        k, part = divmod(t / JOURNEY, 1.0)
+        goal = (1.0 - part) * self.places[int(k)] + part * self.places[int(k) + 1]
+        missed = goal - old.place
+        self.trim = np.clip(self.trim + TRIM * tick * missed, -0.3, 0.3)
+        wish = self.size * np.sum(np.sin(2.0 * np.pi * self.hertz * t + self.phase), axis=0)
+        wish[:3] += old.R.T @ (PLACE * missed + self.trim) - SPEED * old.velocity[:3]
+        lean = [np.arctan2(now.R[2, 1], now.R[2, 2]), -np.arcsin(np.clip(now.R[2, 0], -1.0, 1.0))]
+        wish[3:5] = UPRIGHT * (wish[3:5] - lean) - RATE * now.velocity[3:5]
+        return np.clip(wish, -MOST, MOST)
+
+
+def draw_pushes(
+    force: float,
+    moment: float,
+    time: float,
+    tick: float,
+    count: int,
+    random: np.random.Generator,
+) -> Sequence[Array]:
+    """A force that nobody logs: Ornstein-Uhlenbeck (count, 6), N and N m, held over each tick."""
+    keep = np.exp(-tick / time)
+    level = np.repeat([force, moment], 3)
+    found = [level * random.normal(size=6)]
+    for _ in range(count - 1):
+        found.append(keep * found[-1] + level * np.sqrt(1.0 - keep**2) * random.normal(size=6))
+    return found

@@ -1,0 +1,127 @@
+"""Forces on the hull: what the catalogue says of each effect, stated once more.
+
+Each is a function of one instant and returns a body wrench (6,) about CO.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Callable, Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Constants, Hidden
+
+Given = Mapping[str, float]
+CREEP = 0.01  # m/s, rad/s: within it dry friction has its sign (contract, section 6)
+ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  # kappa, m2, of the water's memory (section 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """Place (3,) NED, attitude R (3, 3) body to world, velocity (6,) through the water."""
+
+    place: Array
+    R: Array
+    v: Array
+
+
+Push = Callable[[Instant], Array]
+
+
+def cross(a: Array, b: Array) -> Array:
+    """a x b of two triples; NumPy's takes ten times as long for one pair."""
+    ax, ay, az = a.tolist()
+    bx, by, bz = b.tolist()
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+
+
+def list_pushes(own: Constants, hidden: Hidden, tank: Array) -> list[Push]:
+    """Every force of the water and of the tether; `tank` (3, 2) low and high in NED."""
+    found: list[Push] = [partial(drag, own, hidden, tank)]
+    found += [partial(law, hidden[name]) for name, law in LAWS.items() if name in hidden]
+    if "tether_drag" in hidden:
+        found.append(partial(tow, hidden["tether_drag"], tank))
+    return found
+
+
+def drag(own: Constants, hidden: Hidden, tank: Array, at: Instant) -> Array:
+    """Diagonal damping, more of it near walls and surface; couplings and cubic drag beside it."""
+    speed = np.abs(at.v)
+    diagonal = (own.linear + own.quadratic * speed) * _near(hidden, tank, at.place)
+    push = -(diagonal + own.cubic * speed * speed) * at.v
+    if "coupled_damping" in hidden:
+        push = push - own.coupled[0] @ at.v - own.coupled[1] @ (speed * at.v)
+    return push
+
+
+def _near(hidden: Hidden, tank: Array, place: Array) -> float:
+    more = 1.0
+    if "wall_proximity" in hidden:
+        given = hidden["wall_proximity"]
+        gaps = np.maximum(np.min(np.abs(tank[:2] - place[:2, None]), axis=1), 0.0)
+        more += given["gain"] * np.sum(np.exp(-gaps / given.get("length_scale", 0.5)))
+    if "surface_proximity" in hidden:
+        given = hidden["surface_proximity"]
+        depth = max(place[2] - tank[2, 0], 0.0)
+        more += given["gain"] * np.exp(-depth / given.get("length_scale", 0.4))
+    return float(more)
+
+
+def friction(given: Given, at: Instant) -> Array:
+    """-c tanh(v / creep) on each axis."""
+    return -_axes(given) * np.tanh(at.v / CREEP)
+
+
+def trim(given: Given, at: Instant) -> Array:
+    """A constant body wrench."""
+    return _axes(given)
+
+
+def lift(given: Given, at: Instant) -> Array:
+    """Across the flow in surge: -c |u| v and -c |u| w."""
+    c = given["coefficient"] * abs(at.v[0])
+    return np.array([0.0, -c * at.v[1], -c * at.v[2], 0.0, 0.0, 0.0])
+
+
+def pull(given: Given, at: Instant) -> Array:
+    """An elastic tether from its attachment to its anchor."""
+    hook = _attachment(given)
+    line = at.R.T @ (_anchor(given, np.zeros(3)) - at.place) - hook
+    length = float(np.sqrt(line @ line))
+    stretch = max(0.0, length - given.get("slack_length", 0.0))
+    return _hung(given["stiffness"] * stretch * line / max(length, 1e-9), hook)
+
+
+def tow(given: Given, tank: Array, at: Instant) -> Array:
+    """A wet tether in tow, the longer the farther from its anchor."""
+    middle = np.array([*tank[:2].mean(axis=1), tank[2, 0]])
+    reach = _anchor(given, UPSIDE * middle) - at.place
+    v = at.v[:3]
+    size = given["coefficient"] * np.sqrt(reach @ reach) * np.sqrt(v @ v)
+    return _hung(-size * v, _attachment(given))
+
+
+LAWS: Mapping[str, Callable[[Given, Instant], Array]] = {
+    "dry_friction": friction, "constant_wrench": trim, "lift": lift, "tether_tension": pull,
+}  # fmt: skip
+
+
+def _axes(given: Given) -> Array:
+    names = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+    return np.array([given.get(name, 0.0) for name in names])
+
+
+def _attachment(given: Given) -> Array:
+    default = {"x": -0.2, "y": 0.0, "z": 0.0}  # contract, section 2
+    return np.array([given.get(f"attachment_{k}", v) for k, v in default.items()])
+
+
+def _anchor(given: Given, otherwise: Array) -> Array:
+    """Where the anchor is, NED; given in MoCap axes."""
+    found = [given.get(f"anchor_{k}", v) for k, v in zip("xyz", otherwise, strict=True)]
+    return UPSIDE * np.array(found)
+
+
+def _hung(force: Array, place: Array) -> Array:
+    return np.concatenate([force, cross(place, force)])

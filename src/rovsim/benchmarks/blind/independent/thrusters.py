@@ -1,0 +1,62 @@
+"""From a logged command to the static force of each thruster (contract, section 2: the order)."""
+
+from typing import Any, Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.benchmarks.blind.independent.vehicle import Hidden
+
+
+class Thrusters:
+    """Commands c in [-1, 1] to forces in newtons, and when a command given at t acts."""
+
+    def __init__(self, file: Mapping[str, Any], hidden: Hidden, seconds: float) -> None:
+        own = file["thrusters"]
+        self.limit = float(own.get("command_limit", 1.0))
+        self.mixer = np.array(list(own["mixer"].values()), float).T
+        powers = own["force_curve"]["odd_polynomial"]
+        # a_0 c + a_1 c^3 + …: every second coefficient of a polynomial
+        self.curve = np.polynomial.Polynomial([x for a in powers for x in (0.0, float(a))])
+        self.full = float(self.curve(1.0)), float(-self.curve(-1.0))
+        self.hidden, self.seconds = hidden, seconds
+        self.gain = self._gains(len(own["units"]))
+
+    def _gains(self, count: int) -> Array:
+        given = self.hidden.get("thruster_gain", {})
+        return given.get("all", 1.0) * np.array(
+            [given.get(f"t{i}", 1.0) for i in range(1, count + 1)]
+        )
+
+    def command(self, demand: Array) -> Array:
+        """Thruster commands (n,) of a demand (6,), as a log in whole microseconds has them."""
+        return np.round(400.0 * np.clip(self.mixer @ demand, -self.limit, self.limit)) / 400.0
+
+    def force(self, command: Array) -> Array:
+        """Static force (n,), but for the battery."""
+        width = self.hidden.get("thruster_deadband", {}).get("width", 0.0)
+        force = self.curve(np.where(np.abs(command) > width, command, 0.0))
+        exponent = self.hidden.get("force_curve", {}).get("exponent", 1.0)
+        if exponent != 1.0:
+            most = np.where(force > 0.0, *self.full)
+            force = np.sign(force) * most * (np.abs(force) / most) ** exponent
+        ratio = self.hidden.get("thrust_asymmetry", {}).get("ratio", 1.0)
+        force = force * self.gain
+        return np.where(force < 0.0, ratio * force, force)
+
+    def battery(self, t: float) -> float:
+        """What is left of every force after t seconds."""
+        given = self.hidden.get("voltage_sag", {})
+        share, rate = given.get("fraction", 0.0) / self.seconds, given.get("rate", 0.0)
+        return max(0.0, 1.0 - (share + rate) * t)
+
+    def log(self, t: float) -> tuple[float, float]:
+        """When the log says that a command given at t was given, and when it acts.
+
+        The command's clock runs at 1 + rate, and a line acts `delay` after its stamp. Nothing acts
+        before it is given: where the clocks say so, the stamp is what is late.
+        """
+        pace = 1.0 + self.hidden.get("clock_drift", {}).get("rate", 0.0)
+        delay = self.hidden.get("input_delay", {}).get("delay", 0.0)
+        acts = t / pace + delay
+        return (t, acts) if acts >= t else ((t - delay) * pace, t)
