@@ -20,7 +20,7 @@ from damage import read_damaged
 from recordings import Swim, campaign_content, write_campaign
 from rovsim.core import extras
 from rovsim.core.errors import BadInput
-from rovsim.core.rotations import matrix
+from rovsim.core.rotations import from_euler, matrix
 from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.rosbag2 import read_bag, read_commands
 
@@ -143,6 +143,23 @@ def test_topics_become_channels_without_any_pose(tmp_path):
     export = read_bag(bag, mocap(topics={"imu": "/raw", "depth": "/depth"}))
     assert not len(export.channels["attitude"].time)
     np.testing.assert_allclose(export.channels["depth"].value[:, 0], 2 + np.arange(20))
+
+
+def test_an_attitude_by_itself_is_a_quaternion_or_three_angles(tmp_path):
+    angles = [0.1, -0.2, 0.3]
+    vector = dict(zip("xyz", angles, strict=True))
+    w, x, y, z = from_euler(*np.array(angles))
+    quaternion = {f"quaternion__{n}": float(v) for n, v in zip("wxyz", (w, x, y, z), strict=True)}
+    bag = write_bag(tmp_path / "bag", {
+        "/euler": series("geometry_msgs/msg/Vector3", lambda k: vector, stamped=False),
+        "/turn": series("geometry_msgs/msg/QuaternionStamped", lambda k: quaternion),
+        **sensors(),
+    })  # fmt: skip
+    for topic in ("/euler", "/turn"):
+        export = read_bag(bag, mocap(topics={"attitude": topic, "imu": "/imu"}))
+        np.testing.assert_allclose(export.channels["attitude"].value, [[w, x, y, z]] * 20)
+    with pytest.raises(BadInput, match=r"/depth.*Float64.*an attitude"):
+        read_bag(bag, mocap(topics={"attitude": "/depth"}))
 
 
 def test_pressures_take_the_density_of_the_water(tmp_path):

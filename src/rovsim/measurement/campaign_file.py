@@ -59,6 +59,7 @@ class Topics(Section):
     pose: Text | None = None
     odometry: Text | None = None
     imu: Text | None = None
+    attitude: Text | None = None  # instead of that of the inertial unit
     depth: Text | None = None
     velocity: Text | None = None
     battery: Text | None = None

@@ -7,7 +7,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.readers import unit_quaternions
 from rovsim.measurement.recording.rosbag2.bag import Messages
 
 GRAVITY = 9.80665  # m/s2, ISO 80000-3: standard acceleration of free fall
@@ -45,6 +47,22 @@ def velocities(found: Messages, path: Path) -> Array:
         return _vector(_inner(message, "twist").linear)
 
     return _table(found, path, numbers, 3, "a velocity: twist.linear, velocity or vector")
+
+
+def attitudes(found: Messages, path: Path) -> Array:
+    """Quaternions (n, 4) of a quaternion, an orientation, or roll, pitch and yaw in rad."""
+
+    def numbers(message: Any) -> list[float]:
+        for name in ("vector", "quaternion", "orientation"):
+            message = getattr(message, name, message)
+        if hasattr(message, "pose") or hasattr(message, "transform"):
+            message = _pose(message)[1]
+        if not hasattr(message, "w"):
+            return [*from_euler(*np.array(_vector(message)))]
+        return [message.w, message.x, message.y, message.z]
+
+    values, good = unit_quaternions(_table(found, path, numbers, 4, "an attitude"))
+    return np.where(good[:, None], values, np.nan)
 
 
 def inertial(found: Messages, path: Path) -> dict[str, Array]:

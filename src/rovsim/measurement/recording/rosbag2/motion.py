@@ -97,6 +97,10 @@ def _velocity(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
     return {"velocity": messages.velocities(found, path)}
 
 
+def _attitude(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
+    return {"attitude": messages.attitudes(found, path)}
+
+
 def _imu(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
     return messages.inertial(found, path)
 
@@ -108,6 +112,7 @@ def _battery(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
 CHANNELS = {
     "odometry": _odometry,
     "imu": _imu,
+    "attitude": _attitude,
     "depth": _depth,
     "velocity": _velocity,
     "battery": _battery,
