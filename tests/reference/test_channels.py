@@ -149,6 +149,25 @@ def test_a_column_that_is_almost_known_is_told(tmp_path):
     assert anomalies.notes == ("The column 'depth' is not read: was 'depth_m' meant?",)
 
 
+def test_poses_of_zeros_are_no_measurement_unless_the_run_starts_there(tmp_path):
+    x = 3.0 + FAST
+    plan = {"x_m": (FAST, x), "y_m": (FAST, x), "yaw_rad": (FAST, x), "depth_m": (FAST, 0 * FAST)}
+    for _, value in list(plan.values())[:3]:
+        value[[0, 10, 11]] = 0.0
+    recording, anomalies = read(tmp_path / "lost", sparse(plan))
+    assert len(recording.channels["position"].time) == len(FAST) - 3
+    assert len(recording.channels["euler"].time) == len(FAST) - 3
+    assert len(recording.channels["depth"].time) == len(FAST)
+    assert "3 lines with a pose of zeros" in anomalies.notes[0]
+    from_first = {name: (t, v - v[1] + 0.1) for name, (t, v) in plan.items()}
+    for _, value in list(from_first.values())[:3]:
+        value[[0, 1]] = 0.0
+        value[[10, 11]] = 1.0
+    recording, anomalies = read(tmp_path / "from first", sparse(from_first))
+    assert len(recording.channels["position"].time) == len(FAST)
+    assert anomalies.notes == ()
+
+
 turns = st.floats(-3.0, 3.0)
 
 

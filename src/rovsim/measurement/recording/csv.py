@@ -40,6 +40,7 @@ KNOWN = [*POSITION, *EULER, *QUATERNION, *LINEAR, *ANGULAR, *(n for c in EXTRA.v
 # Poses are full where position and attitude come in the same lines, and velocities are bin means
 # where they come with the poses: in at least this share of the lines that hold either.
 TOGETHER = 0.5
+NEAR_ZERO = 0.5  # m, rad: beyond what a vehicle does from one line to the next
 NEAR = 0.75  # likeness of names: 'depth' is near 'depth_m', a demand 'pitch' not near 'pitch_rad'
 
 
@@ -68,8 +69,33 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     places = column_places(path, lines.names, ["time_s", *names])
     table, cut = without_cut_line(lines, places)
     values = numbers(table, places[1:])
+    zeros = _zeros(names, values)
+    poses = np.isin(names, [*POSITION, *EULER])
+    values[np.ix_(zeros, poses)] = np.nan
     columns = Columns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
-    return _export(columns, mocap, {"cut_lines": cut}, _near_misses(lines.names))
+    notes = _near_misses(lines.names) + _said(int(zeros.sum()))
+    return _export(columns, mocap, {"cut_lines": cut}, notes)
+
+
+def _zeros(names: list[str], values: Array) -> Array:
+    """Lines (n,) whose pose is zero in every component: trackers that did not see the body.
+
+    Not those at the start that go on from zero, where motion is counted from the first line, and
+    nothing where less than two coordinates and an angle were measured.
+    """
+    place, turn = np.isin(names, POSITION), np.isin(names, EULER)
+    if place.sum() < 2 or not turn.any() or not len(values):
+        return np.zeros(len(values), bool)
+    pose = values[:, place | turn]
+    zeros = (pose == 0.0).all(axis=1)
+    first = int(np.argmin(zeros)) if not zeros.all() else len(zeros)
+    if first == len(zeros) or np.nanmax(np.abs(pose[first]), initial=0.0) < NEAR_ZERO:
+        zeros[:first] = False
+    return zeros
+
+
+def _said(count: int) -> tuple[str, ...]:
+    return (f"{count} lines with a pose of zeros count as not found.",) if count else ()
 
 
 def _export(

@@ -110,7 +110,7 @@ def numbers(table: Lines, columns: list[int]) -> Array:
         BadInput: a cell is missing or holds no number.
     """
     try:
-        picked = [[row[c] for c in columns] for row in table.cells]
+        picked = [[row[c].strip() or "nan" for c in columns] for row in table.cells]
         return np.array(picked, dtype=float).reshape(len(picked), len(columns))
     except (IndexError, ValueError):
         rows = zip(table.cells, table.numbers, strict=True)
