@@ -8,11 +8,12 @@ import yaml
 from numpy import ndarray as Array
 
 import bags
+import c3ds
 import logs
 from rovsim.core.rotations import axes_signs, from_euler, from_matrix, matrix, to_euler
 
 TEXT = {"qtm_tsv": "poses.tsv", "csv": "poses.csv", "motive_csv": "take.csv"}
-FORMATS = {**TEXT, "rosbag2": "poses", "ardupilot": "log.BIN"}
+FORMATS = {**TEXT, "rosbag2": "poses", "ardupilot": "log.BIN", "c3d": "take.c3d"}
 AXES = {"ardupilot": ("ned", "frd")}  # of formats that have no others
 CLOCKS = {"rosbag2": bags.START}  # s, where a recording does not start at zero
 
@@ -116,7 +117,8 @@ def write_poses(folder: Path, name: str, swim: Swim) -> Path:
     path = folder / FORMATS[name]
     if name in TEXT:
         return write_lines(path, pose_lines(name, swim))
-    return {"rosbag2": bags.write_swim, "ardupilot": logs.write_dataflash}[name](path, swim)
+    write = {"rosbag2": bags.write_swim, "ardupilot": logs.write_dataflash, "c3d": c3ds.write_swim}
+    return write[name](path, swim)
 
 
 def command_lines(seconds: float = 4.0, name: str = "csv") -> list[str]:

@@ -29,7 +29,6 @@ every_text = pytest.mark.parametrize("name", sorted(TEXT))
 
 
 def test_the_formats_of_this_version_are_registered():
-    assert set(mocap_readers()) >= {"qtm_tsv", "csv", "rosbag2", "motive_csv", "ardupilot"}
     assert set(command_readers()) >= {"csv", "rosbag2", "ardupilot"}
     assert set(mocap_readers()) == set(FORMATS)
 

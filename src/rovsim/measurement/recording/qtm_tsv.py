@@ -10,15 +10,12 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
 from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader
+from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader, orthonormal
 from rovsim.measurement.recording.table import Lines, numbers, split_lines, times, without_cut_line
 
 POSITION = ["X", "Y", "Z"]
 ROTATION = [f"Rot[{k}]" for k in range(9)]
 RE_EXPORT = "In QTM: File, Export, To TSV, with data type 6D and the column header included."
-# A rotation matrix printed to six digits is orthonormal to about 1e-6; a cut or damaged line is
-# not. Same bound as for quaternions.
-ORTHONORMAL_WITHIN = 0.1
 
 
 @dataclass(frozen=True)
@@ -54,7 +51,7 @@ def read_qtm(path: Path, mocap: Mocap) -> Export:
     seen = finite_rows(values) & values.any(axis=1)
     if residual is not None:
         seen &= ~(residual[:, 0] < 0.0)
-    found = seen & _orthonormal(R)
+    found = seen & orthonormal(R)
     attitude = from_matrix(np.where(found[:, None, None], R, np.eye(3)))
     counts = {"cut_lines": cut, "bad_rotations": int(np.sum(seen & ~found))}
     return Export(time, values[:, :3] * 1e-3, attitude, found, rate, counts=counts)
@@ -176,10 +173,3 @@ def _time(table: Lines, layout: Layout, rate: float | None) -> Array:
     if "Frame" in layout.names:
         return (times(table, layout.names.index("Frame")) - 1.0) / rate
     return np.arange(len(table.cells)) / rate
-
-
-def _orthonormal(R: Array) -> Array:
-    """Where the matrices (n, 3, 3) are rotations: orthonormal and right-handed."""
-    deviation = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
-    with np.errstate(invalid="ignore"):
-        return (deviation < ORTHONORMAL_WITHIN) & (np.linalg.det(R) > 0.0)

@@ -15,6 +15,9 @@ from rovsim.core.run import CommandKind
 from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.channels import Channels
 
+# A rotation matrix printed to six digits is orthonormal to about 1e-6; a cut or damaged line is
+# not. Same bound as for quaternions.
+ORTHONORMAL_WITHIN = 0.1
 # What a kind of logged command drives.
 KIND: dict[str, CommandKind] = {
     "pwm": "thruster",
@@ -130,6 +133,13 @@ def unit_quaternions(values: Array) -> tuple[Array, Array]:
     with np.errstate(over="ignore"):
         found = finite_rows(values) & (np.abs(np.linalg.norm(values, axis=1) - 1.0) < 0.1)
     return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
+
+
+def orthonormal(R: Array) -> Array:
+    """Where the matrices (n, 3, 3) are rotations: orthonormal and right-handed."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        deviation = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
+        return (deviation < ORTHONORMAL_WITHIN) & (np.linalg.det(R) > 0.0)
 
 
 def _discover() -> None:
