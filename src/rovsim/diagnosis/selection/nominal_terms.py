@@ -14,11 +14,12 @@ DRAG = ("linear_damping", "quadratic_damping")
 PER_AXIS = (*DRAG, "added_mass", "constant_wrench")
 ONE_GAIN = ("all",)  # of all thrusters
 STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "thruster_gain")
-# How far a vehicle file is off, relative to what it states. Added mass: two published sets for the
+# How far a vehicle file is off, relative to what it states. Added mass: two published sets for a
 # BlueROV2, both from tests in a tank (von Benzon et al. 2022, J. Mar. Sci. Eng. 10, 1898; Wu 2018,
-# Flinders University), differ by 0.41 in its logarithm, RMS over the axes: 0.29 for each of them.
-# Drag: theirs differs by 1.2 at 0.3 m/s and 0.6 rad/s (by factors of 5 to 6 in translation): so far
-# off is another laboratory's file. That one's own is off by a third is assumed, not measured.
+# Flinders University, of the lighter vehicle with six thrusters), differ by 0.41 in its logarithm,
+# RMS over the axes: 0.29 for each of them, the two builds included. Drag: theirs differs by 1.2 at
+# 0.3 m/s and 0.6 rad/s (by factors of 5 to 6 in translation): so far off is another laboratory's
+# file. That one's own is off by a third is assumed, not measured.
 SHARE = {"added_mass": 0.3, "linear_damping": 0.3, "quadratic_damping": 0.3}
 # Thrusters: assumed, too; a battery of 4 cells gives 12.8 to 16.8 V, the curve is of one voltage.
 GAIN = 0.1
