@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from rovsim.application.settings import compose, select
+from rovsim.apps.cli.commands.blind import Settings
 from rovsim.benchmarks.blind.flight import SIMULATORS, fly
 from rovsim.benchmarks.blind.independent.campaign import STATED, record_campaign
 from rovsim.benchmarks.blind.independent.exports import write_poses
@@ -173,3 +175,9 @@ def test_most_cases_can_be_flown_by_the_second_simulator():
     assert len(stated) > 0.85 * len(cases)
     assert not any(case.outside for case in stated)
     assert all(SIMULATORS["tank"].states(case) for case in cases)
+
+
+def test_the_command_chooses_who_flies():
+    chosen = compose(["command=blind", "blind.simulator=independent"])
+    assert select(chosen, Settings).blind.simulator in SIMULATORS
+    assert select(compose(["command=blind"]), Settings).blind.simulator == "tank"
