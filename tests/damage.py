@@ -80,4 +80,4 @@ def read_damaged(folder: Path, files: Sequence[Path], seed: str) -> None:
         file.write_bytes(damaged(good[file], random))
         read += read_or_refuse(folder)
         file.write_bytes(good[file])
-    assert 0 < read < COUNT  # else nothing was damaged, or nothing survives a scratch
+    assert read  # a scratch must not cost the whole recording

@@ -158,7 +158,9 @@ def _rotations(content: Content, used: int) -> tuple[Array, int]:
     size = PER_ROTATION * used
     frames = max(min(expected, (len(content.raw) - start) // (4 * size)), 0)
     values = np.frombuffer(content.raw, content.order + "f4", frames * size, start if frames else 0)
-    return values.reshape(frames, used, PER_ROTATION).astype(float), int(frames < expected)
+    with np.errstate(invalid="ignore"):  # damaged numbers of the signalling kind
+        table = values.reshape(frames, used, PER_ROTATION).astype(float)
+    return table, int(frames < expected)
 
 
 def _metres(content: Content) -> float:

@@ -56,7 +56,9 @@ def read_dataflash(path: Path) -> Log:
         for name in WANTED
         if name in named and places[named[name]]
     }
-    texts = b" ".join(tables.pop("MSG")["Message"]) if "MSG" in tables else b""
+    said = tables.pop("MSG", None)
+    told = said is not None and "Message" in (said.dtype.names or ())
+    texts = b" ".join(said["Message"]) if said is not None and told else b""
     series = {
         name: one
         for name, table in tables.items()
@@ -64,8 +66,8 @@ def read_dataflash(path: Path) -> Log:
     }
     if not series:
         raise no_log(path, f"no message of a known type in {len(raw)} bytes")
-    said = (f"{skipped} bytes of the log are damaged and were skipped.",) if skipped else ()
-    return Log(path, "dataflash", series, _submarine(texts), said)
+    notes = (f"{skipped} bytes of the log are damaged and were skipped.",) if skipped else ()
+    return Log(path, "dataflash", series, _submarine(texts), notes)
 
 
 def _submarine(texts: bytes) -> bool | None:

@@ -1,9 +1,9 @@
-"""A bag: its topics, and the messages of one of them by the clock of the bag."""
+"""A bag: its topics, and the numbers of one of them by the clock of the bag."""
 
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any, Callable, Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -12,20 +12,23 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.core.extras import require
 from rovsim.measurement.recording.foreign import read_by
 from rovsim.measurement.recording.rosbag2.definitions import store_for
-from rovsim.measurement.recording.rosbag2.stamps import on_bag_clock
+from rovsim.measurement.recording.rosbag2.stamps import on_bag_clock, stamp
 
 WHOLE = "a whole ROS 2 bag: its folder, or one .db3 or .mcap file"
 REPAIR = "Check it with `ros2 bag info`; `ros2 bag reindex` or `mcap recover` repair a cut one."
 
 
+Numbers = Callable[[Any], Sequence[float]]
+
+
 @dataclass(frozen=True, eq=False)
-class Messages:
-    """Messages of one topic: `time` (n,) s by the clock of the bag, and what each holds."""
+class Samples:
+    """Numbers (n, c) of the messages of one topic, by time (n,) s on the clock of the bag."""
 
     topic: str
     kind: str
     time: Array
-    content: list[Any]
+    value: Array
     notes: tuple[str, ...]
 
 
@@ -41,27 +44,48 @@ class Bag:
         """Type by topic, of those that hold messages."""
         return {c.topic: c.msgtype for c in self.reader.connections if c.msgcount}
 
-    def messages(self, topic: str, key: str) -> Messages:
-        """All messages of a topic, by time; `key` of campaign.yaml names it.
+    def first(self, topic: str, key: str) -> tuple[str, Any]:
+        """Type of a topic, and one of its messages; raises as `read` does."""
+        for kind, _, message in self._messages(topic, key):
+            return kind, message
+        raise self._nothing(topic, key)
+
+    def read(self, topic: str, key: str, numbers: Numbers, expected: str) -> Samples:
+        """What `numbers` takes out of every message of a topic; `key` of campaign.yaml names it.
 
         Raises:
-            BadInput: no such topic, or a type that nobody defines.
+            BadInput: no such topic, a type that nobody defines, or one that is not as expected.
         """
+        kind, rows = "", []
+        for kind, arrived, message in self._messages(topic, key):
+            try:
+                rows.append((arrived, stamp(message), *map(float, numbers(message))))
+            except (AttributeError, TypeError, ValueError, IndexError):
+                raise self._other(topic, kind, expected) from None
+        if not rows:
+            raise self._nothing(topic, key)
+        rows.sort(key=lambda row: row[0])
+        clocks = np.array([row[:2] for row in rows], dtype=np.int64)
+        value = np.array([row[2:] for row in rows], dtype=float)
+        time, notes = on_bag_clock(topic, clocks[:, 0], clocks[:, 1])
+        return Samples(topic, kind, time, value, notes)
+
+    def _messages(self, topic: str, key: str) -> Iterator[tuple[str, int, Any]]:
+        """Type, time of arrival in ns and content of each message of a topic."""
         connections = [c for c in self.reader.connections if c.topic == topic and c.msgcount]
         if not connections:
             raise self._nothing(topic, key)
         stores = {c.id: store_for(c, f"{self.path}, {topic}") for c in connections}
-        stamped = [
-            (at, stores[c.id].deserialize_cdr(raw, c.msgtype))
-            for c, at, raw in self.reader.messages(connections)
-        ]
-        if not stamped:
-            raise self._nothing(topic, key)
-        stamped.sort(key=lambda pair: pair[0])
-        content = [message for _, message in stamped]
-        arrived = np.array([at for at, _ in stamped], dtype=np.int64)
-        time, notes = on_bag_clock(topic, arrived, content)
-        return Messages(topic, connections[0].msgtype, time, content, notes)
+        for c, arrived, raw in self.reader.messages(connections):
+            yield c.msgtype, arrived, stores[c.id].deserialize_cdr(raw, c.msgtype)
+
+    def _other(self, topic: str, kind: str, expected: str) -> BadInput:
+        return BadInput(
+            f"messages of the type {kind}",
+            where=f"{self.path}, {topic}",
+            expected=expected,
+            remedy="Name another topic, or republish it as a standard type.",
+        )
 
     def _nothing(self, topic: str, key: str) -> BadInput:
         return BadInput(

@@ -12,7 +12,7 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import PWM_CENTER, as_commands
 from rovsim.measurement.recording.readers import CommandExport, command_reader
-from rovsim.measurement.recording.rosbag2.bag import Bag, Messages, opened
+from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 
 LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
 PULSES = ("RCOut", "OverrideRCIn", "RCIn")
@@ -36,16 +36,21 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
         BadInput: no bag, no such topic or column, or values no such command can have.
     """
     with opened(path, by="commands.format: rosbag2") as bag:
-        found = bag.messages(log.topic or _only_topic(bag), "commands.topic")
-        gets = [_getter(found, log, k, path) for k in range(len(log.names))]
-        rows = [[_number(get, message) for get in gets] for message in found.content]
-        value = np.array(rows, dtype=float).reshape(len(rows), len(gets))
+        topic = log.topic or _only_topic(bag)
+        kind, first = bag.first(topic, "commands.topic")
+        gets = [_getter(kind, first, log, k, f"{path}, {topic}") for k in range(len(log.names))]
+        found = bag.read(
+            topic,
+            "commands.topic",
+            lambda message: [_number(get, message) for get in gets],
+            "numbers in these fields",
+        )
 
     def place(line: int, column: int) -> str:
         return f"{path}, {found.topic}, message {line + 1}, column '{log.names[column]}'"
 
     pulses = found.kind.endswith(PULSES) and log.kind != "wrench"
-    value, notes = _without_pulse(value, found) if pulses else (value, ())
+    value, notes = _without_pulse(found) if pulses else (found.value, ())
     notes = (*found.notes, *notes)
     return as_commands(found.time, value, log, place, pulses=pulses, notes=notes)
 
@@ -62,11 +67,12 @@ def _only_topic(bag: Bag) -> str:
     )
 
 
-def _without_pulse(value: Array, found: Messages) -> tuple[Array, tuple[str, ...]]:
+def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
     """Values (m, c) with 0 and 65535 taken for what they mean.
 
     An output without pulses is a thruster that stands; an input of 0 or 65535 is none.
     """
+    value = found.value
     none = (value == 0.0) | (value == 65535.0)
     if not none.any():
         return value, ()
@@ -76,11 +82,11 @@ def _without_pulse(value: Array, found: Messages) -> tuple[Array, tuple[str, ...
     return np.where(none, np.nan, value), ()
 
 
-def _getter(found: Messages, log: CommandLog, k: int, path: Path) -> Get:
-    """What takes column k out of a message."""
-    name, first = log.names[k], found.content[0]
+def _getter(kind: str, first: Any, log: CommandLog, k: int, where: str) -> Get:
+    """What takes column k out of a message of this type, of which this is the first."""
+    name = log.names[k]
     axis = log.axes[k] if log.axes else name
-    if found.kind.endswith("ManualControl") and axis in MANUAL:
+    if kind.endswith("ManualControl") and axis in MANUAL:
         field, center, span = MANUAL[axis]
         return lambda message: (getattr(message, field) - center) / span
     inner = getattr(first, "wrench", first)
@@ -94,8 +100,8 @@ def _getter(found: Messages, log: CommandLog, k: int, path: Path) -> Get:
         return _walk(f"{arrays[0]}[{int(number[1]) - 1 if number else k}]")
     fields = ", ".join(getattr(first, "__dataclass_fields__", {}))
     raise BadInput(
-        f"no value for the column '{name}' in {found.kind} (fields {fields})",
-        where=f"{path}, {found.topic}",
+        f"no value for the column '{name}' in {kind} (fields {fields})",
+        where=where,
         expected="columns that are fields of the message, such as 'data[0]' or 'thrust.port'",
         remedy="Correct 'commands.columns'.",
     )

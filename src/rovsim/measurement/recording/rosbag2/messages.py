@@ -1,94 +1,98 @@
 """Numbers of messages, by their fields: types of one's own are read where they have the same."""
 
-from pathlib import Path
-from typing import Any, Callable, NoReturn
+from dataclasses import dataclass
+from typing import Any, Mapping
 
 import numpy as np
-from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.readers import unit_quaternions
-from rovsim.measurement.recording.rosbag2.bag import Messages
+from rovsim.measurement.recording.rosbag2.bag import Numbers
 
 GRAVITY = 9.80665  # m/s2, ISO 80000-3: standard acceleration of free fall
+UNKNOWN = float("nan")
 
 
-def poses(found: Messages, path: Path) -> Array:
-    """Position and quaternion (n, 7) of poses, odometry and transforms, as the message has them."""
+@dataclass(frozen=True)
+class Reading:
+    """What is taken out of a message: its numbers, which channels they are, and what it must be."""
 
-    def numbers(message: Any) -> list[float]:
-        place, turn = _pose(message)
-        return [place.x, place.y, place.z, turn.w, turn.x, turn.y, turn.z]
-
-    return _table(found, path, numbers, 7, "a pose: position and orientation")
-
-
-def twists(found: Messages, path: Path) -> Array:
-    """Linear and angular velocity (n, 6) of odometry or a twist, along the body's axes."""
-
-    def numbers(message: Any) -> list[float]:
-        twist = _inner(message, "twist")
-        return [*_vector(twist.linear), *_vector(twist.angular)]
-
-    return _table(found, path, numbers, 6, "a twist: linear and angular")
+    numbers: Numbers
+    channels: Mapping[str, slice]
+    expected: str
 
 
-def velocities(found: Messages, path: Path) -> Array:
-    """Velocity (n, 3) of a twist, a vector or a Doppler log, along the body's axes."""
-
-    def numbers(message: Any) -> list[float]:
-        if getattr(message, "velocity_valid", True) is False:
-            return [np.nan] * 3
-        for name in ("velocity", "vector"):
-            if hasattr(message, name):
-                return _vector(getattr(message, name))
-        return _vector(_inner(message, "twist").linear)
-
-    return _table(found, path, numbers, 3, "a velocity: twist.linear, velocity or vector")
+def pose(message: Any) -> list[float]:
+    """Position and quaternion (7) of a pose, of odometry or of a transform."""
+    place, turn = _pose(message)
+    return [*_vector(place), turn.w, turn.x, turn.y, turn.z]
 
 
-def attitudes(found: Messages, path: Path) -> Array:
-    """Quaternions (n, 4) of a quaternion, an orientation, or roll, pitch and yaw in rad."""
-
-    def numbers(message: Any) -> list[float]:
-        for name in ("vector", "quaternion", "orientation"):
-            message = getattr(message, name, message)
-        if hasattr(message, "pose") or hasattr(message, "transform"):
-            message = _pose(message)[1]
-        if not hasattr(message, "w"):
-            return [*from_euler(*np.array(_vector(message)))]
-        return [message.w, message.x, message.y, message.z]
-
-    values, good = unit_quaternions(_table(found, path, numbers, 4, "an attitude"))
-    return np.where(good[:, None], values, np.nan)
-
-
-def inertial(found: Messages, path: Path) -> dict[str, Array]:
-    """Attitude (n, 4), rates (n, 3) and specific force (n, 3) of an inertial unit.
-
-    A covariance that starts with -1 says that there is no estimate (sensor_msgs/Imu).
-    """
-
-    def numbers(message: Any) -> list[float]:
-        turn = message.orientation
-        quaternion = [turn.w, turn.x, turn.y, turn.z]
-        if message.orientation_covariance[0] == -1.0 or not 0.9 < np.hypot.reduce(quaternion) < 1.1:
-            quaternion = [np.nan] * 4
-        rates, force = _vector(message.angular_velocity), _vector(message.linear_acceleration)
-        if message.angular_velocity_covariance[0] == -1.0:
-            rates = [np.nan] * 3
-        if message.linear_acceleration_covariance[0] == -1.0:
-            force = [np.nan] * 3
-        return [*quaternion, *rates, *force]
-
-    values = _table(found, path, numbers, 10, "an Imu")
-    return {"attitude": values[:, :4], "rates": values[:, 4:7], "specific_force": values[:, 7:]}
+def readings(mocap: Mocap) -> dict[str, Reading]:
+    """How the topics of other channels are read, by their key in `mocap.topics`."""
+    return {
+        "odometry": Reading(
+            _twist, {"velocity": slice(0, 3), "rates": slice(3, 6)}, "a twist: linear and angular"
+        ),
+        "imu": Reading(
+            _inertial,
+            {"attitude": slice(0, 4), "rates": slice(4, 7), "specific_force": slice(7, 10)},
+            "an Imu",
+        ),
+        "attitude": Reading(_attitude, {"attitude": slice(0, 4)}, "an attitude"),
+        "depth": Reading(
+            _depth_by(mocap), {"depth": slice(0, 1)}, "a FluidPressure, a number or a place"
+        ),
+        "velocity": Reading(
+            _velocity, {"velocity": slice(0, 3)}, "a velocity: twist.linear, velocity or vector"
+        ),
+        "battery": Reading(_voltage, {"voltage": slice(0, 1)}, "a BatteryState"),
+    }
 
 
-def depths(found: Messages, path: Path, mocap: Mocap) -> Array:
-    """Depths (n, 1): of a pressure, of a number (positive down), or of a place's z."""
+def _twist(message: Any) -> list[float]:
+    twist = _inner(message, "twist")
+    return [*_vector(twist.linear), *_vector(twist.angular)]
+
+
+def _velocity(message: Any) -> list[float]:
+    """A velocity along the body's axes, of a twist, a vector or a Doppler log."""
+    if getattr(message, "velocity_valid", True) is False:
+        return [UNKNOWN] * 3
+    for name in ("velocity", "vector"):
+        if hasattr(message, name):
+            return _vector(getattr(message, name))
+    return _vector(_inner(message, "twist").linear)
+
+
+def _attitude(message: Any) -> list[float]:
+    """A quaternion, an orientation, or roll, pitch and yaw in rad."""
+    for name in ("vector", "quaternion", "orientation"):
+        message = getattr(message, name, message)
+    if hasattr(message, "pose") or hasattr(message, "transform"):
+        message = _pose(message)[1]
+    if hasattr(message, "w"):
+        return [message.w, *_vector(message)]
+    return list(from_euler(*np.array(_vector(message))))
+
+
+def _inertial(message: Any) -> list[float]:
+    """A covariance that starts with -1 says that there is no estimate (sensor_msgs/Imu)."""
+    turn = message.orientation
+    parts = {
+        "orientation": [turn.w, *_vector(turn)],
+        "angular_velocity": _vector(message.angular_velocity),
+        "linear_acceleration": _vector(message.linear_acceleration),
+    }
+    return [
+        UNKNOWN if getattr(message, f"{name}_covariance")[0] == -1.0 else number
+        for name, numbers in parts.items()
+        for number in numbers
+    ]
+
+
+def _depth_by(mocap: Mocap) -> Numbers:
+    """A depth of a pressure, of a number (positive down), or of a place's z."""
     sensors, down = mocap.sensors, -1.0 if mocap.world_axes == "z_up" else 1.0
     weight = sensors.water_density * GRAVITY
 
@@ -97,43 +101,23 @@ def depths(found: Messages, path: Path, mocap: Mocap) -> Array:
             return [(message.fluid_pressure - sensors.surface_pressure) / weight]
         for name in ("depth", "data"):
             if hasattr(message, name):
-                return [float(getattr(message, name))]
+                return [getattr(message, name)]
         place = message.point if hasattr(message, "point") else _pose(message)[0]
         return [down * place.z]
 
-    return _table(found, path, numbers, 1, "a FluidPressure, a number or a place")
+    return numbers
 
 
-def voltages(found: Messages, path: Path) -> Array:
-    """Voltages (n, 1) of a battery."""
-    return _table(found, path, lambda message: [message.voltage], 1, "a BatteryState")
-
-
-def _table(
-    found: Messages, path: Path, numbers: Callable[[Any], list[float]], width: int, expected: str
-) -> Array:
-    try:
-        rows = [numbers(message) for message in found.content]
-        return np.array(rows, dtype=float).reshape(len(rows), width)
-    except (AttributeError, TypeError, ValueError, IndexError):
-        _refuse(found, path, expected)
-
-
-def _refuse(found: Messages, path: Path, expected: str) -> NoReturn:
-    raise BadInput(
-        f"messages of the type {found.kind}",
-        where=f"{path}, {found.topic}",
-        expected=expected,
-        remedy="Name another topic in 'mocap.topics', or republish it as a standard type.",
-    )
+def _voltage(message: Any) -> list[float]:
+    return [message.voltage]
 
 
 def _pose(message: Any) -> tuple[Any, Any]:
     """Where a message says the position and the orientation are."""
     if hasattr(message, "transform"):
         return message.transform.translation, message.transform.rotation
-    pose = _inner(message, "pose")
-    return pose.position, pose.orientation
+    inner = _inner(message, "pose")
+    return inner.position, inner.orientation
 
 
 def _inner(message: Any, name: str) -> Any:

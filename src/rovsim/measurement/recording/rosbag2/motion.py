@@ -1,9 +1,8 @@
 """What a bag holds of the motion: poses, and channels of other topics."""
 
 from pathlib import Path
-from typing import Mapping
 
-from numpy import ndarray as Array
+import numpy as np
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import Mocap, Topics
@@ -14,8 +13,8 @@ from rovsim.measurement.recording.readers import (
     mocap_reader,
     unit_quaternions,
 )
-from rovsim.measurement.recording.rosbag2 import messages
-from rovsim.measurement.recording.rosbag2.bag import Bag, Messages, opened
+from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
+from rovsim.measurement.recording.rosbag2.messages import Reading, pose, readings
 
 POSES = ("PoseStamped", "PoseWithCovarianceStamped", "TransformStamped", "Odometry")
 
@@ -29,22 +28,19 @@ def read_bag(path: Path, mocap: Mocap) -> Export:
     """
     with opened(path, by="mocap.format: rosbag2") as bag:
         topics = mocap.topics or Topics()
-        pose = _pose_topic(bag, mocap, topics)
-        given = {
-            key: bag.messages(topic, f"mocap.topics.{key}")
-            for key, topic in dict(topics).items()
-            if topic and topic != pose
-        }
-        channels = {
-            kind: channel
-            for key, found in given.items()
-            for kind, channel in _channels(key, found, bag, mocap).items()
-        }
-        notes = tuple(note for found in given.values() for note in found.notes)
-        if pose is None:
-            return Export.of_channels(channels, notes=notes)
+        pose_topic = _pose_topic(bag, mocap, topics)
+        channels: dict[str, Channel] = {}
+        notes: list[str] = []
+        for key, reading in readings(mocap).items():
+            topic = getattr(topics, key)
+            if topic and topic != pose_topic:
+                found = bag.read(topic, f"mocap.topics.{key}", reading.numbers, reading.expected)
+                channels |= _channels(found, reading)
+                notes += found.notes
+        if pose_topic is None:
+            return Export.of_channels(channels, notes=tuple(notes))
         channels.pop("attitude", None)  # it is part of the poses
-        return _poses(bag, bag.messages(pose, "mocap.body"), channels, notes)
+        return _poses(bag, pose_topic, channels, tuple(notes))
 
 
 def _pose_topic(bag: Bag, mocap: Mocap, topics: Topics) -> str | None:
@@ -67,53 +63,18 @@ def _pose_topic(bag: Bag, mocap: Mocap, topics: Topics) -> str | None:
     )
 
 
-def _poses(
-    bag: Bag, found: Messages, channels: Mapping[str, Channel], notes: tuple[str, ...]
-) -> Export:
-    values = messages.poses(found, bag.path)
-    attitude, seen = unit_quaternions(values[:, 3:])
-    position = values[:, :3]
+def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str, ...]) -> Export:
+    found = bag.read(topic, "mocap.body", pose, "a pose: position and orientation")
+    position = found.value[:, :3]
+    attitude, seen = unit_quaternions(found.value[:, 3:])
     seen &= finite_rows(position)
     notes = (*found.notes, *notes)
     return Export(found.time, position, attitude, seen, channels=channels, notes=notes)
 
 
-def _channels(key: str, found: Messages, bag: Bag, mocap: Mocap) -> dict[str, Channel]:
-    """Channels of the topic that `mocap.topics` gives for `key`."""
-    values = CHANNELS[key](found, bag.path, mocap)
+def _channels(found: Samples, reading: Reading) -> dict[str, Channel]:
+    values = {kind: found.value[:, columns] for kind, columns in reading.channels.items()}
+    if "attitude" in values:
+        turns, good = unit_quaternions(values["attitude"])
+        values["attitude"] = np.where(good[:, None], turns, np.nan)
     return {kind: measured(found.time, value) for kind, value in values.items()}
-
-
-def _depth(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
-    return {"depth": messages.depths(found, path, mocap)}
-
-
-def _odometry(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
-    twist = messages.twists(found, path)
-    return {"velocity": twist[:, :3], "rates": twist[:, 3:]}
-
-
-def _velocity(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
-    return {"velocity": messages.velocities(found, path)}
-
-
-def _attitude(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
-    return {"attitude": messages.attitudes(found, path)}
-
-
-def _imu(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
-    return messages.inertial(found, path)
-
-
-def _battery(found: Messages, path: Path, mocap: Mocap) -> dict[str, Array]:
-    return {"voltage": messages.voltages(found, path)}
-
-
-CHANNELS = {
-    "odometry": _odometry,
-    "imu": _imu,
-    "attitude": _attitude,
-    "depth": _depth,
-    "velocity": _velocity,
-    "battery": _battery,
-}

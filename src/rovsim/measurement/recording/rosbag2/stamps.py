@@ -1,6 +1,6 @@
 """When a message was measured: its own stamp where that can be believed, else when it arrived."""
 
-from typing import Any, Sequence
+from typing import Any
 
 import numpy as np
 from numpy import ndarray as Array
@@ -12,16 +12,14 @@ SAME_CLOCK = 0.5  # s
 STEADY = 0.5  # s, between the 5th and the 95th percentile
 
 
-def on_bag_clock(
-    topic: str, arrived: Array, content: Sequence[Any]
-) -> tuple[Array, tuple[str, ...]]:
-    """Times (n,) in s on the clock of the bag, and what had to be done for them.
+def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tuple[str, ...]]:
+    """Times (n,) in s on the clock of the bag, of arrivals and stamps (n,) in ns.
 
     Stamps hold as they are where their clock is that of the bag. Those of another computer are
     shifted by the median of their difference, so the usual delay of transport counts as none.
+    Returns what had to be done as well.
     """
     bag = arrived * NANO
-    stamps = np.array([_stamp(message) for message in content], dtype=np.int64)
     if not stamps.all():
         said = () if not stamps.any() else (f"{topic}: stamps are missing; the bag's times hold.",)
         return bag, said
@@ -36,8 +34,8 @@ def on_bag_clock(
     return shifted, (note,)
 
 
-def _stamp(message: Any) -> int:
+def stamp(message: Any) -> int:
     """Stamp in ns; 0 where there is none."""
     header = getattr(message, "header", None)
-    stamp = getattr(header, "stamp", None)
-    return 0 if stamp is None else stamp.sec * 1_000_000_000 + stamp.nanosec
+    given = getattr(header, "stamp", None)
+    return 0 if given is None else given.sec * 1_000_000_000 + given.nanosec
