@@ -12,6 +12,7 @@ from rovsim.dynamics.effects.base import Autopilot, Effect, Wrench
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.synthetic_tank.settings import SUITABLE
 
 SHARED = Path(os.environ.get("ROVSIM_DATA", Path(__file__).parents[2] / "shared" / "data")).parent
 
@@ -31,11 +32,17 @@ def model(*effects: Effect) -> Model:
     return found
 
 
-def beside_others(effect: Effect) -> Model:
-    """The nominal BlueROV2 with an effect, and every other wrench effect at its defaults.
+def beside_others(effect: Effect | None, cls: type[Effect] | None = None) -> Model:
+    """A vehicle that can show an effect, with it, and every other wrench effect at its defaults.
 
     They change nothing, and one engine serves all such models; loops need a log of their own.
     """
+    suits = SUITABLE.get((cls or type(effect)).through, {})
+    if "vehicle" in suits:
+        found = nominal(load_vehicle(suits["vehicle"]))
+        return found if effect is None else found + effect
+    if effect is None:
+        return model()
     known = built_in().values()
     shared = [c for c in known if issubclass(c, Wrench) and not issubclass(c, Autopilot)]
     if type(effect) not in shared:
@@ -45,7 +52,7 @@ def beside_others(effect: Effect) -> Model:
 
 def some(cls: type[Effect]) -> Effect:
     """An effect whose values differ from the defaults, inside every range."""
-    known = [p for p in cls.parameters if np.isfinite(p.default)]
+    known = [p for p in cls.parameters if np.isfinite(p.default) and p.fitted]
     more = {p.name: p.default + 0.1 for p in known if p.default + 0.1 <= p.high}
     return cls(**cls.starts[0] | more)
 

@@ -11,7 +11,7 @@ from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.benchmarks.blind.run import place, read_answers, run
 from rovsim.benchmarks.blind.score import matching, score
-from rovsim.benchmarks.blind.suites import FAMILIES, suite
+from rovsim.benchmarks.blind.suites import APART, FAMILIES, suite
 from rovsim.benchmarks.blind.summary import detection_limit, summarize
 from rovsim.benchmarks.blind.tables import write_markdown
 from rovsim.core.errors import BadInput
@@ -51,7 +51,7 @@ def diagnosis(*named, verdict=None, groups=(), **parameters):
 
 @pytest.mark.parametrize("name", ["quick", "standard", "full"])
 def test_every_effect_of_the_catalogue_is_hidden_once_alone(name):
-    assert set(RECIPES) == set(built_in()) == frozenset.union(*FAMILIES)
+    assert set(RECIPES) == set(built_in()) == frozenset.union(APART, *FAMILIES)
     alone = [c.hidden[0].effect for c in suite(name, "development") if c.kind == "single"]
     assert set(alone) == set(built_in())
 

@@ -125,7 +125,7 @@ def broken(campaign, tmp_path, change):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda c: c["mocap"].update(body="Blue"), "BlueROV2"),
+        (lambda c: c["mocap"].update(body="vehicles"), "'vehicle'"),
         (lambda c: c.update(vehicle="bluerov"), "Did you mean 'bluerov2'"),
         (lambda c: c.update(tnak={}), "Did you mean 'tank'"),
         (lambda c: c["commands"].update(columns=[f"u{i}" for i in range(8)]), "u0"),

@@ -6,7 +6,7 @@ import pytest
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Autopilot, Coefficients, Wander, Wrench
+from rovsim.dynamics.effects.base import Autopilot, Coefficients, Stick, Wander, Wrench
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
@@ -22,6 +22,7 @@ PUBLIC = {
     "onboard_control", "marker_offset", "marker_misalignment", "world_tilt",
     # section 6
     "cubic_damping", "current_drift", "dry_friction", "force_curve", "pose_filter",
+    "fin_effectiveness", "pilot_gain", "thruster_order", "waterplane_stiffness",
 }  # fmt: skip
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))
 
@@ -29,8 +30,9 @@ EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in())
 def driven(world):
     start = at_rest()
     start[7:] = [0.3, -0.2, 0.1, 0.2, -0.1, 0.3]
-    demands = any(isinstance(effect, Autopilot) for effect in world.effects)
-    value, kind = (sticks(1)[:, :6], "demand") if demands else (sticks(1), "thruster")
+    demands = any(isinstance(effect, Autopilot | Stick) for effect in world.effects)
+    columns = world.thrust_path.columns("demand" if demands else "thruster")
+    value, kind = sticks(1)[:, :columns], "demand" if demands else "thruster"
     run = motion(value, kind, seconds=1.0, start=start, site=tank())
     path = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     return world.mocap_view.report(path, 0.01)
@@ -55,8 +57,8 @@ def test_it_says_what_causes_it_and_what_reveals_it(cls):
 
 @EVERY
 def test_a_fit_can_begin(cls):
-    """Every start is valid, and some parameter is fitted without being asked for."""
-    assert any(p.fitted for p in cls.parameters)
+    """Every start is valid; some parameter is fitted without being asked for, or all are tried."""
+    assert any(p.fitted for p in cls.parameters) or {} not in cls.starts
     for site in (tank(), Site.unknown()):
         starts = cls.starts_at(site)
         assert len(starts) == len({tuple(sorted(start.items())) for start in starts}) > 0
@@ -70,8 +72,8 @@ def test_the_catalogue_is_the_public_one():
 
 @EVERY
 def test_defaults_change_nothing_and_values_do(cls):
-    plain = driven(model())
-    if not issubclass(cls, Autopilot):  # which needs another log
+    plain = driven(beside_others(None, cls))
+    if not issubclass(cls, Autopilot | Stick):  # which need another log
         np.testing.assert_allclose(driven(beside_others(cls())), plain, atol=1e-12)
     changed = np.abs(driven(beside_others(some(cls))) - plain).max() > 1e-6
     assert changed != issubclass(cls, Wander)  # of which a model has the mean

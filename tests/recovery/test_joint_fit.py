@@ -34,7 +34,7 @@ HIDDEN = (
 def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     base, runs = observed(tmp_path, duration=20.0, effects=HIDDEN, log=Log(kind="demand"))
     bank = FilterBank.design(runs, base, FIRST_NOISE)
-    listed = list_candidates(runs, built_in())
+    listed = list_candidates(runs, built_in(), base.vehicle)
     some = [c for c in listed if c.effect.id in ("added_mass", "linear_damping")]
     known = linearise_candidates(bank, Hypothesis(base), some)
     workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())

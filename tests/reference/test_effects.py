@@ -45,6 +45,9 @@ NAMES = {
     "voltage_sag": ["fraction", "rate"],
     "advance_loss": ["coefficient"],
     "propeller_torque": ["ratio"],
+    "fin_effectiveness": ["all"],
+    "thruster_order": ["first", "second"],
+    "waterplane_stiffness": ["heave", "roll", "pitch"],
 }
 AXES = ["surge", "sway", "heave", "roll", "pitch", "yaw"]
 ANCHOR = [f"{point}_{axis}" for point in ("anchor", "attachment") for axis in "xyz"]

@@ -38,7 +38,8 @@ def add_effects(
     vehicle = build_model(diagnosis.base, source, catalogue).vehicle
     base = load_model(to, vehicle, catalogue)
     entries = list_entries([fitted[name] for name in names], source)
-    return extend(base, [build_effect(entry, catalogue) for entry in entries]), names
+    known = catalogue.on(vehicle)
+    return extend(base, [build_effect(entry, known) for entry in entries]), names
 
 
 def list_entries(fitted: Sequence[FittedEffect], source: Path) -> list[EffectEntry]:

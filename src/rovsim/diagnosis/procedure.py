@@ -164,7 +164,7 @@ def _observe(
     first = FilterBank.design(runs, base, FIRST_NOISE)
     noise, _ = first.fit_noise([e[0] for e in first.evaluate([base])], FIRST_NOISE)
     close = first.redesign(base, noise)
-    candidates = list_candidates(runs, catalogue)
+    candidates = list_candidates(runs, catalogue, base.vehicle)
     sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
     noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
     return SearchWorkspace(close.redesign(base, noise), sensitivities, noise, settings)

@@ -20,6 +20,7 @@ from rovsim.dynamics.effects.base import (
     Effect,
     Response,
     Shaping,
+    Stick,
     Strength,
 )
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
@@ -50,6 +51,7 @@ class ThrustPath:
         self.thrusters = thrusters
         self.surfaces = sum(len(e.names) for e in ranked if isinstance(e, Surfaces))
         self.clocks = [e for e in ranked if isinstance(e, Clock)]
+        self.sticks = [e for e in ranked if isinstance(e, Stick)]
         self.autopilots = [e for e in ranked if isinstance(e, Autopilot)]
         self.shapings = [e for e in ranked if isinstance(e, Shaping)]
         self.curves = [e for e in ranked if isinstance(e, Curve)]
@@ -60,7 +62,14 @@ class ThrustPath:
     def key(self) -> tuple:
         """Equal where the same commands make the same thrust, whatever autopilots do beside it."""
         left = [autopilot.mixed(np.eye(6)).tobytes() for autopilot in self.autopilots]
-        acting = (*self.clocks, *self.shapings, *self.curves, *self.strengths, *self.responses)
+        acting = (
+            *self.clocks,
+            *self.sticks,
+            *self.shapings,
+            *self.curves,
+            *self.strengths,
+            *self.responses,
+        )
         return (*left, *((e.id, e.values.tobytes()) for e in acting))
 
     def arrival(self, time: Array) -> Array:
@@ -85,6 +94,8 @@ class ThrustPath:
             return value if value.shape[1] == self.thrusters.count else value[:, self._throttles]
         for autopilot in self.autopilots:
             value = autopilot.mixed(value)
+        for stick in self.sticks:
+            value = stick.moved(value)
         return np.clip(value @ self.thrusters.mixing.T, -1.0, 1.0)
 
     def steering(self, value: Array, kind: CommandKind) -> tuple[Array, Array]:

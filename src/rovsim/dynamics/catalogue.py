@@ -12,6 +12,7 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics import effects
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.user_files import check_effects, read_effects
+from rovsim.dynamics.vehicle import Vehicle
 
 
 class Catalogue(Mapping[str, type[Effect]]):
@@ -29,6 +30,10 @@ class Catalogue(Mapping[str, type[Effect]]):
 
     def __len__(self) -> int:
         return len(self._by_id)
+
+    def on(self, vehicle: Vehicle) -> "Catalogue":
+        """The same effects with the parameters and starts that they have on a vehicle."""
+        return Catalogue({name: cls.on(vehicle) for name, cls in self.items()}, self.files)
 
     def find(self, name: str) -> type[Effect]:
         """The effect with this id.
@@ -72,6 +77,7 @@ def built_in() -> Catalogue:
 def _concrete(cls: type[Effect]) -> Iterable[type[Effect]]:
     if getattr(cls, "id", None) and cls.listed:
         yield cls
+        return  # what is on top of it is the same effect, on some vehicle
     for inner in cls.__subclasses__():
         yield from _concrete(inner)
 

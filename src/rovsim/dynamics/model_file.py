@@ -116,7 +116,8 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     else:
         vehicle = build_vehicle(file.vehicle, f"{path}, vehicle")
     residual = read_residual(file.residual, path.parent) if file.residual else None
-    added = [build_effect(entry, catalogue) for entry in file.effects]
+    known = catalogue.on(vehicle)
+    added = [build_effect(entry, known) for entry in file.effects]
     model = Model(path.stem, vehicle, (*vehicle.effects(), *added), residual)
     _ = model.body.M  # refuse a model that cannot move
     return model

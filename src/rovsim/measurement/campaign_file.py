@@ -86,7 +86,10 @@ class CommandLog(Section):
 
     `pwm` in us and `normalized` are per thruster, in the vehicle's order; `demand` and `wrench`
     are per axis: `axes` says which, or the columns carry axis names, or they are six in the order
-    surge ... yaw. A minus before a column turns its sign. `topic` is that of a bag.
+    surge ... yaw. A minus before a column turns its sign. `topic` is that of a bag. `angles` are
+    those of the columns that hold rad; known without, where the vehicle turns them. `auxiliary`:
+    further columns of a csv, taken as they are, for effects that read them; `voltage` is that of
+    the battery.
     """
 
     format: str
@@ -94,6 +97,13 @@ class CommandLog(Section):
     columns: Annotated[list[Text], Field(min_length=1), AfterValidator(_distinct)]
     axes: Annotated[list[Axis], AfterValidator(_distinct)] = Field(default_factory=list)
     topic: Text | None = None
+    angles: list[Text] = Field(default_factory=list)
+    auxiliary: Annotated[list[Text], AfterValidator(_distinct)] = Field(default_factory=list)
+
+    @property
+    def turned(self) -> list[bool]:
+        """Which columns hold an angle in rad."""
+        return [name in self.angles for name in self.names]
 
     @property
     def names(self) -> list[str]:

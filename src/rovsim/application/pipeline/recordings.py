@@ -22,6 +22,7 @@ from rovsim.measurement.signals.chain import (
 )
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.quality import Quality
+from rovsim.simulation.command_columns import mark_angles
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +70,8 @@ def read_recording(
     Raises:
         BadInput: it cannot be read.
     """
-    recording, anomalies = read_run(campaign, run)
+    known = mark_angles(campaign, load_campaign_vehicle(campaign))
+    recording, anomalies = read_run(known, run)
     return recording, report_quality(recording, anomalies, settings.outliers)
 
 

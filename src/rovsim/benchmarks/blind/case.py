@@ -84,7 +84,7 @@ def _shrunk(entry: EffectEntry) -> EffectEntry:
     known = {p.name: p for p in built_in()[entry.effect].parameters}
     fixed = RECIPES[entry.effect].fixed
     values = {
-        k: v if k in fixed else Value(value=_closer(v.value, known[k]))
+        k: v if k in fixed or not known[k].fitted else Value(value=_closer(v.value, known[k]))
         for k, v in entry.parameters.items()
     }
     return EffectEntry(effect=entry.effect, parameters=values)

@@ -14,6 +14,7 @@ import numpy as np
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Parameter
 from rovsim.dynamics.model_file import EffectEntry, Value
+from rovsim.simulation.synthetic_tank.settings import SUITABLE
 
 Range = tuple[float, float]
 
@@ -82,10 +83,16 @@ RECIPES: Mapping[str, Recipe] = {
     "voltage_sag": Recipe(_each("fraction"), (1.5, 3.0), 1),
     "advance_loss": Recipe(_each("coefficient"), (1.5, 4.0), 1),
     "propeller_torque": Recipe(_each("ratio"), (1.0, 3.0)),
+    "thruster_order": Recipe((("first", "second"),), (1.0, 1.0), weak=False),  # `_swapped`
+    "pilot_gain": Recipe(
+        _each("surge", "sway", "heave", "yaw"), (2.0, 5.0), tank=SUITABLE["demands"]
+    ),
+    "fin_effectiveness": Recipe(_each("all"), (2.0, 5.0), -1, tank=SUITABLE["surfaces"]),
+    "waterplane_stiffness": Recipe(_each("roll"), (40.0, 80.0), tank=SUITABLE["waterplane"]),
     "onboard_control": Recipe(
         (("bandwidth_yaw",), ("bandwidth_roll", "bandwidth_pitch", "bandwidth_yaw")), (1.5, 3.0),
         1, {"gain_yaw": (1.0, 1.8), "gain_roll": (0.5, 0.8), "gain_pitch": (0.5, 0.8)},
-        {"log": {"kind": "demand"}}, weak=False,
+        SUITABLE["demands"], weak=False,
     ),
     "pose_filter": Recipe(_each("cutoff"), (994.0, 997.0), -1),  # from 1000 Hz down to 3 to 6 Hz
     "marker_offset": Recipe(_each("x", "y", "z"), (1.0, 3.0)),
@@ -99,6 +106,8 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
 
     What is drawn is the same at every strength; only the size of the change differs.
     """
+    if name == "thruster_order":
+        return _swapped(random)
     recipe = RECIPES[name]
     known = {p.name: p for p in built_in()[name].parameters}
     chosen = recipe.choices[random.integers(len(recipe.choices))]
@@ -109,6 +118,15 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
         values[k] = _moved(known[k], change, strength if recipe.weak else 1.0)
     values = {k: v for k, v in values.items() if _used(name, k, chosen)}
     return EffectEntry(effect=name, parameters={k: Value(value=v) for k, v in values.items()})
+
+
+def _swapped(random: np.random.Generator) -> EffectEntry:
+    """Two upright thrusters of the default vehicle: a pilot can still hold it."""
+    first, second = sorted(random.choice([5.0, 6.0, 7.0, 8.0], size=2, replace=False).tolist())
+    values = {"first": first, "second": second}
+    return EffectEntry(
+        effect="thruster_order", parameters={k: Value(value=v) for k, v in values.items()}
+    )
 
 
 def _moved(p: Parameter, scales: float, strength: float) -> float:

@@ -24,6 +24,7 @@ from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Answer, FittedEffect, FittedValue
+from rovsim.simulation.command_columns import mark_angles
 
 Regression = Callable[[Array, Array], Array]
 
@@ -88,6 +89,7 @@ def _quietly() -> Iterator[None]:
 def of_campaign(campaign: Path) -> Problem:
     """Target and library of the train runs."""
     found = load_campaign(campaign)
+    found = mark_angles(found, load_campaign_vehicle(found))
     runs = [run for run in found.runs if run.split == "train"]
     motions = [clean(read_run(found, run.id)[0], SignalSettings()) for run in runs]
     return problem(nominal(load_campaign_vehicle(found)), motions, built_in())

@@ -54,6 +54,8 @@ FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"propeller_torque"}),
     frozenset({"onboard_control"}),
 )  # fmt: skip
+# Never in a set: another vehicle or log shows them, or they hide what else is wrong.
+APART = frozenset({"fin_effectiveness", "waterplane_stiffness", "pilot_gain", "thruster_order"})
 
 
 def suite(name: str, seeds: Range) -> list[Case]:

@@ -51,6 +51,11 @@ class Term:
         return np.array([self.effect[p.name] / p.scale for p in self.parameters])
 
     @property
+    def choices(self) -> int:
+        """How many numbers it chose: its free parameters, or the one way it was tried."""
+        return max(1, len(self.free))
+
+    @property
     def vanishes(self) -> bool:
         """Whether its defaults are its absence; if not, it stays or goes as a whole."""
         return {} in self.effect.starts
@@ -64,6 +69,8 @@ class Term:
 
     def merged(self, more: "Term") -> "Term":
         """This term with the changes of another of the same effect added."""
+        if not more.free:  # what is tried takes the other's place
+            return more
         given, added = self.effect.given(), more.effect.given()
         known = {p.name: p for p in self.effect.parameters}
         values = {k: known[k].combine(given.get(k, known[k].absence), v) for k, v in added.items()}

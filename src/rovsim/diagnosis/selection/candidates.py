@@ -7,7 +7,8 @@ from rovsim.core.errors import BadInput
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Effect, Smoothing, Wander
+from rovsim.dynamics.effects.base import Effect, Means, Smoothing, Wander
+from rovsim.dynamics.vehicle import Vehicle
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,18 +29,37 @@ class Candidate:
         return Term(self.start, self.free if free is None else tuple(free))
 
 
-def list_candidates(runs: Sequence[ObservedRun], catalogue: Catalogue) -> list[Candidate]:
-    """All candidates that these runs could show."""
-    site = runs[0].motion.site
+def list_candidates(
+    runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle
+) -> list[Candidate]:
+    """All candidates that these runs of that vehicle could show."""
+    site, means = runs[0].motion.site, list_means(runs, vehicle)
     found = []
-    for cls in catalogue.values():
+    for cls in catalogue.on(vehicle).values():
         if issubclass(cls, Smoothing | Wander):  # camera.py tells of the one, none of the other
+            continue
+        if cls.through not in means:
             continue
         for values in cls.starts_at(site):
             start = cls(**values)
             if _can_act(start, runs):
                 found.append(Candidate(cls, start, cls.free_at(values)))
     return found
+
+
+def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Means]:
+    """By what effects could act in these runs of that vehicle."""
+    commands = [one.motion.commands for one in runs if len(one.motion.commands.time)]
+    kinds = {one.kind for one in commands}
+    given: dict[Means, object] = {
+        "any": True,
+        "commands": commands,
+        "demands": "demand" in kinds,
+        "thrusters": vehicle.thrusters.units and kinds - {"wrench"},
+        "surfaces": vehicle.surfaces,
+        "waterplane": vehicle.floats,
+    }
+    return {means for means, there in given.items() if there}
 
 
 def _can_act(start: Effect, runs: Sequence[ObservedRun]) -> bool:

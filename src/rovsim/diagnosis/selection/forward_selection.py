@@ -58,7 +58,9 @@ def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
         idle = {name for name, k in zip(term.free, own, strict=True) if weak[k]}
         defaults = {p.name: p.default for p in term.parameters if p.name in idle}
         left = tuple(name for name in term.free if name not in idle)
-        if left and (not idle or term.vanishes):
+        if not term.free:
+            terms.append(term)  # tried, not fitted: it has nothing to drop
+        elif left and (not idle or term.vanishes):
             terms.append(replace(term, effect=term.effect.with_values(defaults), free=left))
     return Hypothesis(h.base, tuple(terms))
 
@@ -108,7 +110,7 @@ def contest(
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         others = [p for p in rest.others if p.gain > 0.0 and p.term.id != term.id]
         for p in keep_close(others, trials):
-            deficit = rest.loss - workspace.price * len(term.free) - p.gain
+            deficit = rest.loss - workspace.price * term.choices - p.gain
             if p.gain > PROMISING * rest.loss:
                 trial = workspace.fit(rest.hypothesis.with_term(p.term))
                 deficit = workspace.score(current) - workspace.score(trial)
@@ -128,7 +130,7 @@ def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     if not any(term.id in STATED for term in terms):
         return current
     for term, rest in zip(terms, workspace.remove_each(current), strict=True):
-        limit = workspace.price * len(term.free) + FILE_ODDS
+        limit = workspace.price * term.choices + FILE_ODDS
         if term.id in STATED or workspace.loss_beside_file(rest) > limit:
             continue
         fewer = prune(workspace, _add_from_file(workspace, workspace.fit(rest.hypothesis)))

@@ -34,7 +34,7 @@ def rank_proposals(M: Array, blocks: Sequence[CandidateColumns], price: float) -
         gain = _predict_gain(M, block, price)
         candidate = block.candidate
         term = candidate.term([candidate.free[j] for j in gain.chosen])
-        worth = gain.decrease - price * len(gain.chosen)
+        worth = gain.decrease - price * term.choices
         known = best.get(term.id)
         if known is None or worth > known.gain:
             best[term.id] = Proposal(term.at(term.x + gain.x), worth)
@@ -43,6 +43,9 @@ def rank_proposals(M: Array, blocks: Sequence[CandidateColumns], price: float) -
 
 def _predict_gain(M: Array, block: CandidateColumns, price: float) -> Gain:
     own = [1 + j for j in block.derivatives]
+    if block.secant is not None and not own:
+        s = 1 + block.secant
+        return Gain(float(-2.0 * M[0, s] - M[s, s]), (), np.empty(0))
     H, b = M[np.ix_(own, own)], M[own, 0]
     if block.secant is None:
         return select_columns(H, b, price)
@@ -80,6 +83,8 @@ def _chance_gains(M: Array, z: Array, block: CandidateColumns, price: float) -> 
         return (
             np.max((z[:, own] / np.sqrt(np.maximum(np.diag(M), 1e-300))[own]) ** 2, axis=1) - price
         )
+    if not own:
+        return -2.0 * z[:, s] - M[s, s] - price
     b = z[:, own] + M[own, s]
     x = np.linalg.lstsq(M[np.ix_(own, own)], b.T, rcond=1e-9)[0]
     return np.einsum("dk,kd->d", b, x) - 2.0 * z[:, s] - M[s, s] - price * len(own)

@@ -73,7 +73,7 @@ class SearchWorkspace:
 
     def score(self, found: Fit) -> float:
         """Twice the log likelihood, the price of the free parameters paid."""
-        return found.likelihood - self.price * len(found.hypothesis.x)
+        return found.likelihood - self.price * sum(t.choices for t in found.hypothesis.terms)
 
     @cached_property
     def columns(self) -> Array:

@@ -8,7 +8,8 @@ method. Effects are immutable and add: a model is a list of them.
     Wrench          the forces at one instant (compiled)       wrench(at, p) -> 6 numbers
     Wander          the water, at random                       draw(ticks, dt, random) -> current
     Clock           when a logged command takes effect         arrival(time) -> time
-    Autopilot       the demand before the mixer                mixed(demand) -> demand; asked(...)
+    Stick           the demand before the mixer                moved(demand) -> demand
+    Autopilot       demands in place of the mixer              mixed(demand) -> demand; asked(...)
     Shaping         the thruster command                       shaped(command) -> command
     Curve           the shape of the static force curve        bent(force, full) -> force
     Strength        the static thruster force                  scaled(force, t, duration) -> force
@@ -20,7 +21,7 @@ method. Effects are immutable and add: a model is a list of them.
 from abc import ABC, abstractmethod
 from collections import namedtuple
 from copy import copy
-from typing import Any, ClassVar, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Mapping
 
 import numpy as np
 from numpy import ndarray as Array
@@ -31,6 +32,11 @@ from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.parameters import Parameter, Signature
 from rovsim.dynamics.engine.types import At, Vector6
+
+if TYPE_CHECKING:
+    from rovsim.dynamics.vehicle import Vehicle
+
+Means = Literal["any", "commands", "demands", "thrusters", "surfaces", "waterplane"]
 
 
 class Effect(ABC):
@@ -51,6 +57,7 @@ class Effect(ABC):
     signature: ClassVar[Signature | None] = None  # how the catalogue page shows it
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
+    through: ClassVar[Means] = "any"  # by what it acts: without, nothing can show it
 
     def __init__(self, **values: float) -> None:
         known = [p.name for p in self.parameters]
@@ -112,6 +119,11 @@ class Effect(ABC):
         return cls.starts
 
     @classmethod
+    def on(cls, vehicle: "Vehicle") -> "type[Effect]":
+        """The same effect with the parameters and starts that it has on a vehicle."""
+        return cls
+
+    @classmethod
     def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:
         """Parameters that a fit from these values may change."""
         return tuple(p.name for p in cls.parameters if p.fitted)
@@ -164,13 +176,27 @@ class Wander(Effect):
 class Clock(Effect):
     """Moves the instants at which logged commands take effect."""
 
+    through = "commands"
+
     @abstractmethod
     def arrival(self, time: Array) -> Array:
         """Instants (m,) in s, increasing, at which lines logged at `time` (m,) take effect."""
 
 
+class Stick(Effect):
+    """Changes the demand before the mixer."""
+
+    through = "demands"
+
+    @abstractmethod
+    def moved(self, demand: Array) -> Array:
+        """Demands (m, 6) as the mixer sees them."""
+
+
 class Autopilot(Effect):
     """Acts on some axes itself: their demands do not reach the mixer."""
+
+    through = "demands"
 
     @abstractmethod
     def mixed(self, demand: Array) -> Array:
@@ -187,6 +213,8 @@ class Autopilot(Effect):
 class Shaping(Effect):
     """Changes the thruster command before the force curve."""
 
+    through = "thrusters"
+
     @abstractmethod
     def shaped(self, command: Array) -> Array:
         """Commands (m, n) in [-1, 1] as the propellers see them."""
@@ -194,6 +222,8 @@ class Shaping(Effect):
 
 class Curve(Effect):
     """Changes the shape of the static force curve."""
+
+    through = "thrusters"
 
     @abstractmethod
     def bent(self, force: Array, full: Array) -> Array:
@@ -203,6 +233,8 @@ class Curve(Effect):
 class Strength(Effect):
     """Changes the static thruster force after the force curve."""
 
+    through = "thrusters"
+
     @abstractmethod
     def scaled(self, force: Array, t: Array, duration: float) -> Array:
         """Forces (m, n) in N at times t (m,) s into a recording of that duration."""
@@ -210,6 +242,8 @@ class Strength(Effect):
 
 class Response(Effect):
     """Gives the thruster force dynamics of its own."""
+
+    through = "thrusters"
 
     @abstractmethod
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:

@@ -152,6 +152,7 @@ class AdvanceLoss(Coefficients):
     """A propeller that advances through the water pushes less; opposing inflow raises thrust."""
 
     id = "advance_loss"
+    through = "thrusters"
     equation = r"F \to F\,(1 - c\,\mathrm{sign}(F)\,d_i \cdot v_r)"
     neglects = "the velocity of the thruster relative to CO"
     source = "Fossen 2021, sec. 9.4 (linear in the advance speed)"
@@ -175,6 +176,7 @@ class PropellerTorque(Coefficients):
     """The reaction moment of each propeller about its axis."""
 
     id = "propeller_torque"
+    through = "thrusters"
     equation = r"\tau_\text{rotation} \mathrel{+}= q\,s_i F_i d_i"
     neglects = "the torque of spinning up"
     source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"

@@ -2,13 +2,14 @@
 
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter
+from rovsim.dynamics.effects.parameters import Signature
 
 
 class WaterplaneStiffness(Coefficients):
     """The waterplane rights a floating vehicle more or less stiffly than the vehicle file says."""
 
     id = "waterplane_stiffness"
-    listed = False  # until a tank can float a vehicle
+    through = "waterplane"
     equation = r"\tau = -\Delta k \cdot (z - z_0,\ \phi,\ \theta)"
     neglects = "large angles, coupling of heave and pitch, waves, and sides that are not vertical"
     source = "Fossen 2021, sec. 4.2 (the diagonal of G, small angles)"
@@ -20,6 +21,7 @@ class WaterplaneStiffness(Coefficients):
         "Push it down, list it and trim it by hand, one after the other, and let go: stiffness "
         "changes the period of each oscillation, damping only how soon it dies out."
     )
+    signature = Signature({"roll": 600.0}, "roll", "roll angle")
     parameters = (
         Parameter("heave", "N/m", r"\Delta k_z", scale=100.0),
         Parameter("roll", "N m/rad", r"\Delta k_\phi", scale=5.0),

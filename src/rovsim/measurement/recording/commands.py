@@ -7,6 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Logged
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.readers import KIND, CommandExport, finite_rows
 
@@ -35,22 +36,29 @@ def as_commands(
 ) -> CommandExport:
     """Commands of logged values (m, c), a column each; lines with a NaN are left out and counted.
 
-    `pulses`: the values are pulses of a radio control in us, also where they mean a demand.
+    `pulses`: the values are pulses of a radio control in us, also where they mean a demand. Columns
+    beyond those of the log are its auxiliary ones.
 
     Raises:
         BadInput: values no such command can have.
     """
     unit = "pwm" if pulses else log.kind
+    value, beside = value[:, : len(log.names)], value[:, len(log.names) :]
     _check_range(value, log, unit, place)
     whole = finite_rows(value)
     value, clipped = _normalized(value[whole], log, unit)
     counts = {**(counts or {}), "dropped": int(np.sum(~whole)), "clipped": clipped}
-    return CommandExport(time[whole], value, KIND[log.kind], counts, notes)
+    auxiliary = {
+        name: Logged(time[np.isfinite(own)], own[np.isfinite(own)])
+        for name, own in zip(log.auxiliary, beside.T, strict=False)
+    }
+    return CommandExport(time[whole], value, KIND[log.kind], counts, notes, auxiliary)
 
 
 def _check_range(value: Array, log: CommandLog, unit: str, place: Place) -> None:
     low, high, expected = ALLOWED[unit]
-    bad = np.argwhere((value < low) | (value > high) | np.isinf(value))
+    beyond = ((value < low) | (value > high)) & ~np.array(log.turned)
+    bad = np.argwhere(beyond | np.isinf(value))
     if bad.size:
         line, column = (int(k) for k in bad[0])
         raise BadInput(
@@ -63,6 +71,7 @@ def _check_range(value: Array, log: CommandLog, unit: str, place: Place) -> None
 
 def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:
     """Values (m, c) as the model takes them, and how many lines reached beyond [-1, 1]."""
+    angles = value * log.signs
     if unit == "pwm":
         value = (value - PWM_CENTER) / PWM_SPAN
     value = value * log.signs
@@ -70,7 +79,12 @@ def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:
         value = _all_axes(value, log.axis_numbers)
     if log.kind == "wrench":
         return value, 0
-    return np.clip(value, -1.0, 1.0), int(np.sum((np.abs(value) > 1.0).any(axis=1)))
+    turned = np.zeros(value.shape[1], bool) if log.per_axis else np.array(log.turned)
+    beyond = (np.abs(value) > 1.0) & ~turned
+    clipped = np.clip(value, -1.0, 1.0)
+    if turned.any():
+        clipped = np.where(turned, angles, clipped)
+    return clipped, int(np.sum(beyond.any(axis=1)))
 
 
 def _all_axes(value: Array, axes: list[int]) -> Array:

@@ -22,7 +22,7 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
         BadInput: not such a file, or values no such command can have.
     """
     lines = csv_lines(path)
-    places = column_places(path, lines.names, ["time_s", *log.names])
+    places = column_places(path, lines.names, ["time_s", *log.names, *log.auxiliary])
     table, cut = without_cut_line(lines, places)
 
     def place(line: int, column: int) -> str:

@@ -4,14 +4,14 @@ import pkgutil
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import Callable, TypeVar
+from typing import Callable, Mapping, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.rotations import normalized
-from rovsim.core.run import CommandKind
+from rovsim.core.run import CommandKind, Logged
 from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.channels import Channels
 
@@ -64,7 +64,7 @@ class CommandExport:
     """Commands as a file tells them: `time` (m,) s, `value` (m, c), lines in file order.
 
     `counts` of what was repaired while reading (`cut_lines`, `dropped`, `clipped`); `notes` are
-    sentences about the file that its owner should read.
+    sentences about the file that its owner should read. `auxiliary`: what else was logged, by name.
     """
 
     time: Array
@@ -72,6 +72,7 @@ class CommandExport:
     kind: CommandKind
     counts: dict[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    auxiliary: Mapping[str, Logged] = field(default_factory=dict)
 
 
 MocapReader = Callable[[Path, Mocap], Export]

@@ -9,10 +9,11 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import axes_signs, half_turn, multiply
-from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.core.run import Commands, Logged, RunInfo, Site
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap, Run
 from rovsim.measurement.recording import channels
+from rovsim.measurement.recording.channels import Channels
 from rovsim.measurement.recording.readers import (
     KIND,
     Export,
@@ -66,7 +67,7 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     commands, command_counts, notes = _read_commands(campaign, run)
     if run.commanded:
         _check_overlap(export.time, commands.time, campaign.commands_path(run))
-    export, commands = _from_zero(export, commands)
+    export, commands = _from_zero(export, _with_battery(commands, export.channels))
     info = RunInfo(run.id, run.control, run.split)
     recording = to_ned(export, mocap, info, site(campaign), commands)
     notes = tuple(dict.fromkeys([*export.notes, *notes]))
@@ -107,7 +108,17 @@ def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
         return export, commands
     moved = {k: replace(c, time=c.time - start) for k, c in export.channels.items()}
     export = replace(export, time=export.time - start, channels=moved)
-    return export, replace(commands, time=commands.time - start)
+    beside = {k: replace(x, time=x.time - start) for k, x in commands.auxiliary.items()}
+    return export, replace(commands, time=commands.time - start, auxiliary=beside)
+
+
+def _with_battery(commands: Commands, channels: Channels) -> Commands:
+    """With the voltage of the battery, if the recording brings it."""
+    battery = channels.get("voltage")
+    if battery is None or "voltage" in commands.auxiliary:
+        return commands
+    own = Logged(battery.time, battery.value[:, 0])
+    return replace(commands, auxiliary={**commands.auxiliary, "voltage": own})
 
 
 def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Commands) -> Recording:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import Commands
+from rovsim.core.run import Commands, Logged
 from rovsim.measurement.recording.channels import Channels, tidy
 from rovsim.measurement.recording.readers import CommandExport, Export
 
@@ -102,4 +102,11 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
     counts["command_duplicates"] = len(time) - len(keep)
     # a missing line makes a step twice as long
     counts["command_long_steps"] = int(np.sum(steps > 1.5 * np.median(steps))) if len(steps) else 0
-    return Commands(log.time[keep], log.value[keep], log.kind), counts
+    beside = {name: _in_order(own) for name, own in log.auxiliary.items() if len(own.time)}
+    return Commands(log.time[keep], log.value[keep], log.kind, beside), counts
+
+
+def _in_order(own: Logged) -> Logged:
+    """Sorted by time, each time once."""
+    time, first = np.unique(own.time, return_index=True)
+    return Logged(time, own.value[first])

@@ -17,6 +17,7 @@ from rovsim.dynamics.effects.base import (
     Sensing,
     Shaping,
     Smoothing,
+    Stick,
     Strength,
     Wander,
     Wrench,
@@ -27,7 +28,14 @@ PAGE, PICTURES = "catalogue.md", "images/effects"
 LONG = 8  # rows of a table that is folded away
 KINDS = {
     "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wander, Wrench),
-    "From a logged command to a thruster's force": (Clock, Shaping, Curve, Strength, Response),
+    "From a logged command to a thruster's force": (
+        Clock,
+        Stick,
+        Shaping,
+        Curve,
+        Strength,
+        Response,
+    ),
     "What the motion capture reports": (Sensing, Smoothing),
 }
 INTRODUCTION = """\

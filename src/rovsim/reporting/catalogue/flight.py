@@ -8,10 +8,11 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Autopilot, Effect
+from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import describe_effect
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
 from rovsim.evaluation.error_conditions.conditions import Blocks, Condition, average_blocks
 from rovsim.learning.pairs import sample_run
@@ -21,9 +22,11 @@ from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.signature import Seen
 from rovsim.reporting.units import ACCELERATION_UNITS
+from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import (
+    SUITABLE,
     Box,
     Camera,
     Log,
@@ -36,8 +39,11 @@ RUN = TankRun(id="run", control="6dof", split="train")
 
 
 def settings(cls: type[Effect], signature: Signature) -> TankSettings:
-    """A calm tank small enough for walls and surface to matter, cameras better than usual."""
-    return TankSettings(
+    """A calm tank small enough for walls and surface to matter, cameras better than usual.
+
+    Where another vehicle shows the effect: a tank that suits it.
+    """
+    calm = TankSettings(
         seed=3,
         runs=(RUN,),
         tank=Box(x=(0.0, 4.0), y=(0.0, 2.2), z=(0.0, 2.0)),
@@ -45,17 +51,22 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
         camera=Camera(
             position_noise=1e-4, attitude_noise=3e-4, bursts_per_minute=0, outliers_per_minute=0
         ),
-        log=Log(kind="demand" if issubclass(cls, Autopilot) else "pwm", missing=0.0),
+        log=Log(missing=0.0),
         turbulence=Turbulence(force=0.1, moment=0.004),
         effects=(describe_effect(cls(**signature.values)),),
     )
+    known = SUITABLE.get(cls.through, {})
+    suits = {k: known[k] for k in ("vehicle", "tank") if k in known}
+    log = calm.log.model_copy(update=known.get("log", {}))
+    return TankSettings.model_validate({**dict(calm), **suits, "log": log})
 
 
 def fly(tank: TankSettings, catalogue: Catalogue) -> Motion:
     """The run as it is measured from its raw exports."""
     with tempfile.TemporaryDirectory() as folder:
         make_campaign(tank, Path(folder) / "raw", catalogue)
-        recording, _ = read_run(load_campaign(Path(folder) / "raw"), RUN.id)
+        campaign = mark_angles(load_campaign(Path(folder) / "raw"), load_vehicle(tank.vehicle))
+        recording, _ = read_run(campaign, RUN.id)
     return clean(recording, SignalSettings())
 
 

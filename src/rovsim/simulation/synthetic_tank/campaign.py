@@ -31,7 +31,8 @@ def true_model(
         BadInput: a hidden effect that the catalogue does not know, or values it cannot have.
     """
     vehicle = load_vehicle(settings.vehicle)
-    hidden = [build_effect(entry, catalogue) for entry in settings.effects]
+    known = catalogue.on(vehicle)
+    hidden = [build_effect(entry, known) for entry in settings.effects]
     return Model("truth", vehicle, (*vehicle.effects(), *hidden, *unlisted))
 
 
@@ -105,4 +106,7 @@ def _record(
     truth = fly_run(model, settings, run.control, tank, random)
     poses = export_poses(truth, settings.camera, model.mocap_view, random)
     write_text(folder / f"{run.id}_6D.tsv", poses)
-    write_text(folder / f"{run.id}_commands.csv", export_commands(truth, settings.log, random))
+    write_text(
+        folder / f"{run.id}_commands.csv",
+        export_commands(truth, settings.log, model.vehicle, random),
+    )

@@ -9,7 +9,7 @@ from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.campaign_file import CampaignFile
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
-BODY = "BlueROV2"
+BODY = "vehicle"
 SEALED = "truth.yaml"  # nothing that reads a campaign may open it
 
 
@@ -42,7 +42,7 @@ def describe(settings: TankSettings) -> CampaignFile:
     Raises:
         BadInput: the name of the campaign or of a run cannot be a file's.
     """
-    thrusters = [unit.name for unit in load_vehicle(settings.vehicle).thrusters.units]
+    columns = list(load_vehicle(settings.vehicle).command_columns)
     kind = settings.log.kind
     content = {
         "name": settings.name,
@@ -50,7 +50,7 @@ def describe(settings: TankSettings) -> CampaignFile:
         "tank": {axis: list(getattr(settings.tank, axis)) for axis in "xyz"},
         "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
         "commands": {
-            "format": "csv", "kind": kind, "columns": thrusters if kind == "pwm" else list(AXES),
+            "format": "csv", "kind": kind, "columns": columns if kind == "pwm" else list(AXES),
         },
         "runs": [
             {**run.model_dump(), "mocap": f"{run.id}_6D.tsv", "commands": f"{run.id}_commands.csv"}

@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import MocapView
+from rovsim.dynamics.vehicle import Vehicle
 from rovsim.simulation.synthetic_tank.description import BODY
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
@@ -99,18 +100,20 @@ def _header(frames: int, rate: float) -> str:
     return "".join(f"{key}\t{value}\n" for key, value in lines.items()) + column_line + "\n"
 
 
-def export_commands(truth: TrueRun, log: Log, random: np.random.Generator) -> str:
-    """Thruster PWM in us or demands per axis, one line a tick; some lines are lost."""
+def export_commands(truth: TrueRun, log: Log, vehicle: Vehicle, random: np.random.Generator) -> str:
+    """Thruster PWM in us, angles in rad, or demands per axis, one line a tick; some are lost."""
     commands = truth.commands
     time = commands.time + log.jitter * random.normal(size=len(commands.time))
     kept = random.random(len(time)) >= log.missing
     kept[0] = True
-    value, names, shape = commands.value, list(AXES), "%.4f"
+    value, names = commands.value, list(AXES)
+    shapes = ["%.4f"] * value.shape[1]
     if commands.kind == "thruster":
-        value, shape = np.round(1500.0 + 400.0 * value), "%d"
-        names = [f"t{i + 1}" for i in range(value.shape[1])]
+        value = np.where(vehicle.angles, value, np.round(1500.0 + 400.0 * value))
+        names = list(vehicle.command_columns)
+        shapes = ["%.4f" if angle else "%d" for angle in vehicle.angles]
     text = io.StringIO()
     text.write(",".join(["time_s", *names]) + "\n")
     table = np.column_stack([time, value])[kept]
-    np.savetxt(text, table, fmt=",".join(["%.4f", *[shape] * len(names)]))
+    np.savetxt(text, table, fmt=",".join(["%.4f", *shapes]))
     return text.getvalue()

@@ -1,4 +1,4 @@
-"""A pilot who looks at the vehicle and moves the sticks, late; the autopilot keeps it upright."""
+"""Pilots who look at the vehicle and move the sticks, late; the autopilot keeps it upright."""
 
 import numpy as np
 from numpy import ndarray as Array
@@ -71,3 +71,46 @@ class Pilot:
         demand[3:5] = HOLD_ANGLE * (demand[3:5] - to_euler(state[3:7])[:2])
         demand[3:5] -= HOLD_RATE * state[10:12]
         return np.clip(demand, -LARGEST, LARGEST)
+
+
+# Of a vehicle that cannot push sideways: it goes ahead and steers towards set-points.
+AHEAD, STRAY = 0.6, 0.5  # demand in surge; share of the usual stick movements
+TURN, TURN_RATE = 0.8, 1.5  # demand in yaw per rad off the course, per rad/s
+DIVE, DIVE_ANGLE, PITCH, PITCH_RATE = (
+    0.05,
+    0.2,
+    2.0,
+    2.0,
+)  # rad per m too shallow, most; per rad, rad/s
+COURSE_TIME = 20.0  # s
+
+
+class Helmsman(Pilot):
+    """Goes ahead from set-point to set-point, anywhere clear of the walls."""
+
+    def __init__(
+        self, control: str, tank: Array, ticks: int, dt: float, random: np.random.Generator
+    ) -> None:
+        super().__init__(control, tank, ticks, dt, random)
+        half = NEAR * (0.5 * np.ptp(tank, axis=1) - CLEARANCE)
+        self.set_points = self.middle + half * random.uniform(-1, 1, self.set_points.shape)
+
+    def choose_start(self, random: np.random.Generator) -> Array:
+        """State (13,) to start from: slowly ahead near the middle, any heading."""
+        half = 0.5 * random.uniform(-np.pi, np.pi)
+        heading = [np.cos(half), 0.0, 0.0, np.sin(half)]
+        return np.concatenate([self.middle, heading, [0.5, 0, 0, 0, 0, 0]])
+
+    def steer(self, tick: int, state: Array) -> Array:
+        """Demand (6,) per axis after seeing this state (13,)."""
+        self.seen.append(state.copy())
+        seen = self.seen[max(0, tick - self.delay)]
+        way = self.set_points[int(tick * self.dt / COURSE_TIME)] - seen[:3]
+        _, pitch, yaw = to_euler(seen[3:7])
+        off = (np.arctan2(way[1], way[0]) - yaw + np.pi) % (2.0 * np.pi) - np.pi
+        demand = STRAY * self.wander[tick]
+        demand[0] += AHEAD
+        demand[5] += TURN * off - TURN_RATE * seen[12]
+        dive = np.clip(-DIVE * way[2], -DIVE_ANGLE, DIVE_ANGLE)
+        demand[4] += PITCH * (dive - pitch) - PITCH_RATE * seen[11]
+        return np.clip(demand, -1.0, 1.0)

@@ -1,10 +1,11 @@
 """What a synthetic campaign is made of."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Mapping
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from rovsim.core.schema import Section
+from rovsim.dynamics.effects.base import Means
 from rovsim.dynamics.model_file import EffectEntry
 
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -80,3 +81,19 @@ class TankSettings(Section):
     turbulence: Turbulence = Turbulence()
     effects: tuple[EffectEntry, ...] = ()  # hidden
     step: PositiveFloat = 0.001  # s; Heun's error is then far below the noise
+
+
+# Where effects show that need more than the default vehicle: room to go ahead; waves that heave,
+# list and trim what floats.
+SUITABLE: Mapping[Means, Mapping[str, Any]] = {
+    "demands": {"log": {"kind": "demand"}},
+    "surfaces": {
+        "vehicle": "remus100",
+        "tank": {"x": (0.0, 90.0), "y": (0.0, 90.0), "z": (0.0, 20.0)},
+    },
+    "waterplane": {
+        "vehicle": "otter",
+        "tank": {"x": (0.0, 120.0), "y": (0.0, 120.0), "z": (0.0, 10.0)},
+        "turbulence": {"force": 40.0, "moment": 15.0, "time_constant": 0.3},
+    },
+}

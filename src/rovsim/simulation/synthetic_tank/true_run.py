@@ -17,7 +17,8 @@ from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
-from rovsim.simulation.synthetic_tank.pilot import Pilot
+from rovsim.simulation.synthetic_tank.allocation import Allocation
+from rovsim.simulation.synthetic_tank.pilot import Helmsman, Pilot
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 from rovsim.simulation.synthetic_tank.turbulence import draw_currents, draw_turbulence
 
@@ -50,13 +51,16 @@ def fly_run(
     """
     h, tick = settings.step, 1.0 / settings.log.rate
     ticks, per_tick = round(settings.duration / tick), round(tick / h)
-    pilot = Pilot(control, tank, ticks, tick, random)
+    vehicle = _TrueVehicle(model, tank, settings, tick)
+    pilot = vehicle.pilot(control, tank, ticks, tick, random)
     pushes = draw_turbulence(settings.turbulence, ticks * per_tick, h, random)
     pushes = np.ascontiguousarray(pushes @ model.constants.M_inv[0].T)
     currents = draw_currents(model, ticks, tick, random)
-    vehicle = _TrueVehicle(model, tank, settings, tick)
     states = np.empty((ticks * per_tick + 1, 13))
-    states[0] = pilot.choose_start(random)
+    states[0] = pilot.choose_start(random) * vehicle.free
+    if model.vehicle.floats:
+        states[0, 2] = vehicle.site.level
+        tank = tank - [[0.0, 0.0], [0.0, 0.0], [np.inf, 0.0]]  # its middle is at the surface
     for k in range(ticks):
         first = k * per_tick
         command = vehicle.log(pilot.steer(k, states[first]))
@@ -73,7 +77,10 @@ class _TrueVehicle:
 
     def __init__(self, model: Model, tank: Array, settings: TankSettings, tick: float) -> None:
         self.model, self.duration, self.tick, self.h = model, settings.duration, tick, settings.step
-        site = Site(tank, HALF_TURN_X)
+        site = Site(tank, HALF_TURN_X, float(tank[2, 0]))  # what floats rests at the surface
+        self.free = np.concatenate([np.ones(7), model.body.free])
+        self.allocation = Allocation(model.vehicle)
+        self.pilot = Pilot if self.allocation.sideways else Helmsman
         self.kind: CommandKind = "demand" if settings.log.kind == "demand" else "thruster"
         model.check(site, self.kind)
         columns = model.thrust_path.columns(self.kind)
@@ -89,12 +96,12 @@ class _TrueVehicle:
             self.batch = Batch([self.model + water], self.site)
 
     def log(self, demand: Array) -> Array:
-        """What a demand (6,) leaves in the log: itself, or thruster PWM in whole microseconds."""
+        """What a demand (6,) leaves in the log: itself, or commands in whole microseconds."""
         if self.kind == "demand":
             return np.round(demand, 4)
-        limit = self.model.vehicle.thrusters.command_limit
-        command = np.clip(self.model.thrust_path.thrusters.mixing @ demand, -limit, limit)
-        return np.round(400.0 * command) / 400.0  # PWM = 1500 us + 400 us c (vehicle file)
+        command = self.allocation.command(demand)
+        whole = np.round(400.0 * command) / 400.0  # PWM = 1500 us + 400 us c (vehicle file)
+        return np.where(self.model.vehicle.angles, np.round(command, 4), whole)
 
     def _stamp(self, t: float) -> float:
         """Time at which the log puts a command that is given at t.

@@ -1,0 +1,58 @@
+"""Rudders and fins that lift less than they should."""
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rovsim.dynamics.body import Body
+from rovsim.dynamics.effects.base import Coefficients, Effect, Parameter
+from rovsim.dynamics.effects.parameters import Signature
+
+if TYPE_CHECKING:
+    from rovsim.dynamics.vehicle import Vehicle
+
+
+def _gain(name: str) -> Parameter:
+    return Parameter(name, "1", rf"g_\text{{{name}}}", default=1.0, scale=0.1)
+
+
+class FinEffectiveness(Coefficients):
+    """Control surfaces lift more or less than the vehicle file says.
+
+    A parameter for each surface of the vehicle, by its name, and one for all.
+    """
+
+    id = "fin_effectiveness"
+    rank = 1
+    through = "surfaces"
+    equation = r"L \to g\,g_i\,L"
+    neglects = "a change of its drag, of its stall and of its zero"
+    source = "definition"
+    cause = (
+        "A fin is bent, fouled or of another size, stands in the hull's wake, or its horn slips."
+    )
+    revealed_by = (
+        "Step one surface at a time at two speeds: lift of a fin grows with the square of the "
+        "speed and turns with the angle, lift of the hull needs no command."
+    )
+    signature = Signature({"all": 0.6}, "yaw", "yaw rate")
+    parameters = (_gain("all"),)
+
+    @classmethod
+    def on(cls, vehicle: "Vehicle") -> type[Effect]:
+        """Its surfaces by name."""
+        return _of(tuple(one.name for one in vehicle.surfaces))
+
+    def enter(self, body: Body) -> None:
+        """Scale the lift of each surface, in the vehicle file's order."""
+        each = np.append(self.values[:-1], np.ones(len(body.lifting)))[: len(body.lifting)]
+        body.lifting = body.lifting * each * self["all"]
+
+
+@cache
+def _of(names: tuple[str, ...]) -> type[FinEffectiveness]:
+    """With a parameter for each of these surfaces."""
+    parameters = (*(_gain(name) for name in names), _gain("all"))
+    own = {"parameters": parameters, "__doc__": FinEffectiveness.__doc__, "__module__": __name__}
+    return type(FinEffectiveness.__name__, (FinEffectiveness,), own)

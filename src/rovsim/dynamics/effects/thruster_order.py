@@ -1,0 +1,66 @@
+"""Outputs that are plugged in wrong."""
+
+from functools import cache
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.dynamics.effects.base import Effect, Parameter, Shaping
+from rovsim.dynamics.effects.parameters import Signature
+
+if TYPE_CHECKING:
+    from rovsim.dynamics.vehicle import Vehicle
+
+
+class ThrusterOrder(Shaping):
+    """Two outputs are swapped: each of two thrusters does what the log says of the other.
+
+    Numbers from 1, in the vehicle file's order; they are tried, not fitted. 0: nothing is swapped.
+    """
+
+    id = "thruster_order"
+    rank = -1  # before a dead band
+    equation = r"c_i \leftrightarrow c_j"
+    neglects = "more than two outputs in another order"
+    source = "definition"
+    cause = "Two cables are swapped, or the log counts the outputs in another order than the file."
+    revealed_by = (
+        "Run one thruster at a time, 1 s each, at rest: the first acceleration says where it sits "
+        "and which way it pushes."
+    )
+    signature = Signature({"first": 5.0, "second": 7.0}, "pitch", "pitch thrust")
+    parameters = tuple(
+        Parameter(name, "1", symbol, low=0.0, scale=1.0, fitted=False)
+        for name, symbol in (("first", "i"), ("second", "j"))
+    )
+    starts = ({"first": 1.0, "second": 2.0},)
+
+    @classmethod
+    def on(cls, vehicle: "Vehicle") -> type[Effect]:
+        """All pairs of its thrusters."""
+        return _among(len(vehicle.thrusters.units))
+
+    def shaped(self, command: Array) -> Array:
+        """Two columns in each other's place."""
+        count = command.shape[1]
+        i, j = (int(k) for k in self.values)
+        if not (0 < i <= count and 0 < j <= count):
+            return command
+        order = np.arange(count)
+        order[[i - 1, j - 1]] = order[[j - 1, i - 1]]
+        return command[:, order]
+
+
+@cache
+def _among(count: int) -> type[ThrusterOrder]:
+    """All pairs of so many thrusters."""
+    pairs = combinations(range(1, count + 1), 2)
+    starts = tuple({"first": float(i), "second": float(j)} for i, j in pairs)
+    own = {
+        "starts": starts or ThrusterOrder.starts,
+        "__doc__": ThrusterOrder.__doc__,
+        "__module__": __name__,
+    }
+    return type(ThrusterOrder.__name__, (ThrusterOrder,), own)

@@ -1,0 +1,30 @@
+"""Which columns of a command log are angles: the vehicle says so."""
+
+from dataclasses import replace
+
+from rovsim.core.errors import BadInput
+from rovsim.dynamics.vehicle import Vehicle
+from rovsim.measurement.campaign import Campaign
+
+
+def mark_angles(campaign: Campaign, vehicle: Vehicle) -> Campaign:
+    """The campaign, its log told which of its columns are angles in rad.
+
+    Columns stand in the vehicle's order, whatever they are called.
+
+    Raises:
+        BadInput: a column called like one of the vehicle's stands in another's place.
+    """
+    log, expected = campaign.commands, vehicle.command_columns
+    if log is None or log.per_axis or not any(vehicle.angles) or len(log.names) != len(expected):
+        return campaign
+    for name, place in zip(log.names, expected, strict=True):
+        if name != place and name in expected:
+            raise BadInput(
+                f"the column '{name}' stands where '{place}' belongs",
+                where=f"{campaign.file}, commands.columns",
+                expected=f"the vehicle's order: {', '.join(expected)}",
+                remedy="Put the columns into that order.",
+            )
+    angles = [name for name, angle in zip(log.names, vehicle.angles, strict=True) if angle]
+    return replace(campaign, commands=log.model_copy(update={"angles": angles}))
