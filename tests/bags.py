@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from rosbags.interfaces import Nodetype
-from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from rovsim.core.rotations import from_matrix
@@ -55,9 +55,11 @@ def _zero(node, of):
     return [_zero(inner, kind) for _ in range(count)]
 
 
-def write_bag(path: Path, topics, storage="SQLITE3") -> Path:
+def write_bag(path: Path, topics, storage="SQLITE3", compression="NONE") -> Path:
     """A bag of topic -> (type, [(arrival s, message), …]); returns its folder."""
-    with Writer(path, version=9, storage_plugin=StoragePlugin[storage]) as writer:
+    bag = Writer(path, version=9, storage_plugin=StoragePlugin[storage])
+    bag.set_compression(CompressionMode[compression], CompressionFormat.ZSTD)
+    with bag as writer:
         for topic, (kind, messages) in topics.items():
             connection = writer.add_connection(topic, kind, typestore=STORE)
             for arrival, content in messages:

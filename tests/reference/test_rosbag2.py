@@ -69,6 +69,15 @@ def test_the_only_topic_of_poses_is_read(tmp_path, storage, kind):
         assert export.notes == ()
 
 
+@pytest.mark.parametrize("storage", ["SQLITE3", "MCAP"])
+@pytest.mark.parametrize("compression", ["MESSAGE", "FILE", "STORAGE"])
+def test_compressed_bags_are_read(tmp_path, storage, compression):
+    if (storage, compression) == ("SQLITE3", "STORAGE"):
+        pytest.skip("sqlite3 has no compression of its own")
+    bag = write_bag(tmp_path / "bag", {BODY: poses(SWIM)}, storage, compression)
+    np.testing.assert_allclose(read_bag(bag, mocap()).position, SWIM.position)
+
+
 def test_a_transform_is_a_pose_and_a_quaternion_of_zeros_is_none(tmp_path):
     kind = "geometry_msgs/msg/TransformStamped"
 

@@ -1,5 +1,6 @@
 """Telemetry logs (.tlog): MAVLink packets, each behind the time at which it was received."""
 
+import re
 import struct
 from collections import defaultdict
 from pathlib import Path
@@ -13,6 +14,7 @@ from rovsim.measurement.recording.ardupilot.series import Log, Series, no_log
 
 # https://mavlink.io/en/guide/serialization.html: marker, lengths around the payload
 MARKERS = {0xFD: 12, 0xFE: 8}
+MARKER = re.compile(rb"[\xfd\xfe]")
 SIGNED, SIGNATURE = 0x01, 13
 WANTED = ["HEARTBEAT", "ATTITUDE", "RAW_IMU", "VFR_HUD", "LOCAL_POSITION_NED", "SYS_STATUS"]
 WANTED += ["EKF_STATUS_REPORT", "SERVO_OUTPUT_RAW", "RC_CHANNELS"]
@@ -54,7 +56,10 @@ def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]
         length = _length(raw, at + 8)
         packet = raw[at + 8 : at + 8 + length]
         if not length or len(packet) < length:
-            at += 1
+            marker = MARKER.search(raw, at + 9)
+            if marker is None:
+                return
+            at = marker.start() - 8
             continue
         if _number(packet) not in numbers:
             # a packet that nobody reads is believed when another one follows it
