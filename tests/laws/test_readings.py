@@ -1,40 +1,53 @@
 """Readings are groups of frames, steps lead from one to the next: nothing of either is lost."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import worlds
 from flown import observed
+from rovsim.diagnosis.observer.observed_run import prepare_run
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.mocap_view import NO_CHANGE
 from rovsim.simulation.drive import Drive
+from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import Camera
 
 STILL = {"bursts_per_minute": 0.0, "outliers_per_minute": 0.0}
 
 
-@given(st.integers(2, 8), st.integers(0, 2**32 - 1))
-def test_a_long_step_moves_a_mass_as_its_parts_do(parts, seed):
+@given(st.lists(st.integers(1, 8), min_size=1, max_size=4), st.integers(0, 2**32 - 1))
+def test_a_long_step_moves_a_mass_as_its_parts_do(counts, seed):
     """Velocity and place after it are those under a force that is steady over each part."""
-    wrench = np.random.default_rng(seed).normal(size=(3 * parts, 6))
-    fine = Drive(wrench, np.zeros((3 * parts, 8)), np.full((3 * parts, 6), np.nan), 1.0)
-    long = fine.joined(parts)
-    v, p = np.zeros(6), np.zeros(6)
-    for k, force in enumerate(wrench):
-        p, v = p + v / parts + 0.5 * force / parts**2, v + force / parts
-        if k % parts == parts - 1:
-            step = k // parts
-            np.testing.assert_allclose(v, long.wrench[step], atol=1e-12)
-            # of a line: half its mean, less a twelfth of what it grows by
-            np.testing.assert_allclose(
-                p, 0.5 * long.wrench[step] - long.ramp[step] / 12.0, atol=1e-12
-            )
-            v, p = np.zeros(6), np.zeros(6)
+    count = np.array(counts)
+    wrench = np.random.default_rng(seed).normal(size=(count.sum(), 6))
+    fine = Drive(wrench, np.zeros((len(wrench), 8)), np.full((len(wrench), 6), np.nan), 1.0)
+    long = fine.joined(count)
+    for step, forces in enumerate(np.split(wrench, np.cumsum(count)[:-1])):
+        v, p = np.zeros(6), np.zeros(6)
+        for force in forces / len(forces):
+            p, v = p + (v + 0.5 * force) / len(forces), v + force
+        np.testing.assert_allclose(v, long.wrench[step], atol=1e-12)
+        # of a line: half its mean, less a twelfth of what it grows by
+        np.testing.assert_allclose(p, 0.5 * long.wrench[step] - long.ramp[step] / 12.0, atol=1e-12)
 
 
-def test_a_drive_over_single_steps_stays_as_it_is():
-    drive = Drive(np.ones((4, 6)), np.zeros((4, 8)), np.full((4, 6), np.nan), 1.0)
-    assert drive.joined(1) is drive
+def test_steps_end_where_bins_end():
+    """Bins of any length; a step is as near to 50 ms as they allow."""
+    time = np.cumsum(np.random.default_rng(3).uniform(0.03, 0.3, 200))
+    still = worlds.motion(worlds.sticks())
+    rows = np.repeat(still.state[:1], len(time), axis=0)
+    bins = replace(
+        still, time=time, eta=rows[:, :7], nu=rows[:, 7:], nu_dot=rows[:, 7:],
+        state_nu=rows[:, 7:], usable=np.ones(len(time), bool), binned=True, end=time[-1] + 0.1,
+    )  # fmt: skip
+    run = prepare_run(bins, bins, ReplaySettings(), built_in())
+    np.testing.assert_allclose(run.edges[run.ends], time, atol=0.005)
+    np.testing.assert_array_equal(np.concatenate([[0], np.cumsum(run.parts)])[run.ends], run.at)
+    assert np.all(np.diff(run.edges) < 0.08)
 
 
 def test_a_reading_is_the_pose_in_the_middle_of_its_frames(tmp_path):

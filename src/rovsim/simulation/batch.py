@@ -52,13 +52,15 @@ class Starts:
 class Correction:
     """Readings that a filter corrects models by.
 
-    `readings` of each model (k, 13): pose, and mean velocity since the reading before; `ends` (k,)
-    steps at which they hold; `gains` (3, 6) of pose, velocity and disturbance per unit of
-    innovation; `decay` (6,) of the disturbance over one step; `by_velocity`: by the velocities,
-    and poses are taken as they are read.
+    `readings` of each model (k, 13): pose, and mean velocity since the reading before; `time`
+    (s+1,) s at which steps begin and end, `ends` (k,) those at which the readings hold; `gains`
+    (3, 6) of pose, velocity and disturbance per unit of innovation; `decay` (s, 6) of the
+    disturbance over each step; `by_velocity`: by the velocities, and poses are taken as they are
+    read.
     """
 
     readings: Sequence[Array]
+    time: Array
     ends: Array
     gains: Array
     decay: Array
@@ -123,9 +125,7 @@ class Batch:
         paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
         return [paths[k * count : (k + 1) * count] for k in range(models)]
 
-    def innovations(
-        self, drives: Sequence[Drive], starts: Starts, h: float, correction: Correction
-    ) -> Array:
+    def innovations(self, drives: Sequence[Drive], starts: Starts, correction: Correction) -> Array:
         """What each model could not foresee (m, n, 6) of the readings, m or m/s, rad or rad/s.
 
         Each start is at reading `first` and goes on over `steps` readings, n in all; a learned
@@ -136,11 +136,12 @@ class Batch:
         out = np.empty((models * count, 6))
         own, row = _distinct(correction.readings)
         starts = replace(starts, state=starts.state * self._free)
-        jobs = starts.jobs(correction.ends[starts.first] * h, stops - np.tile(starts.steps, models))
+        begin = correction.time[correction.ends[starts.first]]
+        jobs = starts.jobs(begin, stops - np.tile(starts.steps, models))
         run_jobs(
-            self.engine.observe, jobs, h, correction.ends, self._constants, _inputs(drives),
-            self._parameters, self._place, np.stack(own), row, correction.gains, correction.decay,
-            correction.by_velocity, out,
+            self.engine.observe, jobs, correction.time, correction.ends, self._constants,
+            _inputs(drives), self._parameters, self._place, np.stack(own), row, correction.gains,
+            correction.decay, correction.by_velocity, out,
         )  # fmt: skip
         return out.reshape(models, count, 6)
 

@@ -55,18 +55,18 @@ class Drive:
         changed = {name: change(getattr(self, name)) for name in names}
         return Drive(duration=self.duration, **changed)
 
-    def joined(self, count: int) -> "Drive":
-        """The same over steps as long as `count` of these: mean, and first moment as a ramp.
+    def joined(self, count: Array) -> "Drive":
+        """The same over steps as long as `count` (s,) of these: mean, and first moment as a ramp.
 
         A force that is held over a long step loses when within it it acted.
         """
-        if count == 1:
-            return self
-        apart = (np.arange(count) + 0.5) / count - 0.5
-        parts = self.wrench.reshape(-1, count, 6)
-        long = self.each(lambda x: x.reshape(len(x) // count, count, x.shape[-1]).mean(axis=1))
+        first, whole = np.cumsum(count) - count, count[:, None]
+        number = np.arange(int(count.sum())) - np.repeat(first, count)
+        apart = (number + 0.5) / np.repeat(count, count) - 0.5
         # a line r c over -1/2 < c < 1/2 has the first moment r / 12
-        return replace(long, ramp=12.0 * np.einsum("j,kji->ki", apart, parts) / count)
+        moment = np.add.reduceat(apart[:, None] * self.wrench, first, axis=0) / whole
+        long = self.each(lambda x: np.add.reduceat(x, first, axis=0) / whole)
+        return replace(long, ramp=12.0 * moment)
 
     def at(self, steps: Array) -> "Drive":
         """What acts in some of the steps (j,)."""
@@ -90,10 +90,12 @@ class Drives:
         commands: the log.
         edges: ends (k+1,) s of the steps, over each of which thrust is steady.
         between: two lines of the log.
-        parts: so many steps are then joined to one.
+        parts: (s,) so many steps are then joined to each one.
     """
 
-    def __init__(self, commands: Commands, edges: Array, between: Between, parts: int = 1) -> None:
+    def __init__(
+        self, commands: Commands, edges: Array, between: Between, parts: Array | None = None
+    ) -> None:
         self._given = commands, edges, between
         self._parts = parts
         self._thrusts: dict[tuple, Thrust] = {}
@@ -114,7 +116,8 @@ class Drives:
             if key not in self._thrusts:
                 _keep(self._thrusts, key, path.over_steps(*self._given))
             drive = Drive.by(model, self._thrusts[key], float(edges[-1] - edges[0]))
-            _keep(self._drives, whole, drive.joined(self._parts))
+            joined = drive if self._parts is None else drive.joined(self._parts)
+            _keep(self._drives, whole, joined)
         return self._drives[whole]
 
 

@@ -22,11 +22,12 @@ def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
     depend on where a model believes the markers to be, so no such belief is favoured by its noise.
     """
     readings, starts = _see(models, run)
+    time = run.edges - run.edges[0]
     seen = Correction(
-        readings, run.ends, tuning.gains, tuning.decay(run.h), by_velocity=run.motion.binned
+        readings, time, run.ends, tuning.gains, tuning.decay(np.diff(time)), run.motion.binned
     )
     drives = run.drives.of(models)
-    e = serve_all(models, run).innovations(drives, starts, run.h, seen)
+    e = serve_all(models, run).innovations(drives, starts, seen)
     reported = np.stack([m.mocap_view.twists(own) for m, own in zip(models, e, strict=True)])
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 

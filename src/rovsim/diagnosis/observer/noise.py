@@ -65,9 +65,9 @@ class Tuning:
         rows = [np.concatenate([np.zeros(3 - len(f.gain)), f.gain]) for f in self.filters]
         return np.ascontiguousarray(np.array(rows).T)
 
-    def decay(self, h: float) -> Array:
-        """What remains of the disturbance (6,) after h s."""
-        return np.array([f.decay for f in self.filters]) ** (h / self.period)
+    def decay(self, h: Array) -> Array:
+        """What remains of the disturbance (s, 6) after each of h (s,) s."""
+        return np.array([f.decay for f in self.filters]) ** (h[:, None] / self.period)
 
     @property
     def variance(self) -> Array:

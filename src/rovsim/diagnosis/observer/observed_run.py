@@ -38,10 +38,10 @@ class ObservedRun:
 
     `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
     velocities were measured; `group` of them, an odd number, make a reading, which holds at step
-    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s; over each of their `parts` the
-    thrust is steady. It starts at the first reading of each of the `spans`, at the state of that
-    sample, and reads up to the last. `between` two lines of the log, commands are
-    held or joined; `wrenches` are those of the one engine that serves all models of a diagnosis.
+    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of `parts` (s,) of one
+    length, over each of which the thrust is steady. It starts at the first reading of each of the
+    `spans`, at the state of that sample, and reads up to the last. `between` two lines of the log,
+    commands are held or joined; `wrenches` are those that the models of a diagnosis may have.
     """
 
     motion: Motion
@@ -51,7 +51,7 @@ class ObservedRun:
     group: int
     ends: Array
     edges: Array
-    parts: int
+    parts: Array
     between: Between
     wrenches: tuple[type[Wrench], ...]
 
@@ -71,8 +71,7 @@ class ObservedRun:
     @cached_property
     def drives(self) -> Drives:
         """What drives models over the steps of the observer."""
-        count = self.parts * (len(self.edges) - 1) + 1
-        fine = np.linspace(self.edges[0], self.edges[-1], count)
+        fine = np.linspace(self.edges[0], self.edges[-1], int(self.parts.sum()) + 1)
         return Drives(self.motion.commands, fine, self.between, self.parts)
 
     @cached_property
@@ -111,15 +110,15 @@ class ObservedRun:
         count = len(self.ends)
         return x[: count * self.group].reshape(count, self.group, -1).mean(axis=1)
 
-    @property
-    def h(self) -> float:
-        """Integration step, s."""
-        return float(self.edges[1] - self.edges[0])
+    @cached_property
+    def instants(self) -> Array:
+        """When each reading (k,) holds, s since the first step."""
+        return self.edges[self.ends] - self.edges[0]
 
     @cached_property
     def period(self) -> float:
         """Mean time between two readings, s."""
-        return float((self.ends[-1] - self.ends[0]) * self.h / (len(self.ends) - 1))
+        return float(np.mean(np.diff(self.instants)))
 
     @property
     def frame_period(self) -> float:
@@ -136,7 +135,7 @@ class ObservedRun:
     @cached_property
     def time(self) -> Array:
         """Instant of each innovation, s since the start of the run."""
-        parts = [self.ends[a + 1 : b + 1] * self.h for a, b in self.spans]
+        parts = [self.instants[a + 1 : b + 1] for a, b in self.spans]
         return np.concatenate([np.empty(0), *parts])
 
     @cached_property
@@ -150,7 +149,7 @@ class ObservedRun:
         """Which innovations count: those after the observer has forgotten its start."""
         kept = np.zeros(len(self.time), bool)
         for (first, last), (a, _) in zip(self.rows, self.spans, strict=True):
-            kept[first:last] = self.time[first:last] > self.ends[a] * self.h + SETTLING
+            kept[first:last] = self.time[first:last] > self.instants[a] + SETTLING
         return kept
 
     def find_lost_commands(self, path: ThrustPath) -> Array:
@@ -203,7 +202,21 @@ def _observe_bins(
     """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
     at = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
     frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
-    return ObservedRun(motion, grid, at, frames, 1, at, grid.edges, 1, between, wrenches)
+    steps, ends = _divide(at, GROUP / grid.h)
+    edges = motion.time[0] + grid.h * steps
+    return ObservedRun(motion, grid, at, frames, 1, ends, edges, np.diff(steps), between, wrenches)
+
+
+def _divide(at: Array, most: float) -> tuple[Array, Array]:
+    """Whole numbers (s+1,) that divide each space between `at` (k,) evenly, and places of `at`.
+
+    Into as many spaces as come closest to `most` each, which may be 1.
+    """
+    count = np.maximum(1, np.round(np.diff(at) / most)).astype(int)
+    ends = np.concatenate([[0], np.cumsum(count)])
+    number = np.arange(ends[-1]) - np.repeat(ends[:-1], count)
+    within = number * np.repeat(np.diff(at), count) // np.repeat(count, count)
+    return np.append(np.repeat(at[:-1], count) + within, at[-1]), ends
 
 
 def _observe_samples(
@@ -223,7 +236,7 @@ def _observe_samples(
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
     return ObservedRun(
         motion, grid, np.arange(count) * grid.stride, frames, group,
-        np.arange(readings) * steps, edges, parts, between, wrenches,
+        np.arange(readings) * steps, edges, np.full(len(edges) - 1, parts), between, wrenches,
     )  # fmt: skip
 
 

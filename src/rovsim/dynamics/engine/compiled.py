@@ -116,9 +116,12 @@ def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
 
 
 @kept
-def observe(jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out):
+def observe(
+    jobs, time, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
+):
     observer.observe(
-        extra, jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
+        extra, jobs, time, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity,
+        out,
     )
 '''
 IMPORTS = """\

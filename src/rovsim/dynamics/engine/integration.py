@@ -47,13 +47,17 @@ def renormalised(x):
 
 @inline_anew
 def runge_kutta(extra, t, x, h, body, p, step, correction, ramp, site):
-    """One classical Runge-Kutta 4 step; `ramp` is what the correction grows by over the step."""
+    """One classical Runge-Kutta 4 step, and the mean velocity over it (Nystroem's formula).
+
+    `ramp` is what the correction grows by over the step.
+    """
     k1 = slope(extra, t, x, body, p, step, add6(correction, -0.5, ramp), site)
     k2 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)
     k3 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k2), body, p, step, correction, site)
     k4 = slope(extra, t + h, moved(x, h, k3), body, p, step, add6(correction, 0.5, ramp), site)
+    mean = add6(add6(add6(x.nu, h / 6.0, k1.nu), h / 6.0, k2.nu), h / 6.0, k3.nu)
     x = moved(moved(x, h / 6.0, k1), h / 3.0, k2)
-    return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4))
+    return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4)), mean
 
 
 @inline_internal
@@ -163,7 +167,7 @@ def stepped(extra, t, x, memory, h, body, own, step, data, place, features, a_re
     if data is not None:
         a_learned = learned(extra, t, x, body, own, step, push, data, place, features, a_res)
         push = add6(push, 1.0, a_learned)
-    after = runge_kutta(extra, t, x, h, body, own, step, push, ZERO6, place)
+    after, _ = runge_kutta(extra, t, x, h, body, own, step, push, ZERO6, place)
     if body.forgets != 0.0:
         memory = memory_after(memory, x, after, h, body)
     return after, memory

@@ -79,35 +79,36 @@ def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
 
 @entry
 def observe(
-    extra, jobs, h, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
+    extra, jobs, time, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
 ):
     """Innovations of the jobs: each from reading `first`, over the `steps` readings that follow.
 
-    `ends` (k,) steps at which the readings (r, k, 13) end, `row` (m,) which of them belong to each
-    parameter set; `gains` (3, 6) of pose, velocity and disturbance; `decay` (6,) of the
-    disturbance over one step; `out` (.., 6) innovations, m or m/s and rad or rad/s.
+    `time` (s+1,) s at which the steps begin and end; `ends` (k,) steps at which the readings
+    (r, k, 13) end, `row` (m,) which of them belong to each parameter set; `gains` (3, 6) of pose,
+    velocity and disturbance; `decay` (s, 6) of the disturbance over each step; `out` (.., 6)
+    innovations, m or m/s and rad or rad/s.
     """
-    place, fade = site_of(site), vector6(decay)
+    place = site_of(site)
     for job in range(jobs.first.size):
-        m, first, at, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
+        m, first, at = jobs.member[job], jobs.first[job], jobs.out[job]
         x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), p[m]
         gain_pose, gain_nu = vector6(gains[0]), each6(body.free, vector6(gains[1]))
         gain_a = each6(body.free, vector6(gains[2]))
         a, n = ZERO6, ends[first]
         memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
         for k in range(first + 1, first + 1 + jobs.steps[job]):
-            mean, count = ZERO6, ends[k] - n
+            mean, lasts = ZERO6, time[ends[k]] - time[n]
             while n < ends[k]:
-                t, before, push = start + (n - ends[first]) * h, x, a
+                t, h, before, push = time[n], time[n + 1] - time[n], x, a
                 if body.forgets != 0.0:
                     push = add6(a, 1.0, push_over_step(x, memory, h, body))
                 step = step_of(inputs, inputs.row[m], n)
                 ramp = ramp_of(inputs, inputs.row[m], n, body)
-                x = runge_kutta(extra, t, x, h, body, own, step, push, ramp, place)
+                x, average = runge_kutta(extra, t, x, h, body, own, step, push, ramp, place)
                 if body.forgets != 0.0:
                     memory = memory_after(memory, before, x, h, body)
-                mean = add6(add6(mean, 0.5 / count, before.nu), 0.5 / count, x.nu)
-                a, n = each6(fade, a), n + 1
+                mean = add6(mean, h / lasts, average)
+                a, n = each6(vector6(decay[n]), a), n + 1
             y = readings[row[m], k]
             e = velocity_error(mean, y) if by_velocity else pose_error(x, y)
             x = renormalised(corrected(x, y, e, gain_pose, gain_nu, by_velocity))
