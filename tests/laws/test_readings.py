@@ -12,7 +12,7 @@ from flown import observed
 from rovsim.diagnosis.observer.observed_run import prepare_run
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.mocap_view import NO_CHANGE
-from rovsim.simulation.drive import Drive
+from rovsim.simulation.drive import Actuation
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import Camera
 
@@ -24,15 +24,17 @@ def test_a_long_step_moves_a_mass_as_its_parts_do(counts, seed):
     """Velocity and place after it are those under a force that is steady over each part."""
     count = np.array(counts)
     wrench = np.random.default_rng(seed).normal(size=(count.sum(), 6))
-    fine = Drive(wrench, np.zeros((len(wrench), 8)), np.full((len(wrench), 6), np.nan), 1.0)
-    long = fine.joined(count)
+    none = np.zeros((len(wrench), 0))
+    mean, growth = Actuation(wrench, none, none, none).joined(count)
     for step, forces in enumerate(np.split(wrench, np.cumsum(count)[:-1])):
         v, p = np.zeros(6), np.zeros(6)
         for force in forces / len(forces):
             p, v = p + (v + 0.5 * force) / len(forces), v + force
-        np.testing.assert_allclose(v, long.wrench[step], atol=1e-12)
+        np.testing.assert_allclose(v, mean.wrench[step], atol=1e-12)
         # of a line: half its mean, less a twelfth of what it grows by
-        np.testing.assert_allclose(p, 0.5 * long.wrench[step] - long.ramp[step] / 12.0, atol=1e-12)
+        np.testing.assert_allclose(
+            p, 0.5 * mean.wrench[step] - growth.wrench[step] / 12.0, atol=1e-12
+        )
 
 
 def test_steps_end_where_bins_end():

@@ -101,5 +101,5 @@ def test_what_cannot_be_stepped_is_refused():
     with pytest.raises(BadInput, match="before they are given"):
         Stepper(model(InputDelay(delay=-0.1)))
     worlds = [model(), learnt(model())]
-    with pytest.raises(BadInput, match="same wrench effects"):
+    with pytest.raises(BadInput, match="same residual"):
         rollouts(worlds, at_rest()[None], sticks(), 0.01, "thruster")

@@ -187,13 +187,22 @@ class ThrustPath:
         none, still = np.full((steps, 6), np.nan), np.zeros((steps, 6))
         if lines.kind == "wrench":
             return Thrust(np.zeros((steps, self.thrusters.count)), mean(at_middle), none)
-        command = self.thruster_commands(at_middle, lines.kind)
-        voltage = _voltage(lines, middle)
-        static = mean(self.static(command, middle - start, duration, voltage))
+        if between == "held" and self._is_steady(lines):  # once for each line, not each piece
+            command = self.thruster_commands(value, lines.kind)
+            once = self.static(command, np.zeros(len(command)), duration)
+            static = mean(once[_latest(arrival, middle)])
+        else:
+            command = self.thruster_commands(at_middle, lines.kind)
+            static = mean(self.static(command, middle - start, duration, _voltage(lines, middle)))
         demand = mean(at_middle) if lines.kind == "demand" else none
         azimuth, angle = self.steering(at_middle, lines.kind)
         heading = np.stack([mean(np.cos(azimuth)), mean(np.sin(azimuth))])
         return Thrust(static, still, demand, heading, mean(angle))
+
+    def _is_steady(self, lines: Commands) -> bool:
+        """Whether the same command makes the same static force at all times."""
+        timed = "voltage" in lines.auxiliary or any(not s.steady for s in self.strengths)
+        return len(lines.time) > 0 and not timed
 
 
 def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
@@ -201,8 +210,13 @@ def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
     if not len(time):
         return np.zeros((len(at), value.shape[1]))
     if between == "held":
-        return value[np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)]
+        return value[_latest(time, at)]
     return np.stack([np.interp(at, time, column) for column in value.T], axis=1)
+
+
+def _latest(time: Array, at: Array) -> Array:
+    """The line (m,) that holds at each instant; before the first one, that."""
+    return np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)
 
 
 def _voltage(lines: Commands, at: Array) -> Array | None:

@@ -195,9 +195,8 @@ def _refuse_unlike(models: Sequence[Model]) -> None:
 def _slots(models: Sequence[Model], candidates: Sequence[type[Wrench]]) -> list[type[Wrench]]:
     """Wrench effects of an engine that serves the models, some perhaps twice.
 
-    None where none acts; otherwise all that are known, at no strength where a model lacks them:
-    an engine takes seconds to compile, and a step through all of them takes twice as long as
-    through none.
+    None where none acts; otherwise all that are known: an engine takes seconds to compile, and a
+    step hardly longer for those that a model lacks.
     """
     most = Counter(candidates)
     for model in models:
@@ -208,14 +207,15 @@ def _slots(models: Sequence[Model], candidates: Sequence[type[Wrench]]) -> list[
 
 
 def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
-    """Parameters of every slot; those the model does not use have their defaults."""
+    """For every slot whether the model has such an effect, 1 or 0, and its parameters."""
     own = list(model.wrenches)
     parts = [np.zeros(0)]
     for cls in slots:
         used = next((w for w in own if type(w) is cls), None)
         if used is not None:
             own.remove(used)
-        parts.append(np.array([p.default for p in cls.parameters]) if used is None else used.values)
+        values = np.zeros(len(cls.parameters)) if used is None else used.values
+        parts += [np.array([float(used is not None)]), values]
     return np.concatenate(parts)
 
 

@@ -1,7 +1,7 @@
 """What drives a model over integration steps, or at instants."""
 
 from dataclasses import dataclass, field, replace
-from typing import Callable, Sequence, TypeVar
+from typing import Callable, NamedTuple, Sequence, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -15,6 +15,51 @@ from rovsim.simulation.step_grid import StepGrid
 
 T = TypeVar("T")
 KEPT = 64  # drives of a run: what one step of a fit needs, some 0.2 MB each a minute
+
+
+class Actuation(NamedTuple):
+    """What commands make of thrusters over k steps, whatever body they push.
+
+    `wrench` (k, 6) N and N m that commands are themselves; `force` (k, n) N of each component of
+    a thruster; `demand` (k, 6) in [-1, 1], NaN where none was logged; `angle` (k, s) rad of each
+    control surface.
+    """
+
+    wrench: Array
+    force: Array
+    demand: Array
+    angle: Array
+
+    @staticmethod
+    def by(model: Model, thrust: Thrust) -> "Actuation":
+        """Of a thrust."""
+        force = model.thrust_path.thrusters.resolved(thrust.force, thrust.heading)
+        angle = thrust.angle
+        if angle is None:
+            angle = np.zeros((len(force), model.thrust_path.surfaces))
+        return Actuation(thrust.wrench, force, thrust.demand, angle)
+
+    def push(self, model: Model) -> Array:
+        """Wrench (k, 6) on a model, its autopilots' share included; linear in all that acts."""
+        return np.asarray(self.wrench + model.actuated(self.force, self.demand))
+
+    def drive(self, model: Model, duration: float) -> "Drive":
+        """What drives a model, in a run of that many s."""
+        return Drive(self.push(model), self.force, self.demand, duration, angle=self.angle)
+
+    def joined(self, count: Array) -> tuple["Actuation", "Actuation"]:
+        """Means over steps as long as `count` (s,) of these, and what each grows by over them.
+
+        A force that is held over a long step loses when within it it acted; a line with the same
+        first moment does not.
+        """
+        first, whole = np.cumsum(count) - count, count[:, None]
+        number = np.arange(int(count.sum())) - np.repeat(first, count)
+        # a line r c over -1/2 < c < 1/2 has the first moment r / 12
+        apart = 12.0 * ((number + 0.5) / np.repeat(count, count) - 0.5)[:, None]
+        mean = [np.add.reduceat(x, first, axis=0) / whole for x in self]
+        growth = [np.add.reduceat(apart * x, first, axis=0) / whole for x in self]
+        return Actuation(*mean), Actuation(*growth)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,31 +87,13 @@ class Drive:
     @staticmethod
     def by(model: Model, thrust: Thrust, duration: float) -> "Drive":
         """What a thrust does to a model."""
-        force = model.thrust_path.thrusters.resolved(thrust.force, thrust.heading)
-        wrench = thrust.wrench + model.actuated(force, thrust.demand)
-        angle = np.zeros((len(force), model.thrust_path.surfaces))
-        if thrust.angle is not None:
-            angle = thrust.angle
-        return Drive(wrench, force, thrust.demand, duration, angle=angle)
+        return Actuation.by(model, thrust).drive(model, duration)
 
     def each(self, change: Callable[[Array], Array]) -> "Drive":
         """Wrench, forces, demand and angles, all changed alike."""
         names = ("wrench", "force", "demand", "angle")
         changed = {name: change(getattr(self, name)) for name in names}
         return Drive(duration=self.duration, **changed)
-
-    def joined(self, count: Array) -> "Drive":
-        """The same over steps as long as `count` (s,) of these: mean, and first moment as a ramp.
-
-        A force that is held over a long step loses when within it it acted.
-        """
-        first, whole = np.cumsum(count) - count, count[:, None]
-        number = np.arange(int(count.sum())) - np.repeat(first, count)
-        apart = (number + 0.5) / np.repeat(count, count) - 0.5
-        # a line r c over -1/2 < c < 1/2 has the first moment r / 12
-        moment = np.add.reduceat(apart[:, None] * self.wrench, first, axis=0) / whole
-        long = self.each(lambda x: np.add.reduceat(x, first, axis=0) / whole)
-        return replace(long, ramp=12.0 * moment)
 
     def at(self, steps: Array) -> "Drive":
         """What acts in some of the steps (j,)."""
@@ -98,7 +125,7 @@ class Drives:
     ) -> None:
         self._given = commands, edges, between
         self._parts = parts
-        self._thrusts: dict[tuple, Thrust] = {}
+        self._actuations: dict[tuple, tuple[Actuation, ...]] = {}
         self._drives: dict[tuple, Drive] = {}
 
     def of(self, models: Sequence[Model]) -> list[Drive]:
@@ -106,19 +133,25 @@ class Drives:
         return [self._of(model) for model in models]
 
     def _of(self, model: Model) -> Drive:
-        path = model.thrust_path
+        path, edges = model.thrust_path, self._given[1]
         key = (id(model.vehicle), *path.key)
         loops = [loop.values.tobytes() for loop in path.autopilots]
         inertia = model.body.M.tobytes() if loops else b""
         whole = (*key, *loops, inertia, model.body.B.tobytes())
-        edges = self._given[1]
         if whole not in self._drives:
-            if key not in self._thrusts:
-                _keep(self._thrusts, key, path.over_steps(*self._given))
-            drive = Drive.by(model, self._thrusts[key], float(edges[-1] - edges[0]))
-            joined = drive if self._parts is None else drive.joined(self._parts)
-            _keep(self._drives, whole, joined)
+            if key not in self._actuations:
+                _keep(self._actuations, key, self._actuate(model))
+            mean, *growth = self._actuations[key]
+            drive = mean.drive(model, float(edges[-1] - edges[0]))
+            if growth:
+                drive = replace(drive, ramp=growth[0].push(model))
+            _keep(self._drives, whole, drive)
         return self._drives[whole]
+
+    def _actuate(self, model: Model) -> tuple[Actuation, ...]:
+        """Over the steps; where they are joined, also what each grows by."""
+        found = Actuation.by(model, model.thrust_path.over_steps(*self._given))
+        return (found,) if self._parts is None else found.joined(self._parts)
 
 
 def _keep(kept: dict[tuple, T], key: tuple, value: T) -> None:

@@ -231,7 +231,9 @@ class Curve(Effect):
 
 
 class Strength(Effect):
-    """Changes the static thruster force after the force curve."""
+    """Changes the static thruster force after the force curve; `steady`: the same at all times."""
+
+    steady = False
 
     through = "thrusters"
 

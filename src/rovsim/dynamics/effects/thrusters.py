@@ -36,6 +36,7 @@ class ThrusterDeadband(Shaping):
 class ThrusterGain(Strength):
     """Thrusters stronger or weaker than the published curve; negative means reversed wiring."""
 
+    steady = True
     id = "thruster_gain"
     equation = r"F_i \to g\,g_i\,F_i"
     neglects = "a change of the curve's shape"
@@ -65,6 +66,7 @@ class ThrusterGain(Strength):
 class ThrustAsymmetry(Strength):
     """Propellers push less backwards than forwards."""
 
+    steady = True
     id = "thrust_asymmetry"
     rank = 1
     equation = r"F \to a F \text{ where } F < 0"

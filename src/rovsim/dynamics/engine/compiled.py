@@ -90,7 +90,7 @@ Written by rovsim.dynamics.engine.compiled, so that Numba can keep what it compi
 
 @inline_anew
 def extra(at, p):
-    """Wrench of these effects, each with its part of the parameters p (k,)."""
+    """Wrench of these effects; each has in p (k,) whether it acts, then its parameters."""
     tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 {pushes}    return tau
 
@@ -134,23 +134,24 @@ KERNEL = """
 {id}_parameters = {name}.named_parameters()
 """
 PUSH = """\
-    own = {id}_parameters(
+    if p[{acts}] != 0.0:
+        own = {id}_parameters(
 {values}
-    )
-    tau = add6(tau, 1.0, {id}_wrench(at, own))
+        )
+        tau = add6(tau, 1.0, {id}_wrench(at, own))
 """
-COLUMNS, MARGIN = 92, " " * 8  # of the parameters in `PUSH`
+COLUMNS, MARGIN = 88, " " * 12  # of the parameters in `PUSH`
 
 
 def _engine_text(wrenches: Sequence[Any]) -> str:
     """Source of the module of an engine; an effect may act in it more than once."""
     known = list(dict.fromkeys(wrenches))
-    pushes, first = "", 0
+    pushes, acts = "", 0
     for wrench in wrenches:
-        after = first + len(wrench.parameters)
-        values = textwrap.fill(", ".join(f"p[{k}]" for k in range(first, after)), COLUMNS)
-        pushes += PUSH.format(id=wrench.id, values=textwrap.indent(values, MARGIN))
-        first = after
+        after = acts + 1 + len(wrench.parameters)
+        values = textwrap.fill(", ".join(f"p[{k}]" for k in range(acts + 1, after)), COLUMNS)
+        pushes += PUSH.format(id=wrench.id, acts=acts, values=textwrap.indent(values, MARGIN))
+        acts = after
     imports = {f"from {w.__module__} import {w.__name__}{_alias(w, known)}\n" for w in known}
     return ENGINE.format(
         names=", ".join(wrench.id for wrench in known) or "no further effects",
