@@ -59,7 +59,7 @@ def arrange(bodies, states, steps):
         np.zeros(count, np.int64), np.ones(steps),
     )  # fmt: skip
     return Jobs(
-        np.tile(states, (count, 1)), np.zeros(jobs), whole, whole + steps, member,
+        np.tile(states, (count, 1)), whole, whole + steps, member,
         np.arange(jobs) * steps,
     ), inputs  # fmt: skip
 
@@ -69,8 +69,8 @@ def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
     jobs, inputs = arrange(bodies, states, steps)
     out = np.empty((len(jobs.first) * steps, 13))
     how(
-        engine([]).integrate, jobs, h, 1, packed(bodies), inputs, np.empty((len(bodies), 0)),
-        None, Place(np.full((3, 2), np.nan), np.ones(3)), out,
+        engine([]).integrate, jobs, h * np.arange(steps + 1), 1, packed(bodies), inputs,
+        np.empty((len(bodies), 0)), None, Place(np.full((3, 2), np.nan), np.ones(3)), out,
     )  # fmt: skip
     return out.reshape(-1, steps, 13)
 

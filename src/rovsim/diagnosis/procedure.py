@@ -13,7 +13,7 @@ replay fit      where there is some: values that replay best, rather than forese
 test runs       opened once, for the errors that are reported
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Callable, Sequence
 
 import numpy as np
@@ -141,6 +141,8 @@ def _diagnose(
         # neither is complete, so that what a likelihood takes for noise is physics
         better = gate.prefers(found.selection, joint.selection)
         found = found if better or (better is None and found.score >= joint.score) else joint
+    if found.structures and found.fit.hypothesis.terms:
+        found = replace(found, fit=fit_to_replays(found.fit, found.bank))
     rivals = found.selection.named_rivals
     wider, scale = include_scale(found.fit, usable.runs)
     selected = rank_selected(base, wider, rivals, usable.runs)
@@ -176,6 +178,7 @@ class _Settled:
 
     selection: Selection
     fit: Fit
+    bank: FilterBank
     score: float
     structures: Sequence[Structure]
 
@@ -193,9 +196,7 @@ def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
     score = selection.workspace.score(found)
     if not whole and not structures:
         structures = [REFUSED]
-    if structures and found.hypothesis.terms:
-        found = fit_to_replays(found, bank)
-    return _Settled(selection, found, score, structures)
+    return _Settled(selection, found, bank, score, structures)
 
 
 def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:

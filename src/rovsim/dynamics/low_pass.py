@@ -31,13 +31,13 @@ class LowPass:
     time_constants: tuple[float, ...] = ()
 
     def smooth(
-        self, x: Array, dt: float, first: Array | None = None, straight: bool = False
+        self, x: Array, dt: float | Array, first: Array | None = None, straight: bool = False
     ) -> Array:
         """Channels (..., n, c), dt s apart, as they leave the last stage.
 
         Args:
             x: what enters.
-            dt: s between two samples.
+            dt: s between two samples, one or (n-1,).
             first: (stages, ..., c) that left each stage at the first sample; None: it stood still.
             straight: the software saw more samples, on straight lines between these.
         """
@@ -76,24 +76,40 @@ class LowPass:
         return np.stack(found[::-1])
 
 
-def _weigh_samples(step: float) -> tuple[float, float, float]:
+def _weigh_samples(step: float | Array) -> tuple[Array, Array, Array]:
     """Weights of the output before, and of the inputs before and now; `step` in time constants."""
-    kept = float(np.exp(-step))
-    return kept, 0.0, 1.0 - kept
+    kept = np.exp(-np.asarray(step))
+    return kept, np.zeros_like(kept), 1.0 - kept
 
 
-def _weigh_lines(step: float) -> tuple[float, float, float]:
+def _weigh_lines(step: float | Array) -> tuple[Array, Array, Array]:
     """The same where the input goes straight from sample to sample, and is seen all the time."""
-    kept = float(np.exp(-step))
+    kept = np.exp(-np.asarray(step))
     mean = (1.0 - kept) / step
     return kept, mean - kept, 1.0 - mean
 
 
-def _lag(x: Array, first: Array, kept: float, before: float, now: float) -> Array:
-    """y_k = kept y_{k-1} + before x_{k-1} + now x_k, from y_0 = first (..., c) on."""
+def _lag(x: Array, first: Array, kept: Array, before: Array, now: Array) -> Array:
+    """y_k = kept y_{k-1} + before x_{k-1} + now x_k, from y_0 = first (..., c) on.
+
+    Weights of all samples alike, or of each but the first (n-1,).
+    """
+    if kept.ndim:
+        return _lag_unevenly(x, first, kept, before, now)
     begin = (kept * first + before * x[..., 0, :])[..., None, :]
-    y, _ = scipy.signal.lfilter([now, before], [1.0, -kept], x[..., 1:, :], axis=-2, zi=begin)
+    b, a = np.stack([now, before]), np.stack([np.ones_like(kept), -kept])
+    y, _ = scipy.signal.lfilter(b, a, x[..., 1:, :], axis=-2, zi=begin)
     return np.concatenate([first[..., None, :], y], axis=-2)
+
+
+def _lag_unevenly(x: Array, first: Array, kept: Array, before: Array, now: Array) -> Array:
+    y = np.empty_like(x)
+    y[..., 0, :] = first
+    for k in range(len(kept)):
+        y[..., k + 1, :] = (
+            kept[k] * y[..., k, :] + before[k] * x[..., k, :] + now[k] * x[..., k + 1, :]
+        )
+    return y
 
 
 def _delayed(y: Array) -> Array:

@@ -78,11 +78,11 @@ class MocapView:
         return np.concatenate([self.poses(state[..., :7]), self.twists(state[..., 7:])], axis=-1)
 
     def report(
-        self, state: Array, dt: float, first: Array | None = None, straight: bool = False
+        self, state: Array, dt: float | Array, first: Array | None = None, straight: bool = False
     ) -> Array:
         """States (..., n, 13) of a true motion, dt s apart, as they are reported.
 
-        `first` (stages, ..., 14) and `straight`: see `LowPass.smooth`.
+        `dt` (n-1,), `first` (stages, ..., 14) and `straight`: see `LowPass.smooth`.
         """
         seen = self.states(state)
         if not self.low_pass.time_constants:

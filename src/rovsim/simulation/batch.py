@@ -38,13 +38,12 @@ class Starts:
     steps: Array
     memory: Array = field(default_factory=lambda: NO_MEMORY)
 
-    def jobs(self, time: Array, out: Array) -> Jobs:
-        """What kernels work off: starts at `time` (w,) s, whose output begins at rows `out`."""
+    def jobs(self, out: Array) -> Jobs:
+        """What kernels work off; the output of each begins at the rows `out`."""
         models, count = self.state.shape[:2]
         return Jobs(
-            self.state.reshape(-1, 13), np.tile(time, models), np.tile(self.first, models),
-            np.tile(self.steps, models), np.repeat(np.arange(models), count), out,
-            self.memory.reshape(-1, 6),
+            self.state.reshape(-1, 13), np.tile(self.first, models), np.tile(self.steps, models),
+            np.repeat(np.arange(models), count), out, self.memory.reshape(-1, 6),
         )  # fmt: skip
 
 
@@ -102,14 +101,14 @@ class Batch:
         self._free = np.concatenate([np.ones(7), models[0].body.free])
 
     def trajectories(
-        self, drives: Sequence[Drive], starts: Starts, h: float, stride: int = 1
+        self, drives: Sequence[Drive], starts: Starts, time: Array, stride: int = 1
     ) -> list[list[Array]]:
         """States (steps / stride + 1, 13) of each model from each start, the given one first.
 
         Args:
             drives: one for each model.
             starts: where to begin; `steps` are multiples of `stride`.
-            h: integration step, s.
+            time: (k+1,) s at which the integration steps begin and end.
             stride: steps from one returned state to the next.
         """
         models, count = starts.state.shape[:2]
@@ -119,8 +118,8 @@ class Batch:
         starts = replace(starts, state=starts.state * self._free)
         out[stops - rows] = starts.state.reshape(-1, 13)
         run_jobs(
-            self.engine.integrate, starts.jobs(starts.first * h, stops - rows + 1), h, stride,
-            self._constants, _inputs(drives), self._parameters, self._residual, self._place, out,
+            self.engine.integrate, starts.jobs(stops - rows + 1), time, stride, self._constants,
+            _inputs(drives), self._parameters, self._residual, self._place, out,
         )  # fmt: skip
         paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
         return [paths[k * count : (k + 1) * count] for k in range(models)]
@@ -136,8 +135,7 @@ class Batch:
         out = np.empty((models * count, 6))
         own, row = _distinct(correction.readings)
         starts = replace(starts, state=starts.state * self._free)
-        begin = correction.time[correction.ends[starts.first]]
-        jobs = starts.jobs(begin, stops - np.tile(starts.steps, models))
+        jobs = starts.jobs(stops - np.tile(starts.steps, models))
         run_jobs(
             self.engine.observe, jobs, correction.time, correction.ends, self._constants,
             _inputs(drives), self._parameters, self._place, np.stack(own), row, correction.gains,

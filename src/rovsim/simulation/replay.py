@@ -79,7 +79,9 @@ def simulate(
     memory = remembered_at([model], [motion], grid.edges, first)
     drive = drive_by_log(model, motion, grid, settings)
     batch = Batch([model], motion.site)
-    return batch.trajectories([drive], Starts(state, first, steps, memory), grid.h, grid.stride)[0]
+    return batch.trajectories([drive], Starts(state, first, steps, memory), grid.time, grid.stride)[
+        0
+    ]
 
 
 def _predict_samples(

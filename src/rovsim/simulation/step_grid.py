@@ -20,6 +20,11 @@ class StepGrid:
         """Step length in s."""
         return float(self.edges[1] - self.edges[0])
 
+    @property
+    def time(self) -> Array:
+        """The same (k+1,), s since the first."""
+        return self.edges - self.edges[0]
+
     @staticmethod
     def over(motion: Motion, step: float) -> "StepGrid":
         """Steps no longer than `step` s over a run; those of a sampled run meet its samples."""

@@ -167,4 +167,4 @@ def rollouts(
     )  # fmt: skip
     batch = Batch(models, Site.unknown())
     drives = Drives(lines, edges, "held").of(models)
-    return np.array(batch.trajectories(drives, starts, dt))
+    return np.array(batch.trajectories(drives, starts, edges))

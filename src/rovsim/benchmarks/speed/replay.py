@@ -24,10 +24,11 @@ def steps_per_second(model: Model, count: int, steps: int) -> float:
     force = np.random.default_rng(0).uniform(-10, 10, (steps, len(model.body.directions)))
     thrust = Thrust(force, np.zeros((steps, 6)), np.full((steps, 6), np.nan))
     drive, batch = Drive.by(model, thrust, steps * STEP), Batch([model], Site.unknown())
+    time = STEP * np.arange(steps + 1)
     state = np.zeros((1, count, 13))
     state[..., 3] = 1.0
     starts = Starts(state, np.zeros(count, np.int64), np.full(count, steps))
-    return count * steps / best(lambda: batch.trajectories([drive], starts, STEP))
+    return count * steps / best(lambda: batch.trajectories([drive], starts, time))
 
 
 def best(call: Callable[[], Any]) -> float:

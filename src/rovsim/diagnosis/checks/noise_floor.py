@@ -64,13 +64,12 @@ class _PerfectModel:
 
     def _push(self, run: ObservedRun) -> Array:
         """Wrench (draws, k, 6) of the disturbance over the integration steps."""
-        fade = np.exp(-run.grid.h / self.noise.memory)
-        kicks = self.random.normal(size=(len(run.grid.edges) - 1, DRAWS, 6)) * np.sqrt(
-            1.0 - fade**2
-        )
+        fade = np.exp(-np.diff(run.grid)[:, None] / self.noise.memory)
+        kicks = self.random.normal(size=(len(fade), DRAWS, 6))
+        kicks *= np.sqrt(1.0 - fade**2)[:, None]
         a, x = np.empty_like(kicks), self.random.normal(size=(DRAWS, 6))
         for k, kick in enumerate(kicks):
-            x = fade * x + kick
+            x = fade[k] * x + kick
             a[k] = x
         return (a * self.noise.level).swapaxes(0, 1) @ self.model.body.M.T
 

@@ -48,10 +48,12 @@ def estimate_damping(model: Model, runs: Sequence[ObservedRun]) -> Array:
 
 def _accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:
     """Accelerations (s, k, 6) at states (s, k, 13) of some readings (k,)."""
-    at, edges, batch = run.at[index], run.grid.edges, serve_all([model], run)
+    at, edges, batch = run.at[index], run.grid, serve_all([model], run)
     drive = run.replay_drives.of([model])[0].at(np.minimum(at, len(edges) - 2))
     memory = recall([model], run, edges, at).reshape(-1, 6)
-    return np.stack([batch.accelerations(drive, at * run.grid.h, own, memory) for own in states])
+    return np.stack(
+        [batch.accelerations(drive, edges[at] - edges[0], own, memory) for own in states]
+    )
 
 
 def serve_all(models: Sequence[Model], run: ObservedRun) -> Batch:

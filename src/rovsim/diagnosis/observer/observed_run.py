@@ -34,7 +34,8 @@ BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are indep
 class ObservedRun:
     """One run, ready to be observed.
 
-    `grid` steps of a replay, `at` (n,) those at which the samples or bins begin.
+    Replays of it take steps between `grid` (k+1,) s; `at` (n,) those at which the samples or bins
+    begin.
 
     `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
     velocities were measured; `group` of them, an odd number, make a reading, which holds at step
@@ -45,7 +46,7 @@ class ObservedRun:
     """
 
     motion: Motion
-    grid: StepGrid
+    grid: Array
     at: Array
     frames: Array
     group: int
@@ -77,7 +78,9 @@ class ObservedRun:
     @cached_property
     def replay_drives(self) -> Drives:
         """What drives models over the steps of a replay."""
-        return Drives(self.motion.commands, self.grid.edges, self.between)
+        if self.motion.binned:
+            return self.drives
+        return Drives(self.motion.commands, self.grid, self.between)
 
     @cached_property
     def sample(self) -> Array:
@@ -200,11 +203,13 @@ def _observe_bins(
     wrenches: tuple[type[Wrench], ...],
 ) -> ObservedRun:  # fmt: skip
     """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
-    at = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
+    begins = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
     frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
-    steps, ends = _divide(at, GROUP / grid.h)
+    steps, ends = _divide(begins, GROUP / grid.h)
     edges = motion.time[0] + grid.h * steps
-    return ObservedRun(motion, grid, at, frames, 1, ends, edges, np.diff(steps), between, wrenches)
+    return ObservedRun(
+        motion, edges, ends, frames, 1, ends, edges, np.diff(steps), between, wrenches
+    )
 
 
 def _divide(at: Array, most: float) -> tuple[Array, Array]:
@@ -235,7 +240,7 @@ def _observe_samples(
     edges = first + h * np.arange((readings - 1) * steps + 1)
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
     return ObservedRun(
-        motion, grid, np.arange(count) * grid.stride, frames, group,
+        motion, grid.edges, np.arange(count) * grid.stride, frames, group,
         np.arange(readings) * steps, edges, np.full(len(edges) - 1, parts), between, wrenches,
     )  # fmt: skip
 

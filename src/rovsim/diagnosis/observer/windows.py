@@ -10,12 +10,12 @@ from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.integrate import cumulative_simpson
 
 from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalize, rms
-from rovsim.measurement.signals.binned import bin_means
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.measured_states import as_true
 from rovsim.simulation.sharpened import stage_outputs
@@ -104,9 +104,16 @@ class Windows:
         if not view.low_pass.time_constants:
             return [view.twists(path[:, 7:]) for path in paths]
         begins = stage_outputs(model, self.run.motion)[1:, self.first, :14]
-        h = self.run.grid.h
-        straight = self.run.motion.binned
-        return [view.report(p, h, begins[:, i], straight)[:, 7:] for i, p in enumerate(paths)]
+        binned, grid = self.run.motion.binned, self.run.grid
+        return [
+            view.report(
+                path,
+                np.diff(grid[first:][: len(path)]) if binned else grid[1] - grid[0],
+                begins[:, i],
+                straight=binned,
+            )[:, 7:]
+            for i, (first, path) in enumerate(zip(self._steps, paths, strict=True))
+        ]
 
     def _simulate(
         self, models: Sequence[Model], begin: Array, pushes: Array | None
@@ -116,10 +123,15 @@ class Windows:
         drives = run.replay_drives.of(models)
         if pushes is not None:
             drives = [drive.pushed(push) for drive, push in zip(drives, pushes, strict=True)]
-        first = np.array([run.at[a] for a, _ in self.spans], np.int64)
-        steps = np.array([run.at[b] - run.at[a] for a, b in self.spans], np.int64)
-        begins = Starts(begin, first, steps, recall(models, run, run.grid.edges, first))
-        return serve_all(models, run).trajectories(drives, begins, run.grid.h)
+        first = self._steps
+        steps = np.array([run.at[b] for _, b in self.spans], np.int64) - first
+        begins = Starts(begin, first, steps, recall(models, run, run.grid, first))
+        return serve_all(models, run).trajectories(drives, begins, run.grid - run.grid[0])
+
+    @property
+    def _steps(self) -> Array:
+        """Integration step (w,) at which each begins."""
+        return np.array([self.run.at[a] for a, _ in self.spans], np.int64)
 
     def _subtract_measured(self, nu: Sequence[Array]) -> Array:
         """Differences (n, 6) of velocities (steps + 1, 6) of each window."""
@@ -133,7 +145,8 @@ class Windows:
     def _at_readings(self, span: tuple[int, int], nu: Array) -> Array:
         """Velocities at the samples, or their means over the bins, of one window."""
         a, b = span
-        at = self.run.at[a : b + 1] - self.run.at[a]
+        first, at = self.run.at[a], self.run.at[a : b + 1]
         if not self.run.motion.binned:
-            return nu[at[1:]]
-        return bin_means(np.arange(len(nu), dtype=float), nu, at)
+            return nu[at[1:] - first]
+        way = cumulative_simpson(nu, x=self.run.grid[first : at[-1] + 1], axis=0, initial=0.0)
+        return np.asarray(np.diff(way[at - first], axis=0) / np.diff(self.run.grid[at])[:, None])

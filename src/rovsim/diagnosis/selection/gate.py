@@ -24,6 +24,7 @@ KEPT_APART = 0.2  # of each run's time
 SHORTEST = 60.0  # s of a run, less than which a fifth shows too few windows of 2 s
 WORSE = 0.02  # of the error: less is within what the windows happen to hold
 CERTAIN = 2.0  # standard errors over the windows
+CLOSE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
 SMALLEST = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
 
 
@@ -61,7 +62,7 @@ class Gate:
             weakest = self._find_harmful(selection, found)
             if weakest is None:
                 break
-            found = selection.workspace.fit(found.hypothesis.without(weakest))
+            found = selection.workspace.fit(weakest)
         if self.runs and self._is_worse(found.hypothesis.model, found.hypothesis.base):
             base = replace(found.hypothesis, terms=())
             found = selection.workspace.fit(base)
@@ -88,24 +89,30 @@ class Gate:
             least = int(np.argmin(losses))
             if losses[least] > WORSE:
                 break
-            found = fewer[least]
+            found = selection.workspace.fit(fewer[least])
         return replace(selection, found=found)
 
-    def _find_harmful(self, selection: Selection, found: Fit) -> int | None:
-        """The effect whose absence helps most; None where each of them earns its place."""
-        _, errors = self._do_without(selection, found, [(t,) for t in found.hypothesis.terms])
+    def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:
+        """Without the effect whose absence helps most; None where each of them earns its place."""
+        fewer, errors = self._do_without(selection, found, [(t,) for t in found.hypothesis.terms])
         gains = [_compare(errors[0], other) for other in errors[1:]]
         best = int(np.argmax(gains))
-        return best if gains[best] > 0.0 else None
+        return fewer[best] if gains[best] > 0.0 else None
 
     def _do_without(
         self, selection: Selection, found: Fit, groups: Sequence[Sequence[Term]]
-    ) -> tuple[list[Fit], Array]:
-        """Fits without each group of terms, and errors (1 + g, w), those with all terms first."""
-        h = found.hypothesis
-        rests = [tuple(t for t in h.terms if t not in group) for group in groups]
-        fewer = [selection.workspace.fit(replace(h, terms=rest)) for rest in rests]
-        return fewer, self._errors([h.model, *(one.hypothesis.model for one in fewer)])
+    ) -> tuple[list[Hypothesis], Array]:
+        """Hypotheses without each group of terms, and errors (1 + g, w), those with all first.
+
+        Refitted to first order, and in full where that comes close.
+        """
+        h, workspace = found.hypothesis, selection.workspace
+        fewer = workspace.drop(found, groups)
+        errors = self._errors([h.model, *(one.model for one in fewer)])
+        for k, one in enumerate(fewer):
+            if _ratio(errors[1 + k], errors[0]) < 1.0 + CLOSE:
+                fewer[k] = workspace.fit(one).hypothesis
+        return fewer, self._errors([h.model, *(one.model for one in fewer)])
 
     def _is_worse(self, model: Model, before: Model) -> bool:
         errors = self._errors([model, before])

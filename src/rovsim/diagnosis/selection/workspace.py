@@ -5,15 +5,16 @@ The price of a parameter is 2 log P for P columns to choose from (risk inflation
 single number.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products, project_out, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit
@@ -108,15 +109,37 @@ class SearchWorkspace:
         return self._removed[key]
 
     def _remove_each(self, current: Fit) -> list[Removed]:
-        h = current.hypothesis
-        fewer = [h.without(i) for i in range(len(h.terms))]
-        e = self.bank.evaluate([one.model for one in fewer])
         found, left = [], float(self.products(current.seen)[0, 0])
-        for i, (one, own) in enumerate(zip(fewer, h.columns, strict=True)):
-            J = [np.delete(all_, own, axis=0) for all_ in current.seen.J]
-            seen = Linearised(one, [run[i] for run in e], J)
+        for seen in self._without(current, [(term,) for term in current.hypothesis.terms]):
             M = self.products(seen)
-            found.append(Removed(one, M, float(M[0, 0]) - left, self._rank(M)))
+            found.append(Removed(seen.at, M, float(M[0, 0]) - left, self._rank(M)))
+        return found
+
+    def drop(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Hypothesis]:
+        """The current hypothesis without each group of terms, the others refitted to first order.
+
+        Others stay as they are where the observer cannot hold the model without the group.
+        """
+        return [self._step(seen) for seen in self._without(current, groups)]
+
+    def _step(self, seen: Linearised) -> Hypothesis:
+        """Where the derivatives say that the errors are least."""
+        if not seen.finite:
+            return seen.at
+        M = inner_products(self.bank.flatten(seen.rows, self.noise))
+        return seen.at.at(seen.at.x - solve(M[1:, 1:], M[1:, 0]))
+
+    def _without(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Linearised]:
+        """The current hypothesis without each group of terms, the derivatives as they were."""
+        h, J = current.hypothesis, current.seen.J
+        rests = [replace(h, terms=tuple(t for t in h.terms if t not in own)) for own in groups]
+        e = self.bank.evaluate([one.model for one in rests])
+        found = []
+        for k, (rest, own) in enumerate(zip(rests, groups, strict=True)):
+            each = zip(h.terms, h.columns, strict=True)
+            gone = [j for term, columns in each if term in own for j in columns]
+            left = [np.delete(of_run, gone, axis=0) for of_run in J]
+            found.append(Linearised(rest, [of_run[k] for of_run in e], left))
         return found
 
     def _rank(self, products: Array) -> list[Proposal]:

@@ -96,8 +96,8 @@ def extra(at, p):
 
 
 @kept
-def integrate(jobs, h, stride, bodies, inputs, p, data, site, out):
-    integration.integrate(extra, jobs, h, stride, bodies, inputs, p, data, site, out)
+def integrate(jobs, time, stride, bodies, inputs, p, data, site, out):
+    integration.integrate(extra, jobs, time, stride, bodies, inputs, p, data, site, out)
 
 
 @kept

@@ -159,7 +159,7 @@ def site_of(site):
 
 
 @inline_anew
-def stepped(extra, t, x, memory, h, body, own, step, data, place, features, a_res):
+def stepped(extra, t, x, memory, h, body, own, step, ramp, data, place, features, a_res):
     """State and memory one step later; a learned residual is held over the step."""
     push = ZERO6
     if body.forgets != 0.0:
@@ -167,24 +167,28 @@ def stepped(extra, t, x, memory, h, body, own, step, data, place, features, a_re
     if data is not None:
         a_learned = learned(extra, t, x, body, own, step, push, data, place, features, a_res)
         push = add6(push, 1.0, a_learned)
-    after, _ = runge_kutta(extra, t, x, h, body, own, step, push, ZERO6, place)
+    after, _ = runge_kutta(extra, t, x, h, body, own, step, push, ramp, place)
     if body.forgets != 0.0:
         memory = memory_after(memory, x, after, h, body)
     return after, memory
 
 
 @entry
-def integrate(extra, jobs, h, stride, bodies, inputs, p, data, site, out):
-    """Integrate the jobs; after every `stride` steps a state goes into the next row of out."""
+def integrate(extra, jobs, time, stride, bodies, inputs, p, data, site, out):
+    """Integrate the jobs; after every `stride` steps a state goes into the next row of out.
+
+    `time` (k+1,) s at which the steps of the inputs begin and end.
+    """
     place, features, a_res = site_of(site), np.empty(FEATURES), np.empty(6)
     for job in range(jobs.first.size):
-        m, first, row, start = jobs.member[job], jobs.first[job], jobs.out[job], jobs.time[job]
+        m, first, row = jobs.member[job], jobs.first[job], jobs.out[job]
         x, body, own, left = state_of(jobs.state[job]), constants_of(bodies, m), p[m], stride
         memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
-        for n in range(jobs.steps[job]):
-            step, t = step_of(inputs, inputs.row[m], first + n), start + n * h
+        for n in range(first, first + jobs.steps[job]):
+            t, h, step = time[n], time[n + 1] - time[n], step_of(inputs, inputs.row[m], n)
+            ramp = ramp_of(inputs, inputs.row[m], n, body)
             x, memory = stepped(
-                extra, t, x, memory, h, body, own, step, data, place, features, a_res
+                extra, t, x, memory, h, body, own, step, ramp, data, place, features, a_res
             )
             left -= 1
             if left == 0:
@@ -199,7 +203,9 @@ def advance(extra, state, memory, t, h, bodies, inputs, p, data, site):
     features, a_res = np.empty(FEATURES), np.empty(6)
     for n in range(inputs.duration.size):
         step = step_of(inputs, 0, n)
-        x, m = stepped(extra, t + n * h, x, m, h, body, p[0], step, data, place, features, a_res)
+        x, m = stepped(
+            extra, t + n * h, x, m, h, body, p[0], step, ZERO6, data, place, features, a_res
+        )
     store(x, state)
     for i in range(6):
         memory[i] = m[i]

@@ -112,13 +112,12 @@ class Inputs(NamedTuple):
 class Jobs(NamedTuple):
     """Trajectories to integrate, j of them.
 
-    `state` (j, 13) to start from, at `time` (j,) s; `first` (j,) step of the inputs, `steps` (j,)
-    to take, `member` (j,) parameter set, `out` (j,) first row of the output. `memory` (j, 6)
-    velocity through the water that the water remembers at the start; empty: none.
+    `state` (j, 13) to start from; `first` (j,) step of the inputs, `steps` (j,) to take, `member`
+    (j,) parameter set, `out` (j,) first row of the output. `memory` (j, 6) velocity through the
+    water that the water remembers at the start; empty: none.
     """
 
     state: Array
-    time: Array
     first: Array
     steps: Array
     member: Array
