@@ -111,7 +111,7 @@ def test_models_side_by_side_move_as_each_would_alone():
     run, first = observed(), np.zeros(1, np.int64)
     drives = run.replay_drives.of(worlds)
     starts = Starts(np.tile(START, (len(worlds), 1, 1)), first, first + 100)
-    together = serve_all(worlds, run).trajectories(drives, starts, run.grid.time)
+    together = serve_all(worlds, run).trajectories(drives, starts, run.grid - run.grid[0])
     for world, paths in zip(worlds, together, strict=True):
         alone = simulate(world, RUN, [(0, 100, START)], ReplaySettings())[0]
         np.testing.assert_allclose(paths[0], alone, rtol=0, atol=1e-12)

@@ -1,5 +1,7 @@
 """The gate: stretches kept apart are apart, and only what is sure counts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,10 @@ class Workspace:
 
     def fit(self, h):
         return Found(h)
+
+    def drop(self, found, groups):
+        h = found.hypothesis
+        return [replace(h, terms=tuple(t for t in h.terms if t not in own)) for own in groups]
 
 
 class Found:
