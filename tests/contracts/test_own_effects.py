@@ -35,18 +35,25 @@ def write_files():
 def test_the_page_works_as_printed():
     write_files()
     commands = [line for text in blocks("sh") for line in text.replace("\\\n", " ").splitlines()]
-    assert len(commands) == 2
+    assert len(commands) == 4
     for command in commands:
         program, *words = shlex.split(command)
         assert program == "rovsim"
         main(words)
-    models = json.loads(Path("with_and_without/comparison.json").read_text())["models"]
-    error = {
-        name: models[name]["runs"]["6dof-2"]["windows"]["2"]["velocity_rmse"]["heave"]
-        for name in models
-    }
+    error = errors("with_and_without", "heave")
     assert error["with_cushion"] < 0.02 < 0.05 < error["nominal"]
     assert Path("with_and_without/report.html").exists()
+    error = errors("with_fin", "roll")
+    assert error["with_fin"] < 0.5 * error["nominal"]
+
+
+def errors(folder, axis):
+    """Velocity error of each model in windows of 2 s."""
+    models = json.loads(Path(folder, "comparison.json").read_text())["models"]
+    return {
+        name: models[name]["runs"]["6dof-2"]["windows"]["2"]["velocity_rmse"][axis]
+        for name in models
+    }
 
 
 def test_a_file_counts_only_where_it_is_named():

@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.core.rotations import exp
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Autopilot
+from rovsim.dynamics.effects.base import Autopilot, Stick
 from rovsim.evaluation.budget import Budget
 from rovsim.evaluation.force_balance import RESTORING, balance_forces
 from rovsim.learning.pairs import sample_run
@@ -19,11 +19,11 @@ from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 
 
-def run(kind="thruster"):
+def run(kind="thruster", columns=8):
     start = at_rest()
     start[3:7] = exp(np.array([0.2, -0.1, 0.7]))
     start[7:] = [0.4, -0.2, 0.1, 0.3, -0.2, 0.5]
-    value = sticks() if kind == "thruster" else sticks()[:, :6]
+    value = sticks()[:, : columns if kind == "thruster" else 6]
     return motion(value, kind, start=start, site=tank())
 
 
@@ -36,10 +36,9 @@ def made(world, found=None):
 
 @pytest.mark.parametrize("cls", built_in().values(), ids=lambda cls: cls.id)
 def test_the_parts_add_up_to_the_models_inertia_force(cls):
-    world, measured = (
-        beside_others(some(cls)),
-        run("demand" if issubclass(cls, Autopilot) else "thruster"),
-    )
+    world = beside_others(some(cls))
+    columns = world.thrust_path.columns("thruster")
+    measured = run("demand" if issubclass(cls, Autopilot | Stick) else "thruster", columns)
     true = as_true(world, measured)
     at = drive_as_measured(world, true, ReplaySettings())
     expected = accelerate_as_measured(world, true, at) @ world.body.M.T

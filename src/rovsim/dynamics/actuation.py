@@ -22,6 +22,7 @@ from rovsim.dynamics.effects.base import (
     Shaping,
     Stick,
     Strength,
+    Wrench,
 )
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
@@ -33,7 +34,8 @@ class Thrust:
     """Means over steps: `force` (k, n) N, `wrench` (k, 6) given directly, `demand` (k, 6).
 
     `heading` (2, k, a) cosine and sine of the angle of each thruster that turns, None where none
-    does; `angle` (k, s) rad of each control surface.
+    does; `angle` (k, s) rad of each control surface. `read` (k, c + q): where an effect reads them,
+    commands as logged and mixed, then the channels of `ThrustPath.channels`; None elsewhere.
     """
 
     force: Array
@@ -41,6 +43,7 @@ class Thrust:
     demand: Array
     heading: Array | None = None
     angle: Array | None = None
+    read: Array | None = None
 
 
 class ThrustPath:
@@ -57,6 +60,9 @@ class ThrustPath:
         self.curves = [e for e in ranked if isinstance(e, Curve)]
         self.strengths = [e for e in ranked if isinstance(e, Strength)]
         self.responses = [e for e in ranked if isinstance(e, Response)]
+        self.readers = [e for e in ranked if isinstance(e, Wrench) and e.reads()]
+        # what their kernels read of the log beside commands
+        self.channels = tuple(dict.fromkeys(name for e in self.readers for name in e.channels))
 
     @property
     def key(self) -> tuple:
@@ -70,7 +76,8 @@ class ThrustPath:
             *self.strengths,
             *self.responses,
         )
-        return (*left, *((e.id, e.values.tobytes()) for e in acting))
+        read = (bool(self.readers), *self.channels)
+        return (*read, *left, *((e.id, e.values.tobytes()) for e in acting))
 
     def arrival(self, time: Array) -> Array:
         """Instants at which lines logged at `time` take effect."""
@@ -186,7 +193,9 @@ class ThrustPath:
         steps = len(edges) - 1
         none, still = np.full((steps, 6), np.nan), np.zeros((steps, 6))
         if lines.kind == "wrench":
-            return Thrust(np.zeros((steps, self.thrusters.count)), mean(at_middle), none)
+            thrust = Thrust(np.zeros((steps, self.thrusters.count)), mean(at_middle), none)
+            columns = np.zeros((steps, self.columns("thruster")))
+            return replace(thrust, read=self.read_out(columns, lines, edges))
         if between == "held" and self._is_steady(lines):  # once for each line, not each piece
             command = self.thruster_commands(value, lines.kind)
             once = self.static(command, np.zeros(len(command)), duration)
@@ -197,7 +206,31 @@ class ThrustPath:
         demand = mean(at_middle) if lines.kind == "demand" else none
         azimuth, angle = self.steering(at_middle, lines.kind)
         heading = np.stack([mean(np.cos(azimuth)), mean(np.sin(azimuth))])
-        return Thrust(static, still, demand, heading, mean(angle))
+        thrust = Thrust(static, still, demand, heading, mean(angle))
+        if not self.readers:
+            return thrust
+        columns = mean(self.logged_columns(at_middle, lines.kind))
+        return replace(thrust, read=self.read_out(columns, lines, edges))
+
+    def logged_columns(self, value: Array, kind: CommandKind) -> Array:
+        """Commands and angles (m, c), as a log of them has them, of logged values of any kind."""
+        if kind == "thruster":
+            return value
+        columns = np.zeros((len(value), self.columns("thruster")))
+        columns[:, self._throttles] = self.thruster_commands(value, kind)
+        return columns
+
+    def read_out(self, columns: Array, lines: Commands, edges: Array) -> Array | None:
+        """Commands (k, c) and channels at the middle of each step; None where no effect reads them.
+
+        Raises:
+            BadInput: the log lacks a channel.
+        """
+        if not self.readers:
+            return None
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        beside = [_logged(lines, name, middle)[:, None] for name in self.channels]
+        return np.hstack([columns, *beside])
 
     def _is_steady(self, lines: Commands) -> bool:
         """Whether the same command makes the same static force at all times."""
@@ -217,6 +250,19 @@ def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
 def _latest(time: Array, at: Array) -> Array:
     """The line (m,) that holds at each instant; before the first one, that."""
     return np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)
+
+
+def _logged(lines: Commands, name: str, at: Array) -> Array:
+    """A channel at these times."""
+    logged = lines.auxiliary.get(name)
+    if logged is not None:
+        return np.interp(at, logged.time, logged.value)
+    raise BadInput(
+        f"no channel '{name}' was logged, and an effect of the model reads it",
+        where="commands",
+        expected=f"one of {', '.join(lines.auxiliary) or 'none that are there'}",
+        remedy="Name it in commands.auxiliary of campaign.yaml.",
+    )
 
 
 def _voltage(lines: Commands, at: Array) -> Array | None:

@@ -37,7 +37,8 @@ class Body:
     products of velocities, `factors` (t, 4) axis of the force and up to three velocities: i, 6 + i
     for its size, -1 for none; `surfaces` (s, 15) position, normal, chord (3 each), half density
     times area, lift slope, drag, stall, thruster whose jet it meets (-1: none), square of the jet's
-    speed per newton; `lifting` (s,) factor on the lift of each; `free` (6,) axes that move.
+    speed per newton; `lifting` (s,) factor on the lift of each; `free` (6,) axes that move;
+    `places` (n + s, 3) m of thrusters, then surfaces.
     """
 
     gravity: float
@@ -63,6 +64,7 @@ class Body:
     surfaces: Array = field(default_factory=lambda: np.zeros((0, 15)))
     lifting: Array = field(default_factory=lambda: np.zeros(0))
     free: Array = field(default_factory=lambda: np.ones(6, bool))
+    places: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
     def add_mass(self, mass: float, place: Array, inertia: Array) -> None:
         """Add a mass in kg at a place (3,), with its own inertia (3, 3), and its weight."""
@@ -141,4 +143,5 @@ def packed(bodies: Sequence[Body]) -> Constants:
         surfaces=np.ascontiguousarray(bodies[0].surfaces),
         lifting=stack(lambda b: b.lifting),
         free=stack(lambda b: b.free),
+        places=np.ascontiguousarray(bodies[0].places, dtype=float),
     )

@@ -62,7 +62,7 @@ def _cumulative(
     model: Model, motion: Motion, settings: ReplaySettings
 ) -> Iterator[tuple[str, Array]]:
     """Generalized force (n, 6) as parts are put in one by one, each under its part's name."""
-    neutral = [_neutral(effect) for effect in model.effects]
+    neutral = [effect.neutral() for effect in model.effects]
     bare = _with(model, neutral)
     none = drive_as_measured(bare, motion, settings).idle()
     still = replace(motion, state_nu=0 * motion.state_nu)
@@ -84,11 +84,6 @@ def _cumulative(
 def _place(effect: Effect) -> int:
     """Where an effect of the vehicle stands in the order of parts."""
     return list(NOMINAL).index(effect.id) if effect.id in NOMINAL else len(NOMINAL)
-
-
-def _neutral(effect: Effect) -> Effect:
-    """The effect at its defaults, which change nothing; what every vehicle has stays."""
-    return type(effect)() if effect.listed or effect.id in NOMINAL else effect
 
 
 def _with(model: Model, effects: Sequence[Effect]) -> Model:

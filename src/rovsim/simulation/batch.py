@@ -20,7 +20,7 @@ from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import NO_MEMORY, Constants, Inputs, Jobs, Place
 from rovsim.dynamics.model import Model
-from rovsim.simulation.drive import Drive
+from rovsim.simulation.drive import Drive, Reads
 
 T = TypeVar("T")
 
@@ -99,6 +99,7 @@ class Batch:
             np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
         )
         self._free = np.concatenate([np.ones(7), models[0].body.free])
+        self._reads = _reads(models[0], slots)
 
     def trajectories(
         self, drives: Sequence[Drive], starts: Starts, time: Array, stride: int = 1
@@ -119,7 +120,7 @@ class Batch:
         out[stops - rows] = starts.state.reshape(-1, 13)
         run_jobs(
             self.engine.integrate, starts.jobs(stops - rows + 1), time, stride, self._constants,
-            _inputs(drives), self._parameters, self._residual, self._place, out,
+            self._inputs(drives), self._parameters, self._residual, self._place, out,
         )  # fmt: skip
         paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
         return [paths[k * count : (k + 1) * count] for k in range(models)]
@@ -138,8 +139,8 @@ class Batch:
         jobs = starts.jobs(stops - np.tile(starts.steps, models))
         run_jobs(
             self.engine.observe, jobs, correction.time, correction.ends, self._constants,
-            _inputs(drives), self._parameters, self._place, np.stack(own), row, correction.gains,
-            correction.decay, correction.by_velocity, out,
+            self._inputs(drives), self._parameters, self._place, np.stack(own), row,
+            correction.gains, correction.decay, correction.by_velocity, out,
         )  # fmt: skip
         return out.reshape(models, count, 6)
 
@@ -150,7 +151,7 @@ class Batch:
         """
         out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self._free)
         self.engine.accelerations(
-            times, states, memory, self._constants, _inputs([drive]),
+            times, states, memory, self._constants, self._inputs([drive]),
             self._parameters, self._residual, self._place, out,
         )  # fmt: skip
         return out
@@ -159,7 +160,7 @@ class Batch:
         """Move the first model's state (13,) and memory (6,) on over all steps, in place."""
         state *= self._free
         self.engine.advance(
-            state, memory, t, h, self._constants, _inputs([drive]), self._parameters,
+            state, memory, t, h, self._constants, self._inputs([drive]), self._parameters,
             self._residual, self._place,
         )  # fmt: skip
 
@@ -173,10 +174,23 @@ class Batch:
         """
         out = np.empty((len(pushes), 13))
         self.engine.heun(
-            state, memory, t, h, pushes, self._constants, _inputs([drive]), self._parameters[0],
-            self._residual, self._place, out,
+            state, memory, t, h, pushes, self._constants, self._inputs([drive]),
+            self._parameters[0], self._residual, self._place, out,
         )  # fmt: skip
         return out
+
+    def _inputs(self, drives: Sequence[Drive]) -> Inputs:
+        """The drives of models as kernels take them; one that serves several is there once."""
+        own, row = _distinct(drives)
+        first = own[0]
+        acting = [drive.acting(self._reads) for drive in own]
+        if len(own) == 1:
+            wrench, force, ramp = first.wrench[None], acting[0][None], first.ramp[None]
+        else:
+            wrench, force = np.stack([d.wrench for d in own]), np.stack(acting)
+            ramp = np.stack([d.ramp for d in own])
+        length = np.full(len(first.wrench), first.duration)
+        return Inputs(wrench, force, first.demand, row, length, ramp)
 
 
 def _refuse_unlike(models: Sequence[Model]) -> None:
@@ -226,18 +240,12 @@ def _constants(models: Sequence[Model]) -> Constants:
     return constants
 
 
-def _inputs(drives: Sequence[Drive]) -> Inputs:
-    """The drives of models as kernels take them; one that serves several is there once."""
-    own, row = _distinct(drives)
-    first = own[0]
-    if len(own) == 1:
-        wrench, acting, ramp = first.wrench[None], first.acting[None], first.ramp[None]
-    else:
-        wrench, acting, ramp = (
-            np.stack([getattr(d, name) for d in own]) for name in ("wrench", "acting", "ramp")
-        )
-    length = np.full(len(first.wrench), first.duration)
-    return Inputs(wrench, acting, first.demand, row, length, ramp)
+def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
+    """What the effects of an engine read; None if they read nothing."""
+    if not any(cls.reads() for cls in slots):
+        return None
+    actuators = len(model.body.places) + model.body.B.shape[1]
+    return Reads(actuators, tuple(name for cls in slots for name in cls.channels))
 
 
 def _distinct(values: Sequence[T]) -> tuple[list[T], Array]:

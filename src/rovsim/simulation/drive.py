@@ -17,18 +17,27 @@ T = TypeVar("T")
 KEPT = 64  # drives of a run: what one step of a fit needs, some 0.2 MB each a minute
 
 
+class Reads(NamedTuple):
+    """What the effects of an engine read: columns of actuators, and channels by name."""
+
+    actuators: int
+    channels: tuple[str, ...]
+
+
 class Actuation(NamedTuple):
     """What commands make of thrusters over k steps, whatever body they push.
 
     `wrench` (k, 6) N and N m that commands are themselves; `force` (k, n) N of each component of
     a thruster; `demand` (k, 6) in [-1, 1], NaN where none was logged; `angle` (k, s) rad of each
-    control surface.
+    control surface; `read` (k, r) where an effect reads them: forces and commands of the actuators,
+    then the channels of the model's thrust path.
     """
 
     wrench: Array
     force: Array
     demand: Array
     angle: Array
+    read: Array
 
     @staticmethod
     def by(model: Model, thrust: Thrust) -> "Actuation":
@@ -37,7 +46,10 @@ class Actuation(NamedTuple):
         angle = thrust.angle
         if angle is None:
             angle = np.zeros((len(force), model.thrust_path.surfaces))
-        return Actuation(thrust.wrench, force, thrust.demand, angle)
+        read = np.empty((len(force), 0))
+        if thrust.read is not None:
+            read = np.hstack([thrust.force, thrust.read])
+        return Actuation(thrust.wrench, force, thrust.demand, angle, read)
 
     def push(self, model: Model) -> Array:
         """Wrench (k, 6) on a model, its autopilots' share included; linear in all that acts."""
@@ -45,7 +57,10 @@ class Actuation(NamedTuple):
 
     def drive(self, model: Model, duration: float) -> "Drive":
         """What drives a model, in a run of that many s."""
-        return Drive(self.push(model), self.force, self.demand, duration, angle=self.angle)
+        return Drive(
+            self.push(model), self.force, self.demand, duration, angle=self.angle, read=self.read,
+            channels=model.thrust_path.channels,
+        )  # fmt: skip
 
     def joined(self, count: Array) -> tuple["Actuation", "Actuation"]:
         """Means over steps as long as `count` (s,) of these, and what each grows by over them.
@@ -69,7 +84,8 @@ class Drive:
     `wrench` (k, 6) N and N m of thrusters, autopilots and commands that are a wrench; `force`
     (k, n) N of each thruster; `demand` (k, 6) in [-1, 1], NaN where none was logged; `duration` s
     of the whole run. `ramp` (k, 6) is what the wrench grows by over each step; empty: nothing.
-    `angle` (k, s) rad of each control surface.
+    `angle` (k, s) rad of each control surface. `read` (k, r): where an effect reads them, forces
+    and commands of the actuators, then the `channels`; empty elsewhere.
     """
 
     wrench: Array
@@ -78,11 +94,24 @@ class Drive:
     duration: float
     ramp: Array = field(default_factory=lambda: np.empty((0, 6)))
     angle: Array = field(default_factory=lambda: np.empty((0, 0)))
+    read: Array = field(default_factory=lambda: np.empty((0, 0)))
+    channels: tuple[str, ...] = ()
 
-    @property
-    def acting(self) -> Array:
-        """Forces, then angles (k, n + s), as the engine takes them."""
-        return np.hstack([self.force, self.angle]) if self.angle.size else self.force
+    def acting(self, reads: Reads | None) -> Array:
+        """Forces and angles (k, n + s), then what effects read; zero what this model's do not.
+
+        As the engine takes them (`rovsim.dynamics.engine.reading`).
+        """
+        own = np.hstack([self.force, self.angle]) if self.angle.size else self.force
+        if reads is None:
+            return own
+        table = np.zeros((len(own), reads.actuators + len(reads.channels)))
+        if self.read.size:
+            table[:, : reads.actuators] = self.read[:, : reads.actuators]
+            known = dict(zip(self.channels, self.read[:, reads.actuators :].T, strict=True))
+            for k, name in enumerate(reads.channels):
+                table[:, reads.actuators + k] = known.get(name, 0.0)
+        return np.hstack([own, table])
 
     @staticmethod
     def by(model: Model, thrust: Thrust, duration: float) -> "Drive":
@@ -90,10 +119,10 @@ class Drive:
         return Actuation.by(model, thrust).drive(model, duration)
 
     def each(self, change: Callable[[Array], Array]) -> "Drive":
-        """Wrench, forces, demand and angles, all changed alike."""
-        names = ("wrench", "force", "demand", "angle")
+        """Wrench, forces, demand, angles and what is read, all changed alike."""
+        names = ("wrench", "force", "demand", "angle", "read")
         changed = {name: change(getattr(self, name)) for name in names}
-        return Drive(duration=self.duration, **changed)
+        return Drive(duration=self.duration, channels=self.channels, **changed)
 
     def at(self, steps: Array) -> "Drive":
         """What acts in some of the steps (j,)."""
@@ -105,7 +134,7 @@ class Drive:
 
     def idle(self) -> "Drive":
         """The same demands while no thruster turns."""
-        return replace(self, wrench=0 * self.wrench, force=0 * self.force)
+        return replace(self, wrench=0 * self.wrench, force=0 * self.force, read=0 * self.read)
 
 
 class Drives:

@@ -7,7 +7,7 @@ from rovsim.core.errors import BadInput
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Effect, Means, Smoothing, Wander
+from rovsim.dynamics.effects.base import Effect, Means, Smoothing, Wander, Wrench
 from rovsim.dynamics.vehicle import Vehicle
 
 
@@ -64,6 +64,9 @@ def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Means]:
 
 def _can_act(start: Effect, runs: Sequence[ObservedRun]) -> bool:
     """Whether all runs have what the effect needs."""
+    logged = [set(one.motion.commands.auxiliary) for one in runs]
+    if isinstance(start, Wrench) and not all(set(start.channels) <= known for known in logged):
+        return False
     try:
         for one in runs:
             start.check(one.motion.site, one.motion.commands.kind)

@@ -107,6 +107,10 @@ class Effect(ABC):
         """The same effect with some values replaced, and no standard deviations."""
         return type(self)(**self.given() | dict(values))
 
+    def neutral(self) -> "Effect":
+        """The effect at what changes nothing; what every vehicle has stays."""
+        return type(self)() if self.listed else self
+
     def with_std(self, std: Mapping[str, float]) -> "Effect":
         """The same effect with the standard deviations of its fitted values."""
         known = copy(self)
@@ -149,7 +153,14 @@ class Coefficients(Effect):
 
 
 class Wrench(Effect):
-    """Pushes the vehicle: a wrench that depends on the state and on time."""
+    """Pushes the vehicle: a wrench that depends on the state and on time.
+
+    A kernel that says `at.actuators` reads forces, commands and inflow of the actuators, and
+    `at.channels.NAME` what was logged beside the commands, by the names in `channels`
+    (`rovsim.dynamics.engine.reading`).
+    """
+
+    channels: ClassVar[tuple[str, ...]] = ()
 
     @staticmethod
     @abstractmethod
@@ -163,6 +174,16 @@ class Wrench(Effect):
     def named_parameters(cls) -> type:
         """The named tuple type in which the compiled kernel gets its parameters."""
         return namedtuple(f"{cls.__name__}Parameters", [p.name for p in cls.parameters])
+
+    @classmethod
+    def named_channels(cls) -> type:
+        """The named tuple type in which it gets its channels."""
+        return namedtuple(f"{cls.__name__}Channels", cls.channels)
+
+    @classmethod
+    def reads(cls) -> bool:
+        """Whether its kernel reads actuators or channels."""
+        return bool(cls.channels) or "actuators" in cls.wrench.__code__.co_names
 
 
 class Wander(Effect):

@@ -120,6 +120,7 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     from numba.core.errors import NumbaError
 
     from rovsim.dynamics.engine.compiled import inlined
+    from rovsim.dynamics.engine.reading import example_reading
     from rovsim.dynamics.engine.types import EXAMPLE
 
     wrench = inspect.getattr_static(cls, "wrench")
@@ -127,8 +128,9 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
         raise _refused("'wrench' has no @staticmethod", where, "@staticmethod def wrench(at, p)")
     p = cls.named_parameters()(*(0.0 for _ in cls.parameters))
     kernel = inlined(cls.wrench)
+    channels = cls.named_channels()(*(0.0 for _ in cls.channels)) if cls.channels else 0.0
     try:
-        kernel(EXAMPLE, p)
+        kernel(example_reading(channels) if cls.reads() else EXAMPLE, p)
     except (NumbaError, TypeError) as error:
         raise _refused(
             f"'wrench' does not compile: {_reason(str(error))}", where,

@@ -89,7 +89,7 @@ Written by rovsim.dynamics.engine.compiled, so that Numba can keep what it compi
 {imports}{kernels}
 
 @inline_anew
-def extra(at, p):
+def extra(at, p, body, acting):
     """Wrench of these effects; each has in p (k,) whether it acts, then its parameters."""
     tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 {pushes}    return tau
@@ -124,6 +124,9 @@ def observe(
         out,
     )
 '''
+READING_IMPORT = """\
+from rovsim.dynamics.engine.reading import actuators_at, first_channel, reading_at
+"""
 IMPORTS = """\
 from rovsim.dynamics.engine import integration, observer
 from rovsim.dynamics.engine.compiled import inline_anew, kept
@@ -133,12 +136,14 @@ KERNEL = """
 {id}_wrench = inline_anew({name}.wrench)
 {id}_parameters = {name}.named_parameters()
 """
+CHANNELS = "{id}_channels = {name}.named_channels()\n"
+READING = "        seen = reading_at(at, actuators_at(at, body, acting), {channels})\n"
 PUSH = """\
     if p[{acts}] != 0.0:
         own = {id}_parameters(
 {values}
         )
-        tau = add6(tau, 1.0, {id}_wrench(at, own))
+{reading}        tau = add6(tau, 1.0, {id}_wrench({at}, own))
 """
 COLUMNS, MARGIN = 88, " " * 12  # of the parameters in `PUSH`
 
@@ -146,19 +151,37 @@ COLUMNS, MARGIN = 88, " " * 12  # of the parameters in `PUSH`
 def _engine_text(wrenches: Sequence[Any]) -> str:
     """Source of the module of an engine; an effect may act in it more than once."""
     known = list(dict.fromkeys(wrenches))
-    pushes, acts = "", 0
+    pushes, acts, channel = "", 0, 0
     for wrench in wrenches:
         after = acts + 1 + len(wrench.parameters)
         values = textwrap.fill(", ".join(f"p[{k}]" for k in range(acts + 1, after)), COLUMNS)
-        pushes += PUSH.format(id=wrench.id, acts=acts, values=textwrap.indent(values, MARGIN))
-        acts = after
+        pushes += PUSH.format(
+            id=wrench.id, acts=acts, values=textwrap.indent(values, MARGIN),
+            at="seen" if wrench.reads() else "at",
+            reading=_reading(wrench, channel) if wrench.reads() else "",
+        )  # fmt: skip
+        acts, channel = after, channel + len(wrench.channels)
     imports = {f"from {w.__module__} import {w.__name__}{_alias(w, known)}\n" for w in known}
+    imports |= {READING_IMPORT} if any(w.reads() for w in known) else set()
     return ENGINE.format(
         names=", ".join(wrench.id for wrench in known) or "no further effects",
         imports="".join(sorted(imports | set(IMPORTS.splitlines(keepends=True)))),
-        kernels="".join(KERNEL.format(id=w.id, name=_name(w, known)) for w in known),
+        kernels="".join(_kernel(w, known) for w in known),
         pushes=pushes,
     )
+
+
+def _kernel(wrench: Any, known: Sequence[Any]) -> str:
+    """The kernel of an effect, and the types of what it is handed."""
+    name = _name(wrench, known)
+    types = CHANNELS.format(id=wrench.id, name=name) if wrench.channels else ""
+    return KERNEL.format(id=wrench.id, name=name) + types
+
+
+def _reading(wrench: Any, first: int) -> str:
+    """What an effect reads, its channels from this one on."""
+    own = [f"acting[first_channel(body) + {first + k}]" for k in range(len(wrench.channels))]
+    return READING.format(channels=f"{wrench.id}_channels({', '.join(own)})" if own else "0.0")
 
 
 def _name(wrench: Any, known: Sequence[Any]) -> str:

@@ -1,7 +1,7 @@
 """Fossen's equation of motion, compiled by Numba.
 
-`extra(at, p)` is the wrench of one model's further effects: a compiled function that is handed down
-to where it is called, so that LLVM inlines the kernels of the effects there.
+`extra(at, p, body, acting)` is the wrench of one model's further effects: a compiled function that
+is handed down to where it is called, so that LLVM inlines the kernels of the effects there.
 
     M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r + g(eta)
         = tau_thrust + tau_extra                                      (Fossen 2021, eq. 6.1, 10.135)
@@ -127,7 +127,7 @@ def accelerate(extra, at, body, p, thrust, acting, level):
     tau = add6(tau, 1.0, at.drag)
     tau = add6(tau, 1.0, restoring(body.heaviness, body.righting, at.R))
     tau = add6(tau, 1.0, times6(body.M_A, at.nu_c_dot))
-    tau = add6(tau, 1.0, extra(at, p))
+    tau = add6(tau, 1.0, extra(at, p, body, acting))
     if body.coupled != 0.0:
         tau = add6(tau, 1.0, coupled_damping(body.coupling, at.nu_r))
     if body.advance != 0.0:

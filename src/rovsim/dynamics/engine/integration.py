@@ -112,7 +112,7 @@ def constants_of(bodies, m):
         bodies.coupled[m], bodies.coupling[m], vector6(bodies.memory[m]), bodies.forgets[m],
         bodies.B[m], bodies.directions,
         bodies.further[m], vector3(bodies.waterplane[m]), bodies.products[m], bodies.factors,
-        bodies.surfaces, bodies.lifting[m], vector6(bodies.free[m]),
+        bodies.surfaces, bodies.lifting[m], vector6(bodies.free[m]), bodies.places,
     )  # fmt: skip
 
 

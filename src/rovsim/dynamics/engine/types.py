@@ -64,7 +64,7 @@ class Constants(NamedTuple):
     (0: nothing is remembered); `B` (m, 6, n) thruster allocation; `directions` (n, 3) of positive
     thrust. Read only where `further` (m,) is not 0, as in `Body`: `waterplane` (m, 3), `products`
     (m, t) and their `factors` (t, 4), `surfaces` (s, 15), `lifting` (m, s). `free` (m, 6) is 1 for
-    axes that move, 0 where they are held.
+    axes that move, 0 where they are held; `places` (n + s, 3) of thrusters, then surfaces.
     """
 
     M_RB: Array
@@ -89,12 +89,14 @@ class Constants(NamedTuple):
     surfaces: Array
     lifting: Array
     free: Array
+    places: Array
 
 
 class Inputs(NamedTuple):
     """Mean thrust over each step: `wrench` (r, k, 6), `acting` (r, k, n + s), `demand` (k, 6).
 
-    `acting`: forces N of the n thrusters, then angles rad of the s control surfaces.
+    `acting`: forces N of the n thrusters, angles rad of the s control surfaces, then what some
+    effects read (`rovsim.dynamics.engine.reading`).
 
     `row` (m,) says which of the r rows belongs to each parameter set; `duration` (k,) is the
     length in s of the recording the step belongs to. `ramp` (r, k, 6) is what the wrench grows by

@@ -19,7 +19,7 @@ import numpy as np
 from pydantic import PlainValidator
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients
+from rovsim.dynamics.effects.base import Coefficients, Effect
 
 FORCES, VELOCITIES = "XYZKMN", "uvwpqr"
 SIZE = 6  # a factor of 6 + i is the size of velocity i
@@ -74,6 +74,10 @@ class CrossFlow(Coefficients):
     def __init__(self, products: Mapping[str, float] | None = None) -> None:
         super().__init__()
         self.products = dict(products or {})
+
+    def neutral(self) -> Effect:
+        """No products."""
+        return CrossFlow()
 
     def enter(self, body: Body) -> None:
         """Add the products."""

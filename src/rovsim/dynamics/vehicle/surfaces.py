@@ -1,5 +1,6 @@
 """Rudders and fins: plates in the flow, turned by a command or fixed."""
 
+from copy import copy
 from typing import Annotated, Sequence
 
 import numpy as np
@@ -8,12 +9,13 @@ from pydantic import Field, PositiveFloat
 
 from rovsim.core.schema import Section
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients
+from rovsim.dynamics.effects.base import Coefficients, Effect
 from rovsim.dynamics.vehicle.curves import NonNegative
 from rovsim.dynamics.vehicle.thrusters import Thruster, Triple
 
 AHEAD = np.array([1.0, 0.0, 0.0])
 NO_WAKE = -1.0
+HALF = 9  # column of half the density times the area
 
 
 class Surface(Section):
@@ -61,9 +63,17 @@ class Surfaces(Coefficients):
         rows = [_row(one, units, density) for one in surfaces]
         self.rows = np.array(rows, dtype=float).reshape(-1, 15)
 
+    def neutral(self) -> Effect:
+        """The same surfaces, which neither lift nor drag."""
+        found = copy(self)
+        found.rows = self.rows.copy()
+        found.rows[:, HALF] = 0.0
+        return found
+
     def enter(self, body: Body) -> None:
         """Add the surfaces, lifting as they should."""
         body.surfaces, body.lifting = self.rows, np.ones(len(self.rows))
+        body.places = np.concatenate([body.places, self.rows[:, :3]])
 
 
 def _row(one: Surface, units: Sequence[Thruster], density: float) -> list[float]:

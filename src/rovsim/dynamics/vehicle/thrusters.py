@@ -111,6 +111,7 @@ class Thrusters(Coefficients):
         moments = np.cross(self.positions, self.directions)
         body.B = np.hstack([self.directions, moments]).T.copy()
         body.directions, body.spin = self.directions, self.spin
+        body.places = self.positions[: self.count]
 
     def static_force(self, command: Array, voltage: Array | None = None) -> Array:
         """Force in N of commands (..., n) in [-1, 1]; `voltage` (m,) V of the battery if known."""

@@ -4,7 +4,7 @@ The replay's integrator is Runge-Kutta 4 at 10 ms; this is Heun's method at 1 ms
 is not made by what will be compared with it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy import ndarray as Array
@@ -128,6 +128,10 @@ class _TrueVehicle:
         azimuth, angle = path.steering(held, self.kind)
         heading = np.stack([np.cos(azimuth), np.sin(azimuth)])
         thrust = Thrust(force, np.zeros((steps, 6)), demand, heading, angle)
+        if path.readers:
+            columns = path.logged_columns(held, self.kind)
+            beside = np.zeros((steps, len(path.channels)))  # the tank logs none
+            thrust = replace(thrust, read=np.hstack([columns, beside]))
         drive = Drive.by(self.model, thrust, self.duration)
         return self.batch.advance_by_heun(drive, pushes, state, self.memory, t, self.h)
 
