@@ -16,7 +16,7 @@ from numpy import ndarray as Array
 from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import load_model
-from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.stepper import Stepper
 
 ID = "rovsim/Vehicle-v0"
@@ -47,7 +47,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
     def __init__(
         self,
         model: str | Model = "nominal",
-        vehicle: str = "bluerov2_heavy",
+        vehicle: str | None = None,
         dt: float = 0.05,
         seconds: float = 30.0,
         reach: float = 2.0,
@@ -55,7 +55,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         known = (
             model
             if isinstance(model, Model)
-            else load_model(model, load_vehicle(vehicle), load_catalogue())
+            else load_model(model, load_vehicle(vehicle or default_vehicle()), load_catalogue())
         )
         self.stepper = Stepper(known, duration=seconds)
         self.dt, self.seconds, self.reach = dt, seconds, reach

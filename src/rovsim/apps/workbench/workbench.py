@@ -59,7 +59,7 @@ class Workbench:
         found = {m.name: m for m in load_models(settings.model, data.vehicle, catalogue)}
         specs = [settings.model] if isinstance(settings.model, str) else settings.model
         paths = dict(zip(found, dict.fromkeys(specs), strict=True))
-        bench = Workbench(settings, catalogue, data, found, paths)
+        bench = Workbench(settings, catalogue.on(data.vehicle), data, found, paths)
         given = Path(settings.diagnosis) if settings.diagnosis else bench.diagnosis_path
         if settings.diagnosis or given.exists():
             bench.diagnosis = Diagnosis.read(given)

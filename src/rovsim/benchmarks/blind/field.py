@@ -15,7 +15,7 @@ from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
 from rovsim.dynamics.model_file import EffectEntry, Value
-from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")
 OFF = 0.25  # of each coefficient, at most
@@ -69,7 +69,7 @@ def camera(how: str, k: int, seeds: Range) -> Case:
 
 def _wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
     """Every coefficient changed by its own share."""
-    water = load_vehicle("bluerov2_heavy").hydrodynamics
+    water = load_vehicle(default_vehicle()).hydrodynamics
     for name in COEFFICIENTS:
         nominal = np.array(getattr(water, name))
         yield _entry(name, dict(zip(AXES, random.uniform(-OFF, OFF, 6) * nominal, strict=True)))

@@ -23,7 +23,7 @@ from rovsim.benchmarks.blind.field import CAMERAS, camera, workshops
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
 from rovsim.dynamics.model_file import EffectEntry, Value
-from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Camera
 
 CALM = Camera()
@@ -163,7 +163,7 @@ def deviation(k: int, seeds: Range) -> Case:
     case_id = f"deviation/{k}"
     random = random_of(case_id, seeds)
     share = DEVIATION[k % len(DEVIATION)]
-    water = load_vehicle("bluerov2_heavy").hydrodynamics
+    water = load_vehicle(default_vehicle()).hydrodynamics
     hidden = [_off(name, getattr(water, name), share, random) for name in DEVIATING]
     return Case(
         id=case_id, kind="deviation", seed=seed_of(case_id, seeds), hidden=tuple(hidden),

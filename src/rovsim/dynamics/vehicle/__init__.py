@@ -9,7 +9,13 @@ file            the whole file
 check           whether its parts fit together
 """
 
-from rovsim.dynamics.vehicle.file import Vehicle, build_vehicle, known_vehicle, load_vehicle
+from rovsim.dynamics.vehicle.file import (
+    Vehicle,
+    build_vehicle,
+    default_vehicle,
+    known_vehicle,
+    load_vehicle,
+)
 from rovsim.dynamics.vehicle.surfaces import Surfaces
 from rovsim.dynamics.vehicle.thrusters import Thrusters
 
@@ -18,6 +24,7 @@ __all__ = [
     "Thrusters",
     "Vehicle",
     "build_vehicle",
+    "default_vehicle",
     "known_vehicle",
     "load_vehicle",
 ]

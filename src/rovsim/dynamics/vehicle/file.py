@@ -1,5 +1,6 @@
 """A vehicle file: what stands in it, and the nominal effects it stands for."""
 
+from functools import cache
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -173,6 +174,14 @@ class HeldAxes(Coefficients):
     def enter(self, body: Body) -> None:
         """Hold them."""
         body.free = self.free
+
+
+@cache
+def default_vehicle() -> str:
+    """Name of the vehicle where none is named: conf/default_vehicle.yaml says which."""
+    path = conf_file("default_vehicle.yaml")
+    assert path is not None  # it comes with rovsim
+    return str(read_yaml(path)["vehicle"])
 
 
 def known_vehicle(name: str) -> Path | None:

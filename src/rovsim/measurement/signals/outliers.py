@@ -29,9 +29,9 @@ class VelocityGate(Section):
     """
 
     kind: Literal["velocity_gate"] = "velocity_gate"
-    # m/s: a BlueROV2 reaches about 1.5 m/s (3 knots, Blue Robotics' data sheet)
+    # m/s: what small ROVs reach (3 knots, data sheets); faster vehicles need more
     max_speed: float = Field(default=1.5, gt=0)
-    # rad/s: twice what a BlueROV2 Heavy turns at in a tank
+    # rad/s: twice what a small ROV turns at in a tank
     max_rate: float = Field(default=5.0, gt=0)
     # m: five standard deviations of a step's length at 0.5 to 0.7 mm noise per axis
     tolerance: float = Field(default=0.005, ge=0)

@@ -7,6 +7,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 from rovsim.core.schema import Section
 from rovsim.dynamics.effects.base import Means
 from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.vehicle import default_vehicle
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Interval = tuple[float, float]
@@ -67,7 +68,7 @@ class TankSettings(Section):
 
     name: str = "tank"
     seed: Annotated[int, Field(ge=0)] = 0
-    vehicle: str = "bluerov2_heavy"
+    vehicle: str = Field(default_factory=default_vehicle)
     duration: PositiveFloat = 60.0  # s a run
     runs: Annotated[tuple[TankRun, ...], Field(min_length=1)] = (
         TankRun(id="3dof-1", control="3dof", split="train"),

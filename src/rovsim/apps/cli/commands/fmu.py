@@ -16,7 +16,7 @@ from rovsim.core.extras import require
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import BUILT_IN
 from rovsim.dynamics.model_file import load_model
-from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 
 class Settings(CommandSettings):
@@ -37,6 +37,6 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="Name one model file; install effects of your own (docs/your_own_effect.md).",
         )
     out = Path(settings.out or "results/vehicle.fmu")
-    model = load_model(spec, load_vehicle("bluerov2_heavy"), catalogue)
+    model = load_model(spec, load_vehicle(default_vehicle()), catalogue)
     write_unit(model, None if spec in BUILT_IN else Path(spec), out)
     say(settings, str(out), {"unit": str(out)})

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Hidden
 from rovsim.core.files import write_text
 
-BODY = "BlueROV2"
+BODY = "vehicle"
 
 
 def write_poses(
