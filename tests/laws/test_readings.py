@@ -25,7 +25,7 @@ def test_a_long_step_moves_a_mass_as_its_parts_do(counts, seed):
     count = np.array(counts)
     wrench = np.random.default_rng(seed).normal(size=(count.sum(), 6))
     none = np.zeros((len(wrench), 0))
-    mean, growth = Actuation(wrench, none, none, none).joined(count)
+    mean, growth = Actuation(wrench, none, none, none, none).joined(count)
     for step, forces in enumerate(np.split(wrench, np.cumsum(count)[:-1])):
         v, p = np.zeros(6), np.zeros(6)
         for force in forces / len(forces):
