@@ -64,9 +64,10 @@ def list_misses(answer: KeptAnswer) -> Iterator[Miss]:
 
 def _compare(one: FittedEffect, truth: dict[str, float]) -> Iterator[Miss]:
     defaults = {p.name: p.default for p in built_in()[one.effect].parameters}
+    known = defaults | truth  # fins have names of their vehicle's
     for name, fitted in one.parameters.items():
-        if fitted.value is not None and fitted.std:
-            deviations = (truth.get(name, defaults[name]) - fitted.value) / fitted.std
+        if name in known and fitted.value is not None and fitted.std:
+            deviations = (known[name] - fitted.value) / fitted.std
             yield Miss(one.effect, name, float(deviations))
 
 
