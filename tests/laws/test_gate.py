@@ -10,6 +10,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.gate import Gate, _compare, keep_apart
 from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 
 
@@ -38,6 +39,20 @@ def test_only_what_is_sure_and_matters_is_less():
     assert _compare(error + 20.0 * uneven, error) == 0.0  # a single window
     assert _compare(np.full(20, np.inf), error) == np.inf
     assert _compare(error, np.full(20, np.nan)) == 0.0
+
+
+def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
+    base, runs = observed(tmp_path, duration=60.0)
+    gate = Gate(keep_apart(runs)[1], runs)
+    nowhere = Hypothesis(base, (Term(AddedMass(surge=-100.0), ("surge",)),))
+    possible, impossible = (
+        Selection(Workspace(), Found(h), (), True) for h in (Hypothesis(base), nowhere)
+    )
+    assert gate.prefers(possible, impossible)
+    assert not gate.prefers(impossible, possible)
+    passed, whole = gate.judge(impossible)
+    assert passed.found.hypothesis.terms == ()
+    assert not whole
 
 
 class Workspace:

@@ -141,7 +141,7 @@ def _diagnose(
         # neither is complete, so that what a likelihood takes for noise is physics
         better = gate.prefers(found.selection, joint.selection)
         found = found if better or (better is None and found.score >= joint.score) else joint
-    if found.structures and found.fit.hypothesis.terms:
+    if found.structures and len(found.fit.hypothesis.x):
         found = replace(found, fit=fit_to_replays(found.fit, found.bank))
     rivals = found.selection.named_rivals
     wider, scale = include_scale(found.fit, usable.runs)

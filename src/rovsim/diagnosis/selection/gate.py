@@ -6,12 +6,13 @@ and an answer that replays them worse than the model before is no answer.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.evidence import evaluate_possible
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import Windows
@@ -73,7 +74,7 @@ class Gate:
         if not self.runs:
             return None
         errors = self._errors([own.found.hypothesis.model for own in (one, other)])
-        return _ratio(errors[0], errors[1]) <= 1.0
+        return not np.isfinite(errors[1]).all() or _ratio(errors[0], errors[1]) <= 1.0
 
     def keep_earning(self, selection: Selection) -> Selection:
         """Where physics is left that no name explains: only what makes a difference there.
@@ -119,15 +120,24 @@ class Gate:
         return _compare(errors[0], errors[1]) > 0.0
 
     def _errors(self, models: Sequence[Model]) -> Array:
-        """Mean squared error (m, w) of each window, every axis in units of how much it varies."""
+        """Mean squared error (m, w) of each window, every axis in units of how much it varies.
+
+        NaN where a model cannot move at all: a refit to first order may go that far.
+        """
         parts: list[Array] = []
         for run in self.runs:
             windows = Windows(run)
-            squares = np.mean((windows.compare(models) / self.spread) ** 2, axis=2)
+            e = evaluate_possible(models, len(windows.number), partial(_compare_axes, windows))
+            squares = np.mean((e / self.spread[:, None]) ** 2, axis=1)
             parts += [
                 squares[:, windows.number == k].mean(axis=1) for k in range(len(windows.spans))
             ]
         return np.stack(parts, axis=1)
+
+
+def _compare_axes(windows: Windows, models: Sequence[Model]) -> Array:
+    """Errors of the velocity (m, 6, n)."""
+    return windows.compare(models).swapaxes(1, 2)
 
 
 def _group(h: Hypothesis) -> list[tuple[Term, ...]]:
