@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 import worlds
 from flown import observed
+from rovsim.core.run import Commands
 from rovsim.diagnosis.observer.observed_run import prepare_run
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.mocap_view import NO_CHANGE
@@ -51,6 +52,18 @@ def test_steps_end_where_bins_end():
     parts = np.concatenate([[0], np.cumsum(run.parts)])[run.ends]
     np.testing.assert_array_equal(parts, np.round((time - time[0]) / 0.01))
     assert np.all(np.diff(run.edges) < 0.08)
+
+
+def test_a_line_that_was_lost_in_a_fast_ramp_is_known_to_be(tmp_path):
+    base, (run,) = observed(tmp_path, duration=8.0, camera=Camera(**STILL))
+    time = 0.02 * np.arange(400)
+    slow, fast = np.full(360, 0.01), np.full(40, 0.03)
+    value = np.cumsum(np.concatenate([slow, fast]))[:, None]
+    kept = np.isin(np.arange(400), (100, 390), invert=True)
+    commands = Commands(time[kept], value[kept], "thruster")
+    lossy = replace(run, motion=replace(run.motion, commands=commands))
+    found = lossy.find_lost_commands(base.thrust_path)
+    np.testing.assert_allclose(found, [[7.78, 7.82]])
 
 
 def test_a_reading_is_the_pose_in_the_middle_of_its_frames(tmp_path):

@@ -23,7 +23,7 @@ from rovsim.simulation.step_grid import StepGrid
 SETTLING = 1.0  # s
 SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
 GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
-USUAL, JUMP = 0.95, 2.0  # quantile of the changes from line to line; two of them are a jump
+USUAL = 0.95  # quantile of the changes from line to line: more is a jump, of few lines at most
 # Frames are read in groups of about this length: what a vehicle of this size does is slower than
 # 5 Hz, and so are its propellers (5 / s, docs/simulator.md).
 GROUP = 0.05  # s
@@ -165,7 +165,7 @@ class ObservedRun:
         if not len(steps):
             return np.empty((0, 2))
         change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
-        lost = (steps > GAP * np.median(steps)) & (change > JUMP * np.quantile(change, USUAL))
+        lost = (steps > GAP * np.median(steps)) & (change > np.quantile(change, USUAL))
         at = self.edges[0] + path.arrival(commands.time - self.edges[0])
         return np.column_stack([at[:-1][lost], at[1:][lost]])
 
