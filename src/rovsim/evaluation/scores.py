@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.quality import EXCITED
+from rovsim.measurement.signals.measured import Measured, blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis, or_none
 from rovsim.results.comparison import OPEN_LOOP, Comparison, Metrics, ModelErrors, RunErrors
@@ -31,17 +32,29 @@ class Errors:
 
 
 def subtract(motion: Motion, prediction: Prediction) -> Errors:
-    """Errors of one prediction at usable samples; infinite where it diverged."""
+    """Errors of one prediction at usable samples; infinite where it diverged.
+
+    NaN for what was not measured.
+    """
     both = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
     moved = both & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
     with np.errstate(invalid="ignore"):
         turn = log(multiply(conjugate(motion.eta[both, 3:]), prediction.eta[both, 3:]))
+    place, angle = _posed(motion.measured)
     return Errors(
-        prediction.nu[both] - motion.nu[both],
-        prediction.nu_dot[moved] - motion.nu_dot[moved],
-        np.linalg.norm(prediction.eta[both, :3] - motion.eta[both, :3], axis=1),
-        np.linalg.norm(turn, axis=1),
+        blank(motion.measured, prediction.nu[both] - motion.nu[both], np.nan),
+        blank(motion.measured, prediction.nu_dot[moved] - motion.nu_dot[moved], np.nan),
+        place * np.linalg.norm(prediction.eta[both, :3] - motion.eta[both, :3], axis=1),
+        angle * np.linalg.norm(turn, axis=1),
     )
+
+
+def _posed(measured: Measured | None) -> tuple[float, float]:
+    """1 where the whole position, the whole attitude was measured; else NaN."""
+    if measured is None:
+        return 1.0, 1.0
+    place, angle = measured.coordinates.all(), measured.axes[3:].all()
+    return (1.0 if place else np.nan), (1.0 if angle else np.nan)
 
 
 def pool(parts: Sequence[Errors]) -> Errors:

@@ -42,6 +42,7 @@ def replay(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
+    signals = signals.suited(motion.measured)
     spans: dict[str, Spans] = {OPEN_LOOP: find_whole(motion)} if open_loop else {}
     for seconds in settings.horizons:
         spans[f"{seconds:g}"] = list(find_windows(motion, seconds))

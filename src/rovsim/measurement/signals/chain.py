@@ -10,7 +10,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput
 from rovsim.core.files import read_arrays
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
@@ -27,9 +26,11 @@ from rovsim.measurement.signals.filter import (
     filter_eta,
     filter_poses,
 )
+from rovsim.measurement.signals.measured import Measured, blank
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.measurement.signals.outliers import Outliers, VelocityGate
 from rovsim.measurement.signals.resample import Linear, Resampling, resample
+from rovsim.measurement.signals.track import track_channels
 
 # What a stage hands on: poses, or a binned recording that passes unchanged.
 Stage: TypeAlias = Poses | Recording
@@ -42,6 +43,19 @@ class SignalSettings(Section):
     resample: Resampling = Linear()
     filter: Filter = Butterworth()
     differentiate: Differentiation = Spline()
+
+    def suited(self, measured: Measured | None) -> "SignalSettings":
+        """The same, with a filter that lets through no more than what was measured can show."""
+        if measured is None:
+            return self
+        cutoff = float(measured.cutoff[0])
+        margin = max(self.differentiate.margin, 0.5 / cutoff)  # half a period, as by default
+        return self.model_copy(
+            update={
+                "filter": self.filter.below(cutoff),
+                "differentiate": self.differentiate.model_copy(update={"margin": margin}),
+            }
+        )
 
     @property
     def reach(self) -> float:
@@ -62,27 +76,20 @@ def resampled(recording: Recording, settings: SignalSettings) -> Stage:
     """First stage: poses on a uniform clock. A binned recording passes unchanged.
 
     Raises:
-        BadInput: no full poses were measured.
+        BadInput: nothing of the motion was measured.
     """
-    _check_poses(recording)
+    if not recording.posed:
+        return track_channels(recording, settings.resample)
     if recording.nu is not None:
         return recording
     return resample(recording, settings.resample, settings.outliers)
 
 
-def _check_poses(recording: Recording) -> None:
-    if not recording.posed:
-        raise BadInput(
-            f"no full poses, but the channels {', '.join(recording.channels)}",
-            where=f"run {recording.run.id}",
-            expected="position and attitude measured together",
-            remedy="Add the missing columns or topics; other recordings cannot be replayed yet.",
-        )
-
-
 def filtered(stage: Stage, settings: SignalSettings) -> Stage:
     """Second stage: filtered poses. A binned recording passes unchanged."""
-    return stage if isinstance(stage, Recording) else filter_poses(stage, settings.filter)
+    if isinstance(stage, Recording):
+        return stage
+    return filter_poses(stage, settings.suited(stage.measured).filter)
 
 
 def differentiated(stage: Stage, settings: SignalSettings) -> Motion:
@@ -117,11 +124,13 @@ def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
         nu[first:last], nu_dot[first:last] = differentiate_eta(
             poses.eta[first:last], dt, settings.differentiate
         )
-    usable = without_margins(poses.usable, round(settings.differentiate.margin / dt))
+    margin = settings.suited(poses.measured).differentiate.margin
+    usable = without_margins(poses.usable, round(margin / dt))
     usable &= np.isfinite(nu).all(axis=1)
+    nu, nu_dot = blank(poses.measured, nu, 0.0), blank(poses.measured, nu_dot, 0.0)
     return Motion(
         poses.run, poses.site, poses.time, poses.eta, nu, nu_dot, nu, usable,
-        poses.commands, binned=False, end=float(poses.time[-1]),
+        poses.commands, binned=False, end=float(poses.time[-1]), measured=poses.measured,
     )  # fmt: skip
 
 

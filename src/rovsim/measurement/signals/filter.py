@@ -20,6 +20,7 @@ from rovsim.measurement.signals.motion import Poses
 EXTENSION, FIT = 4.0, 0.5
 # What lies two periods away or more adds less than 1e-3 to a smoothed sample (order 3).
 REACH = 2.0
+HALF_POWER = 1.45  # Hz s: half-power frequency times window of Savitzky-Golay at degree 3
 
 
 class Butterworth(Section):
@@ -35,6 +36,10 @@ class Butterworth(Section):
     # at 100 Hz, 2.5 mm/s and 10 mrad/s are left in the velocities
     cutoff: float = Field(default=5.0, gt=0)
     order: int = Field(default=3, ge=2, le=6)
+
+    def below(self, cutoff: float) -> "Butterworth":
+        """The same with a cut-off of at most that many Hz."""
+        return self.model_copy(update={"cutoff": min(self.cutoff, cutoff)})
 
     @property
     def reach(self) -> float:
@@ -74,6 +79,11 @@ class SavitzkyGolay(Section):
     window: float = Field(default=0.29, gt=0)
     degree: int = Field(default=3, ge=1, le=5)
 
+    def below(self, cutoff: float) -> "SavitzkyGolay":
+        """The same with a half-power frequency of at most that many Hz, which is per window."""
+        wider = max(1.0, HALF_POWER / (self.window * cutoff))
+        return self.model_copy(update={"window": self.window * wider})
+
     @property
     def reach(self) -> float:
         """How far to either side a smoothed sample looks, s."""
@@ -91,6 +101,10 @@ class Unfiltered(Section):
     """No filter."""
 
     kind: Literal["none"] = "none"
+
+    def below(self, cutoff: float) -> "Unfiltered":
+        """Nothing else."""
+        return self
 
     @property
     def reach(self) -> float:

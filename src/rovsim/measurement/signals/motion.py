@@ -10,6 +10,7 @@ from rovsim.core.files import read_arrays, write_arrays
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.recording.recording import labels, unlabelled
 from rovsim.measurement.signals.clock import find_stretches
+from rovsim.measurement.signals.measured import Measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,6 +19,7 @@ class Poses:
 
     `time` (n,) s; `eta` (n, 7): position NED m and unit quaternion (w, x, y, z), sign-continuous;
     `usable` (n,): False in and beside gaps too long to bridge (`eta` there is a placeholder).
+    `measured`: what of it was, None: everything.
     """
 
     run: RunInfo
@@ -26,10 +28,12 @@ class Poses:
     eta: Array
     usable: Array
     commands: Commands
+    measured: Measured | None = None
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""
         arrays = {"time": self.time, "eta": self.eta, "usable": self.usable}
+        arrays |= dict(self.measured.by_name()) if self.measured else {}
         write_arrays(path, **labels(self.run, self.site, self.commands), **arrays)
 
     @staticmethod
@@ -37,7 +41,8 @@ class Poses:
         """Read what `write` wrote."""
         a = read_arrays(path)
         run, site, commands = unlabelled(a)
-        return Poses(run, site, a["time"], a["eta"], a["usable"], commands)
+        measured = Measured.from_names(a)
+        return Poses(run, site, a["time"], a["eta"], a["usable"], commands, measured)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +56,8 @@ class Motion:
     Binned: `nu` is the mean over time[k] .. time[k+1] (the last bin ends at `end`), `nu_dot` the
     backward difference (NaN at k = 0), `time` may be uneven; `eta` and `state_nu` (n, 6) are the
     instantaneous pose and velocity at time[k], from which a replay may start.
+
+    `measured`: what of it was, None: everything.
     """
 
     run: RunInfo
@@ -64,6 +71,7 @@ class Motion:
     commands: Commands
     binned: bool
     end: float
+    measured: Measured | None = None
 
     @property
     def state(self) -> Array:
@@ -79,6 +87,7 @@ class Motion:
         names = ("time", "eta", "nu", "nu_dot", "state_nu", "usable")
         arrays = {name: getattr(self, name) for name in names}
         arrays |= {"binned": np.array(self.binned), "end": np.array(self.end)}
+        arrays |= dict(self.measured.by_name()) if self.measured else {}
         write_arrays(path, **labels(self.run, self.site, self.commands), **arrays)
 
     @staticmethod
@@ -88,5 +97,5 @@ class Motion:
         run, site, commands = unlabelled(a)
         return Motion(
             run, site, a["time"], a["eta"], a["nu"], a["nu_dot"], a["state_nu"], a["usable"],
-            commands, bool(a["binned"]), float(a["end"]),
+            commands, bool(a["binned"]), float(a["end"]), Measured.from_names(a),
         )  # fmt: skip

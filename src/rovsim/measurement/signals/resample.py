@@ -77,12 +77,12 @@ def resample(recording: Recording, settings: Resampling, outlier_settings: Outli
         time, np.concatenate([recording.position[believed], attitude], axis=1), clock
     )
     eta[:, 3:] = rotations.continuous(rotations.normalized(eta[:, 3:]))
-    usable = _bridged(time, clock, settings.max_gap)
+    usable = find_bridged(time, clock, settings.max_gap)
     usable = without_short(usable, round(settings.min_segment * rate))
     return Poses(recording.run, recording.site, clock, eta, usable, recording.commands)
 
 
-def _bridged(time: Array, clock: Array, max_gap: float) -> Array:
+def find_bridged(time: Array, clock: Array, max_gap: float) -> Array:
     """Whether each sample of `clock` is at a frame or between two that are close enough."""
     before = np.clip(np.searchsorted(time, clock + SAME_INSTANT, side="right") - 1, 0, None)
     after = np.clip(np.searchsorted(time, clock - SAME_INSTANT), None, len(time) - 1)
