@@ -11,6 +11,7 @@ from scipy.signal import lfilter
 
 from rovsim.diagnosis.observer.kalman import (
     LEAST_DRIVING,
+    POSE,
     SOLVABLE,
     AxisNoise,
     characteristic,
@@ -111,12 +112,30 @@ def test_spans_are_filtered_by_themselves_and_only_kept_ones_written():
     e, spans = random.normal(size=(2, 6, 50)), np.array([[0, 20], [20, 50]])
     kept, scale = random.random(50) > 0.4, np.arange(1.0, 7.0)
     out = np.empty((2, 6, kept.sum()))
-    filter_kept(b, a, e, spans, kept, scale, out)
+    filter_kept(b, a, e, spans, kept, np.ones((e.shape[2], 6), bool), scale, out)
     for i in range(6):
         parts = [lfilter(b[i], a[i], e[1, i, p:q]) for p, q in spans]
         whole = np.concatenate(parts)[kept]
         np.testing.assert_allclose(out[1, i], whole * scale[i], atol=1e-12)
-        assert sum_of_squares(b[i], a[i], e[1, i], spans, kept)[0] == pytest.approx(whole @ whole)
+        total, _ = sum_of_squares(b[i], a[i], e[1, i], spans, kept, np.ones(50, bool))
+        assert total == pytest.approx(whole @ whole)
+
+
+def test_what_is_not_shown_is_passed_over():
+    """A filter goes on from one value that is shown to the next, whatever lies between."""
+    random = np.random.default_rng(1)
+    b, a = random.normal(size=(6, 4)), np.column_stack([np.ones(6), np.full((6, 3), 0.1)])
+    e, spans, kept = random.normal(size=(1, 6, 60)), np.array([[0, 60]]), np.arange(60) > 9
+    shown = random.random((60, 6)) > 0.5
+    out = np.empty((1, 6, 50))
+    filter_kept(b, a, e, spans, kept, shown, np.ones(6), out)
+    for i in range(6):
+        there = shown[:, i]
+        expected = np.zeros(60)
+        expected[there] = lfilter(b[i], a[i], e[0, i, there])
+        np.testing.assert_allclose(out[0, i], expected[kept], atol=1e-12)
+        _, count = sum_of_squares(b[i], a[i], e[0, i], spans, kept, there)
+        assert count == np.sum(there & kept)
 
 
 def test_the_noise_of_made_innovations_is_found():
@@ -125,7 +144,9 @@ def test_the_noise_of_made_innovations_is_found():
 
     def tuned(noise):
         axes = enumerate(damping)
-        return Tuning(tuple(design_filter(False, H, d, noise.of_axis(i)) for i, d in axes), H)
+        return Tuning(
+            tuple(design_filter(False, H, d, noise.of_axis(i)) for i, d in axes), np.full(6, H)
+        )
 
     start = Noise(np.full(6, 0.1), np.full(6, 0.5), np.full(6, 5e-4))
     found = tuned(start)
@@ -133,7 +154,9 @@ def test_the_noise_of_made_innovations_is_found():
     e = np.array([innovations(f, y) for f in found.filters])
     kept = np.arange(20000) > 100
     run = SimpleNamespace(
-        period=H,
+        axis_periods=np.full(6, H),
+        reading_kinds=np.full(6, POSE),
+        shown=np.ones((20000, 6), bool),
         motion=SimpleNamespace(binned=False),
         rows=np.array([[0, 20000]]),
         settled=kept,

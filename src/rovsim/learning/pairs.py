@@ -3,18 +3,20 @@
 Teacher-forced: the model is evaluated at the measured state, a_res = a_real - a_sim.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.features import FeatureSettings, assemble
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import LearnerSettings, Progress, Trained, train
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.measured_states import (
     accelerate_as_measured,
@@ -54,11 +56,13 @@ def sample_run(
     """Samples of one run at its usable instants.
 
     All in true axes at CO: where the model says that the motion capture sees another point or other
-    axes, the measurement is turned back first, so that tau_res = M a_res in a free replay.
+    axes, the measurement is turned back first, so that tau_res = M a_res in a free replay. On axes
+    that were not measured nothing is missing.
     """
     motion = as_true(model, motion)
-    found = _of_bins if motion.binned else _of_samples
-    return found(model, motion, signals, settings)
+    make = _of_bins if motion.binned else _of_samples
+    found = make(model, motion, signals.suited(motion.measured), settings)
+    return replace(found, a_res=blank(motion.measured, found.a_res, 0.0))
 
 
 def _of_samples(
@@ -121,13 +125,27 @@ def flown_with(control: str, run: Any) -> bool:
     return control in ("all", run.control)
 
 
+def _refuse_parts(motions: Sequence[Motion]) -> None:
+    for motion in motions:
+        known = np.ones(6, bool) if motion.measured is None else motion.measured.axes
+        if not known.all():
+            missing = ", ".join(axis for axis, yes in zip(AXES, known, strict=True) if not yes)
+            raise BadInput(
+                f"nothing was measured of {missing}",
+                where=f"run {motion.run.id}",
+                expected="all six axes, which a residual learns together",
+                remedy="Add effects instead (rovsim diagnose), or train on runs with full poses.",
+            )
+
+
 def choose_training_runs(motions: Sequence[Motion], control: str) -> list[Motion]:
     """The runs a residual of this control may learn from.
 
     Raises:
-        BadInput: the campaign has none.
+        BadInput: the campaign has none, or one of them was measured in part only.
     """
     chosen = [m for m in motions if m.run.split == "train" and flown_with(control, m.run)]
+    _refuse_parts(chosen)
     if chosen:
         return chosen
     runs = ", ".join(f"{m.run.id} ({m.run.control}, {m.run.split})" for m in motions)

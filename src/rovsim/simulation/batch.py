@@ -52,13 +52,17 @@ class Correction:
     """Readings that a filter corrects models by.
 
     `readings` of each model (k, 13): pose, and mean velocity since the reading before; `time`
-    (s+1,) s at which steps begin and end, `ends` (k,) those at which the readings hold; `gains`
+    (s+1,) s at which steps begin and end, `ends` (k,) those at which the readings hold; `seen`
+    (k, 6) 1 for the axes that each of them shows, `known` (4,) 1 where x, y, z and yaw were
+    measured at all; `gains`
     (3, 6) of pose, velocity and disturbance per unit of innovation; `decay` (s, 6) of the
     disturbance over each step; `by_velocity`: by the velocities, and poses are taken as they are
     read.
     """
 
     readings: Sequence[Array]
+    seen: Array
+    known: Array
     time: Array
     ends: Array
     gains: Array
@@ -140,7 +144,8 @@ class Batch:
         run_jobs(
             self.engine.observe, jobs, correction.time, correction.ends, self._constants,
             self._inputs(drives), self._parameters, self._place, np.stack(own), row,
-            correction.gains, correction.decay, correction.by_velocity, out,
+            correction.seen, correction.known, correction.gains, correction.decay,
+            correction.by_velocity, out,
         )  # fmt: skip
         return out.reshape(models, count, 6)
 

@@ -33,7 +33,12 @@ def simulate_noise_floor(
     signals: SignalSettings,
     seed: int = 0,
 ) -> float | None:
-    """The `windows_2s` error (see scores.normalize) of a perfect model on these runs."""
+    """The `windows_2s` error (see scores.normalize) of a perfect model on these runs.
+
+    None where only parts of the pose were measured: how their noise passes is not known here.
+    """
+    if any(run.motion.measured is not None for run in runs):
+        return None
     perfect = _PerfectModel(model, noise, signals, np.random.default_rng(seed))
     errors = [perfect.errors(run) for run in runs]
     return normalize([run.motion for run in runs], rms(np.concatenate(errors)))

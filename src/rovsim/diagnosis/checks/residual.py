@@ -78,13 +78,18 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
 
 
 def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
-    """What a fit leaves, axis by axis, without what a gap in the command log may have done."""
+    """What a fit leaves, axis by axis, without what a gap in the command log may have done.
+
+    Axes that not every reading shows are left out: their filters have another clock.
+    """
     J = bank.whiten(found.seen.J, found.noise)
     white = _split_by_run(bank.whiten(found.seen.e, found.noise), bank.runs)
     path, tunings = found.hypothesis.model.thrust_path, bank.tune(found.noise)
     unknown = [run.find_lost_commands(path) for run in bank.runs]
     residuals = []
     for i, axis in enumerate(AXES):
+        if not all(run.shown[:, i].all() for run in bank.runs):
+            continue
         filters = tuple(tuning.filters[i] for tuning in tunings)
         each = zip(white, filters, bank.runs, unknown, strict=True)
         cleared = tuple(_clear(own[i], f, run, spans) for own, f, run, spans in each)

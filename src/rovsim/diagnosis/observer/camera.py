@@ -81,7 +81,8 @@ class _Spectrum:
 
 def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None:
     """The filter that poses were reported through, beside what the base knows; None: none."""
-    spectra = [s for run in runs if not run.motion.binned for s in _measure(base, run)]
+    cameras = [run for run in runs if not run.motion.binned and run.motion.measured is None]
+    spectra = [s for run in cameras for s in _measure(base, run)]
     if not spectra:
         return None
 

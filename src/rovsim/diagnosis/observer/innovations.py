@@ -24,7 +24,14 @@ def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
     readings, starts = _see(models, run)
     time = run.edges - run.edges[0]
     seen = Correction(
-        readings, time, run.ends, tuning.gains, tuning.decay(np.diff(time)), run.motion.binned
+        readings,
+        run.seen.astype(float),
+        run.known,
+        time,
+        run.ends,
+        tuning.gains,
+        tuning.decay(np.diff(time)),
+        run.motion.binned,
     )
     drives = run.drives.of(models)
     e = serve_all(models, run).innovations(drives, starts, seen)

@@ -19,10 +19,12 @@ from rovsim.diagnosis.observer.small_matrices import (
     transpose,
 )
 
+POSE, BIN_MEAN, SUM = 0, 1, 2  # what is read of an axis
 MOST_DOUBLINGS = 60
 CONVERGED = 1e-13
 # A little noise everywhere keeps the Riccati equation solvable; it is far below the readings'.
 SOLVABLE, LEAST_DRIVING = 1e-6, 1e-12
+READ_AS_IS = 1e-4  # of the noise that adds up
 
 
 class AxisNoise(NamedTuple):
@@ -81,18 +83,19 @@ class AxisFilter:
         ), self.poles
 
 
-def design_filter(binned: bool, h: float, damping: float, noise: AxisNoise) -> AxisFilter:
+def design_filter(kind: int, h: float, damping: float, noise: AxisNoise) -> AxisFilter:
     """The filter of one axis for one noise (noise.py), readings every h s."""
-    return AxisFilter(*solve_steady_state(binned, h, damping, *noise))
+    return AxisFilter(*solve_steady_state(kind, h, damping, *noise))
 
 
 @njit(cache=True)
-def solve_steady_state(binned, h, d, level, memory, reading, colour, colour_memory):
+def solve_steady_state(kind, h, d, level, memory, reading, colour, colour_memory):
     """F, C, gain, variance of the innovations, poles and forgetting of the filter of one axis.
 
     Velocities of bins have no slow error of their own.
     """
     phi, slow = np.exp(-h / memory), np.exp(-h / colour_memory)
+    binned = kind == BIN_MEAN
     n = 2 if binned else 4 if colour > 0.0 else 3
     F, C, forgets = np.zeros((n, n)), np.zeros(n), np.zeros(3 if n == 4 else 2)
     Q, r, disturbed = np.zeros((n, n)), reading**2, 1 if binned else 2
@@ -110,6 +113,8 @@ def solve_steady_state(binned, h, d, level, memory, reading, colour, colour_memo
         F[3, 3], C[3] = slow, 1.0
         Q[3, 3] = colour**2 * (1.0 - slow**2)
         forgets[1], forgets[2] = -phi - slow, phi * slow
+    if kind == SUM:
+        Q[0, 0], r = r, READ_AS_IS * r
     P = solve_riccati(F, C, Q, r)
     gain, variance = np.zeros(n), r
     for i in range(n):
@@ -178,7 +183,7 @@ def _filtered(b, a, value, state):
 
 
 @njit(cache=True, nogil=True)
-def filter_kept(b, a, e, spans, kept, scale, out):
+def filter_kept(b, a, e, spans, kept, shown, scale, out):
     """Filter each span of e (k, 6, n) by itself, axis by axis; the kept ones (k, 6, m) into out.
 
     As scipy.signal.lfilter, but several k on several cores and without copies: twice as fast.
@@ -189,6 +194,7 @@ def filter_kept(b, a, e, spans, kept, scale, out):
         e: what is filtered.
         spans: first and last + 1 (s, 2) of each.
         kept: which of the n are written (n,).
+        shown: which are there for each axis (n, 6); the others are written as zeros.
         scale: factors (6,) of what is written.
         out: what is written.
     """
@@ -198,19 +204,23 @@ def filter_kept(b, a, e, spans, kept, scale, out):
         for s in range(len(spans)):
             state = np.zeros(b.shape[1] - 1)
             for t in range(spans[s, 0], spans[s, 1]):
-                value = _filtered(b[i], a[i], e[k, i, t], state)
+                value = 0.0
+                if shown[t, i]:
+                    value = _filtered(b[i], a[i], e[k, i, t], state)
                 if kept[t]:
                     out[k, i, m] = value * scale[i]
                     m += 1
 
 
 @njit(cache=True)
-def sum_of_squares(b, a, e, spans, kept):
-    """Sum of squares of the kept filtered values of e (n,), and their count."""
+def sum_of_squares(b, a, e, spans, kept, shown):
+    """Sum of squares of the kept filtered values of e (n,), of those shown, and their count."""
     total, count = 0.0, 0
     for s in range(len(spans)):
         state = np.zeros(len(b) - 1)
         for t in range(spans[s, 0], spans[s, 1]):
+            if not shown[t]:
+                continue
             value = _filtered(b, a, e[t], state)
             if kept[t]:
                 total += value * value
@@ -228,13 +238,13 @@ def convolve(a, b):
     return out
 
 
-@njit(cache=True, nogil=True)
-def negative_log_likelihood(noise, binned, h, damping, poles, forgets, e, spans, kept):
+@njit(cache=True, nogil=True, error_model="numpy")
+def negative_log_likelihood(noise, kind, h, damping, poles, forgets, e, spans, kept, shown):
     """Of innovations e (n,) of one run under a noise (5,), up to a constant.
 
     Args:
         noise: as `AxisNoise`.
-        binned: whether velocities of bins are read.
+        kind: what is read.
         h: period of the readings, s.
         damping: of the velocity, 1/s.
         poles: of the filter that e was found with.
@@ -242,10 +252,11 @@ def negative_log_likelihood(noise, binned, h, damping, poles, forgets, e, spans,
         e: innovations.
         spans: first and last + 1 (s, 2) of each.
         kept: which of them count (n,).
+        shown: which are there at all (n,).
     """
     _, _, _, variance, own_poles, own_forgets = solve_steady_state(
-        binned, h, damping, noise[0], noise[1], noise[2], noise[3], noise[4]
+        kind, h, damping, noise[0], noise[1], noise[2], noise[3], noise[4]
     )
     b, a = convolve(own_forgets, poles), convolve(forgets, own_poles)
-    squares, count = sum_of_squares(b, a, e, spans, kept)
+    squares, count = sum_of_squares(b, a, e, spans, kept, shown)
     return 0.5 * (squares / variance + count * np.log(variance))

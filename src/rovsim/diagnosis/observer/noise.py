@@ -3,6 +3,7 @@
     pose      x = (p, v, a):  p' = v,  v' = -d v + a,  a' = -a / T + white noise,  reading p + noise
               where cameras err slowly, also b' = -b / T_b + white noise, and p + b is read
     velocity  x = (v, a):     the same without p,      reading v (mean over the bin) + noise
+    sum       as pose, of summed-up velocities: the noise adds up in p, and p is read as it is
 
 The steady-state Kalman filter of this linear model corrects the nonlinear one (engine/observer.py),
 and its innovations, if the noise is right, are white with a known variance. Innovations found with
@@ -57,7 +58,7 @@ class Tuning:
     """One filter an axis, for one noise and one damping."""
 
     filters: tuple[AxisFilter, ...]
-    period: float
+    periods: Array
 
     @property
     def gains(self) -> Array:
@@ -67,7 +68,7 @@ class Tuning:
 
     def decay(self, h: Array) -> Array:
         """What remains of the disturbance (s, 6) after each of h (s,) s."""
-        return np.array([f.decay for f in self.filters]) ** (h[:, None] / self.period)
+        return np.array([f.decay for f in self.filters]) ** (h[:, None] / self.periods)
 
     @property
     def variance(self) -> Array:
@@ -77,9 +78,11 @@ class Tuning:
 
 def tune(noise: Noise, damping: Array, run: ObservedRun) -> Tuning:
     """The filters for one noise; velocities decay at `damping` (6,) 1/s."""
-    binned, h = run.motion.binned, run.period
-    filters = [design_filter(binned, h, d, noise.of_axis(i)) for i, d in enumerate(damping)]
-    return Tuning(tuple(filters), h)
+    kinds, periods = run.reading_kinds, run.axis_periods
+    filters = [
+        design_filter(kinds[i], periods[i], d, noise.of_axis(i)) for i, d in enumerate(damping)
+    ]
+    return Tuning(tuple(filters), periods)
 
 
 def whiten(
@@ -108,7 +111,7 @@ def _white_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Arr
     out = np.empty((*rows.shape[:-1], int(run.settled.sum())), e.dtype)
     scale = 1.0 / np.sqrt(wanted.variance)
     on_cores(
-        lambda k: filter_kept(b, a, rows[k], run.rows, run.settled, scale, out[k]),
+        lambda k: filter_kept(b, a, rows[k], run.rows, run.settled, run.shown, scale, out[k]),
         np.ones(len(rows)),
     )
     return out.reshape(*e.shape[:-1], out.shape[-1])

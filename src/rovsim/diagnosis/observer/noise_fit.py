@@ -53,7 +53,10 @@ def fit_noise(
     noises, costs = [], []
     for i, d in enumerate(damping):
         filters = tuple(one.filters[i] for one in found)
-        axis = _AxisInnovations(tuple(one[i] for one in e), tuple(runs), filters, d)
+        axis = _AxisInnovations(i, tuple(one[i] for one in e), tuple(runs), filters, d)
+        if not axis.counted:
+            noises.append(start.of_axis(i))
+            continue
         noise, cost = _fit_axis(axis, start.of_axis(i))
         if colour and not axis.binned:
             noise, cost = _fit_colour(axis, noise, cost)
@@ -64,12 +67,18 @@ def fit_noise(
 
 @dataclass(frozen=True, eq=False)
 class _AxisInnovations:
-    """Innovations (n_run,) of one axis, and the filter of each run they were found with."""
+    """Innovations (n_run,) of an axis, and the filter of each run they were found with."""
 
+    axis: int
     e: tuple[Array, ...]
     runs: tuple[ObservedRun, ...]
     filters: tuple[AxisFilter, ...]
     damping: float
+
+    @property
+    def counted(self) -> bool:
+        """Whether any innovation counts."""
+        return any((run.settled & run.shown[:, self.axis]).any() for run in self.runs)
 
     @property
     def binned(self) -> bool:
@@ -82,14 +91,16 @@ class _AxisInnovations:
         return float(np.sqrt(self.runs[0].group))
 
     def cost(self, noise: Array) -> float:
-        """Negative log likelihood of a noise (5,), up to a constant."""
-        return sum(
+        """Negative log likelihood of a noise (5,), up to a constant; infinite where it has none."""
+        i = self.axis
+        found = sum(
             negative_log_likelihood(
-                noise, run.motion.binned, run.period, self.damping, old.poles, old.forgets, e,
-                run.rows, run.settled,
+                noise, run.reading_kinds[i], run.axis_periods[i], self.damping, old.poles,
+                old.forgets, e, run.rows, run.settled, run.shown[:, i],
             )
             for e, run, old in zip(self.e, self.runs, self.filters, strict=True)
         )  # fmt: skip
+        return float(found) if np.isfinite(found) else np.inf
 
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import normalized
+from rovsim.diagnosis.observer.kalman import BIN_MEAN, POSE, SUM
 from rovsim.dynamics.actuation import Between, ThrustPath
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
@@ -124,6 +125,38 @@ class ObservedRun:
         return float(np.mean(np.diff(self.instants)))
 
     @property
+    def known(self) -> Array:
+        """1 where x, y, z and yaw were measured (4,), else 0."""
+        measured = self.motion.measured
+        if measured is None:
+            return np.ones(4)
+        return np.concatenate([measured.coordinates, measured.heading]).astype(float)
+
+    @cached_property
+    def seen(self) -> Array:
+        """Which axes (k, 6) each reading shows."""
+        count, measured = len(self.ends), self.motion.measured
+        if measured is None:
+            return np.ones((count, 6), bool)
+        frames = measured.when[: count * self.group]
+        return np.asarray(frames.reshape(count, self.group, 6).any(axis=1))
+
+    @cached_property
+    def reading_kinds(self) -> Array:
+        """What is read of each axis (6,), as `kalman` numbers it: poses, bin means, or sums."""
+        if self.motion.binned:
+            return np.full(6, BIN_MEAN)
+        measured = self.motion.measured
+        return np.full(6, POSE) if measured is None else np.where(measured.summed, SUM, POSE)
+
+    @cached_property
+    def axis_periods(self) -> Array:
+        """Mean time (6,) between two readings of each axis, s; the readings' own where none is."""
+        count = self.seen.sum(axis=0)
+        each = self.period * len(self.seen) / np.maximum(count, 1)
+        return np.where(count > 0, each, self.period)
+
+    @property
     def frame_period(self) -> float:
         """Mean time between two frames, s."""
         return self.period / self.group
@@ -140,6 +173,13 @@ class ObservedRun:
         """Instant of each innovation, s since the start of the run."""
         parts = [self.instants[a + 1 : b + 1] for a, b in self.spans]
         return np.concatenate([np.empty(0), *parts])
+
+    @cached_property
+    def shown(self) -> Array:
+        """Which axes (n, 6) each innovation belongs to."""
+        return np.concatenate(
+            [np.empty((0, 6), bool), *(self.seen[a + 1 : b + 1] for a, b in self.spans)]
+        )
 
     @cached_property
     def index(self) -> Array:
@@ -233,15 +273,12 @@ def _observe_samples(
     count, period = len(motion.time), float(motion.time[1] - motion.time[0])
     group = 2 * round(0.5 * (GROUP / period - 1.0)) + 1 if period < GROUP else 1
     readings = count // group
-    first = motion.time[0] + group // 2 * period
-    steps = grid.stride if group == 1 else 1
-    parts = group * grid.stride // steps
-    h = group * period / steps
-    edges = first + h * np.arange((readings - 1) * steps + 1)
+    steps, ends = _divide(np.arange(readings) * group * grid.stride, GROUP / grid.h)
+    edges = motion.time[0] + group // 2 * period + grid.h * steps
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
     return ObservedRun(
-        motion, grid.edges, np.arange(count) * grid.stride, frames, group,
-        np.arange(readings) * steps, edges, np.full(len(edges) - 1, parts), between, wrenches,
+        motion, grid.edges, np.arange(count) * grid.stride, frames, group, ends, edges,
+        np.diff(steps), between, wrenches,
     )  # fmt: skip
 
 

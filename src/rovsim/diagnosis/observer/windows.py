@@ -16,6 +16,7 @@ from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalize, rms
+from rovsim.measurement.signals.measured import blank
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.measured_states import as_true
 from rovsim.simulation.sharpened import stage_outputs
@@ -81,7 +82,7 @@ class Windows:
     def compare(
         self, models: Sequence[Model], starts: Array | None = None, pushes: Array | None = None
     ) -> Array:
-        """Predicted minus measured velocity (m, n, 6).
+        """Predicted minus measured velocity (m, n, 6); zero where nothing was measured.
 
         Args:
             models: to predict with.
@@ -137,7 +138,8 @@ class Windows:
         """Differences (n, 6) of velocities (steps + 1, 6) of each window."""
         each = zip(self.spans, nu, strict=True)
         parts = [self._at_readings(span, v) - self._measured(span) for span, v in each]
-        return np.concatenate([np.empty((0, 6)), *parts])
+        found = np.concatenate([np.empty((0, 6)), *parts])
+        return blank(self.run.motion.measured, found, 0.0)
 
     def _measured(self, span: tuple[int, int]) -> Array:
         return self.run.motion.nu[self._compared(span)]

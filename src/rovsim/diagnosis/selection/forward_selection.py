@@ -93,7 +93,9 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
 def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Model]) -> Array:
     """Whether some axis' error in 2 s windows is noticeably larger with each other model (m,)."""
     rmse = score_windows([found.hypothesis.model, *without], workspace.bank.runs).rmse
-    return np.max(rmse[1:] / rmse[0], axis=1) - 1.0 > workspace.settings.relevant
+    measured = rmse[0] > 0.0
+    ratio = rmse[1:, measured] / rmse[0, measured]
+    return np.max(ratio, axis=1, initial=0.0) - 1.0 > workspace.settings.relevant
 
 
 def contest(

@@ -117,11 +117,12 @@ def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
 
 @kept
 def observe(
-    jobs, time, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
+    jobs, time, ends, bodies, inputs, p, site, readings, row, seen, known, gains, decay,
+    by_velocity, out,
 ):
     observer.observe(
-        extra, jobs, time, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity,
-        out,
+        extra, jobs, time, ends, bodies, inputs, p, site, readings, row, seen, known, gains, decay,
+        by_velocity, out,
     )
 '''
 READING_IMPORT = """\

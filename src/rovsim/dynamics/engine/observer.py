@@ -5,6 +5,8 @@
 A steady-state Kalman filter per axis; its innovations are what the model could not foresee.
 """
 
+from math import atan2, cos, sin
+
 from rovsim.dynamics.engine.compiled import entry, inline_internal
 from rovsim.dynamics.engine.equation import rotation
 from rovsim.dynamics.engine.integration import (
@@ -42,18 +44,36 @@ def turned(q, v):
 
 
 @inline_internal
-def pose_error(x, y):
-    """Measured pose y (7,) minus the predicted one, in body axes: m and rad."""
-    moved = (y[0] - x.position[0], y[1] - x.position[1], y[2] - x.position[2])
+def headed(q, y):
+    """Measured attitude, in y (7,) behind the position, turned by the predicted yaw."""
+    w, i, j, k = q
+    half = 0.5 * atan2(2.0 * (w * k + i * j), w * w + i * i - j * j - k * k)
+    c, s = cos(half), sin(half)
+    return c * y[3] - s * y[6], c * y[4] - s * y[5], c * y[5] + s * y[4], c * y[6] + s * y[3]
+
+
+@inline_internal
+def pose_error(x, y, known):
+    """Measured pose y (7,) minus the predicted one, in body axes: m and rad.
+
+    `known` (4,): 1 where x, y, z and yaw were measured, 0 where they are taken as predicted.
+    """
+    moved = (
+        known[0] * (y[0] - x.position[0]), known[1] * (y[1] - x.position[1]),
+        known[2] * (y[2] - x.position[2]),
+    )  # fmt: skip
     d = into_body(rotation(x.attitude), moved)
     w, i, j, k = x.attitude
-    real = w * y[3] + i * y[4] + j * y[5] + k * y[6]
+    a, b, c, e = y[3], y[4], y[5], y[6]
+    if known[3] == 0.0:
+        a, b, c, e = headed(x.attitude, y)
+    real = w * a + i * b + j * c + k * e
     two = 2.0 if real >= 0.0 else -2.0
     return (
         d[0], d[1], d[2],
-        two * (w * y[4] - i * y[3] - j * y[6] + k * y[5]),
-        two * (w * y[5] + i * y[6] - j * y[3] - k * y[4]),
-        two * (w * y[6] - i * y[5] + j * y[4] - k * y[3]),
+        two * (w * b - i * a - j * e + k * c),
+        two * (w * c + i * e - j * a - k * b),
+        two * (w * e - i * c + j * b - k * a),
     )  # fmt: skip
 
 
@@ -79,13 +99,29 @@ def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
 
 @entry
 def observe(
-    extra, jobs, time, ends, bodies, inputs, p, site, readings, row, gains, decay, by_velocity, out
+    extra,
+    jobs,
+    time,
+    ends,
+    bodies,
+    inputs,
+    p,
+    site,
+    readings,
+    row,
+    seen,
+    known,
+    gains,
+    decay,
+    by_velocity,
+    out,
 ):
     """Innovations of the jobs: each from reading `first`, over the `steps` readings that follow.
 
     `time` (s+1,) s at which the steps begin and end; `ends` (k,) steps at which the readings
-    (r, k, 13) end, `row` (m,) which of them belong to each parameter set; `gains` (3, 6) of pose,
-    velocity and disturbance; `decay` (s, 6) of the disturbance over each step; `out` (.., 6)
+    (r, k, 13) end, `row` (m,) which of them belong to each parameter set; `seen` (k, 6) 1 for the
+    axes that a reading shows, `known`: see `pose_error`; `gains` (3, 6) of pose, velocity and
+    disturbance; `decay` (s, 6) of the disturbance over each step; `out` (.., 6)
     innovations, m or m/s and rad or rad/s.
     """
     place = site_of(site)
@@ -110,7 +146,8 @@ def observe(
                 mean = add6(mean, h / lasts, average)
                 a, n = each6(vector6(decay[n]), a), n + 1
             y = readings[row[m], k]
-            e = velocity_error(mean, y) if by_velocity else pose_error(x, y)
+            e = velocity_error(mean, y) if by_velocity else pose_error(x, y, known)
+            e = each6(vector6(seen[k]), e)
             x = renormalised(corrected(x, y, e, gain_pose, gain_nu, by_velocity))
             a = add6(a, 1.0, each6(gain_a, e))
             for i in range(6):

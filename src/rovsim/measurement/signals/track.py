@@ -100,9 +100,9 @@ class _Given:
         velocity, place = self.channels.get("velocity"), found.get("position")
         if velocity is None:
             return found
-        if place is not None and self._often("position"):
-            if _roughness(place) < _roughness_of_sum(velocity):
-                return found
+        often = place is not None and self._often("position")
+        if place is not None and often and _roughness(place) < _roughness_of_sum(velocity):
+            return found
         found.pop("position", None)
         return {"velocity": velocity, **found}
 
