@@ -239,11 +239,15 @@ def test_dates_become_times_from_the_start(tmp_path):
     np.testing.assert_allclose(recording.time, FAST + 0.25, atol=1e-6)
 
 
-def test_what_has_no_full_poses_cannot_become_a_motion_yet(tmp_path):
+def test_what_was_not_measured_is_neither_moved_nor_scored(tmp_path):
+    """Attitudes alone: they turn the vehicle, and nothing is said of where it is."""
     recording, _ = read(tmp_path, sparse(ANGLES))
     assert usable_reason(recording) is None
-    with pytest.raises(BadInput, match=r"run one: no full poses, but the channels attitude"):
-        clean(recording, SignalSettings())
+    motion = clean(recording, SignalSettings())
+    np.testing.assert_array_equal(motion.measured.axes, [False] * 3 + [True] * 3)
+    assert motion.usable.any()
+    assert not motion.nu[motion.usable, :3].any()
+    assert np.abs(motion.nu[motion.usable, 3:]).max() > 0.01
 
 
 def test_a_run_without_commands_has_none_and_nothing_pushes(tmp_path):

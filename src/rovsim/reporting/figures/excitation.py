@@ -56,10 +56,12 @@ def draw(*, quality: Mapping[str, Quality]) -> Figure:
 
 
 def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:
+    """A cell for each axis; with a dash where no full poses tell how much it moved."""
     for k, axis in enumerate(AXES):
-        color = EXCITED if excitation[axis].excited else STILL
+        known = excitation.get(axis)
+        color = EXCITED if known and known.excited else STILL
         axes.bar(k, 0.84, 0.94, y - 0.42, facecolor=color, edgecolor="#BBBBBB", linewidth=0.5)
-        text = significant(excitation[axis].std, 2)
+        text = significant(known.std, 2) if known else "–"
         axes.text(k, y, text, ha="center", va="center", fontsize=8)
 
 
