@@ -8,6 +8,7 @@ from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
@@ -55,7 +56,7 @@ def test_a_value_that_is_surely_there_is_known_by_itself():
 
 
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
-    found = TrainDiagnosis(fit(alike()).hypothesis.base, [], 60.0, fit(alike()))
+    found = TrainDiagnosis(fit(alike()).hypothesis.base, UsableRuns((), (), (), 60.0), fit(alike()))
     loops = [f"onboard_control.gain_{axis}" for axis in AXES[:2]]
     advice = advise(found, [], [["added_mass.surge", "net_buoyancy.force"], loops], built_in())
     reveals = built_in()["onboard_control"].revealed_by

@@ -14,6 +14,7 @@ from recordings import (
     write_lines,
     write_run,
 )
+from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Commands
@@ -72,6 +73,9 @@ def test_depth_at_3_hz_and_attitude_at_10_hz_share_a_file(tmp_path):
     assert not recording.found.any()
     assert np.isnan(recording.position).all()
     assert not any(anomalies.counts.values())
+    report = report_quality(recording, anomalies, SignalSettings().outliers)
+    assert list(report.excitation) == ["heave", "roll", "pitch", "yaw"]
+    assert report.excited == ()  # it sinks steadily
 
 
 def test_what_was_not_measured_is_nan_or_absent_and_never_zero(tmp_path):
@@ -97,7 +101,7 @@ def test_position_velocity_and_rates_at_their_own_rates(tmp_path):
     report = report_quality(recording, anomalies, SignalSettings().outliers)
     assert report.channels["velocity"].measured == ("u", "v", "w")
     assert report.unusable is None
-    assert report.excitation == {}
+    assert set(report.excitation) == set(AXES)
     assert any("no full poses" in remark and "rates" in remark for remark in report.remarks)
 
 

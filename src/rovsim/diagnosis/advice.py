@@ -29,7 +29,7 @@ def advise(
     if not found.enough:
         return (
             "Record train runs of at least a minute in which the vehicle moves: "
-            f"only {found.seconds:.0f} s could be used."
+            f"only {found.usable.seconds:.0f} s could be used."
         )
     parts = []
     if groups:
@@ -41,8 +41,8 @@ def advise(
         parts.append(_apart(joint, catalogue))
     if found.scale:
         parts.append(FIX_SCALE)
-    if found.still:
-        axes = ", ".join(found.still)
+    if found.usable.still:
+        axes = ", ".join(found.usable.still)
         parts.append(f"Move {axes} in a train run: nothing can be said about what acts there.")
     if found.structures:
         first = found.structures[0]

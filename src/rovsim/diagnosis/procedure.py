@@ -20,6 +20,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.checks.common_scale import CommonScale, include_scale
+from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.observer.camera import find_smoothing
@@ -63,19 +64,20 @@ POLISHED = 2  # times: the noise of the first is already the right one
 class TrainDiagnosis:
     """What was found on the train runs.
 
-    `still` axes that nobody moved; `seconds` that could be used; `fit` of the base and all selected
-    effects, None where there was too little to judge; `scale` of all forces, where it is unknown.
+    `usable` runs; `fit` of the base and all selected effects, None where there was too little to
+    judge; `scale` of all forces, where it is unknown; `not_observable` effects that the runs could
+    not show.
     """
 
     base: Model
-    still: Sequence[str]
-    seconds: float
+    usable: UsableRuns
     fit: Fit | None = None
     selected: Sequence[Selected] = ()
     ranking: Sequence[Ranked] = ()
     rivals: Sequence[Rival] = ()
     structures: Sequence[Structure] = ()
     scale: CommonScale | None = None
+    not_observable: Sequence[str] = ()
 
     @property
     def enough(self) -> bool:
@@ -91,7 +93,7 @@ class TrainDiagnosis:
             return "unexplained"
         if self.selected:
             return "missing_effects"
-        return "insufficient_data" if self.still else "adequate"
+        return "insufficient_data" if self.usable.still else "adequate"
 
     def models(self) -> list[Model]:
         """The base, then one model more for each selected effect."""
@@ -113,7 +115,7 @@ def diagnose(
     """Find what a model lacks on the train runs of a campaign."""
     usable = select_usable(train)
     if not usable.enough:
-        return TrainDiagnosis(base, usable.still, usable.seconds)
+        return TrainDiagnosis(base, usable)
     with threadpool_limits(1, "blas"):  # matrices here are too small for several threads to help
         return _diagnose(base, usable, settings, catalogue, seed, stage)
 
@@ -149,9 +151,10 @@ def _diagnose(
     if smoothing:
         selected = [rank_smoothing(base, smoothing, usable.runs), *selected]
     return TrainDiagnosis(
-        base, usable.still, usable.seconds, found.fit, selected=selected,
+        base, usable, found.fit, selected=selected,
         ranking=rank_alone(workspace, nothing, found.fit),
         rivals=rivals, structures=found.structures, scale=scale,
+        not_observable=list_not_observable(workspace, catalogue, base.vehicle),
     )  # fmt: skip
 
 

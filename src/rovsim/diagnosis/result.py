@@ -58,7 +58,9 @@ def report(
         unexplained=describe_structures(found),
         next_experiment=advise(found, alike, joint, catalogue),
         error=_errors(ladder),
-        not_excited=tuple(found.still),
+        not_excited=found.usable.still,
+        not_measured=found.usable.unmeasured,
+        not_observable=tuple(found.not_observable),
         rivals=tuple(
             RivalEffect(effect=r.effect, instead_of=r.instead_of, deficit=_rounded(r.deficit))
             for r in found.rivals

@@ -4,12 +4,15 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.errors import BadInput
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
 from rovsim.measurement.recording.channels import KINDS
 from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.remarks import remark
+from rovsim.measurement.signals.chain import SignalSettings, clean
+from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
 from rovsim.results.quality import (
     CommandLog,
@@ -59,7 +62,8 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         outliers=outliers,
         repairs=anomalies.counts,
         commands=_describe_commands(recording),
-        excitation=measure_excitation(recording) if recording.posed else {},
+        posed=recording.posed,
+        excitation=measure_excitation(recording),
         noise=measure_noise(recording),
         unusable=usable_reason(recording),
         channels=_describe_channels(recording),
@@ -104,8 +108,11 @@ def find_gaps(recording: Recording) -> list[Gap]:
 
 
 def measure_excitation(recording: Recording) -> dict[str, Excitation]:
-    """Standard deviation of the body velocity per axis, and whether it suffices to judge it."""
-    nu = rough_velocity(recording)
+    """Standard deviation of the body velocity per axis, and whether it suffices to judge it.
+
+    Axes that were not measured are left out.
+    """
+    nu, measured = _velocity(recording)
     spread = nu.std(axis=0) if len(nu) else np.zeros(6)
     return {
         axis: Excitation(
@@ -114,7 +121,19 @@ def measure_excitation(recording: Recording) -> dict[str, Excitation]:
             excited=bool(spread[k] > EXCITED[k]),
         )
         for k, axis in enumerate(AXES)
+        if measured[k]
     }
+
+
+def _velocity(recording: Recording) -> tuple[Array, Array]:
+    """Body velocities (k, 6), and which axes (6,) were measured."""
+    if recording.posed:
+        return rough_velocity(recording), np.ones(6, bool)
+    try:
+        motion = clean(recording, SignalSettings())
+    except BadInput:  # no channel of the motion: its owner hears so when the run is used
+        return np.empty((0, 6)), np.zeros(6, bool)
+    return motion.nu[motion.usable], find_measured(motion.measured)
 
 
 def rough_velocity(recording: Recording) -> Array:

@@ -85,7 +85,11 @@ class Answer(Section):
 
 
 class Diagnosis(Result):
-    """The verdict and all that led to it; `base` is the diagnosed model's file."""
+    """The verdict and all that led to it; `base` is the diagnosed model's file.
+
+    `not_excited` axes that nobody moved, `not_measured` those that nobody measured;
+    `not_observable` effects that the runs could not show, were they there.
+    """
 
     noun: ClassVar[str] = "diagnosis"
     command: ClassVar[str] = "`rovsim diagnose`"
@@ -102,6 +106,8 @@ class Diagnosis(Result):
     next_experiment: str
     error: DiagnosisErrors
     not_excited: tuple[str, ...] = ()
+    not_measured: tuple[str, ...] = ()
+    not_observable: tuple[str, ...] = ()
     rivals: tuple[RivalEffect, ...] = ()
     noise: FittedNoise = FittedNoise()
     base: dict[str, JsonValue]

@@ -63,9 +63,9 @@ class Quality(Result):
     """One run.
 
     `repairs` counts what was mended, by kind; `outliers` is None when not looked for; `commands`
-    None where nothing was commanded; `channels` what was measured beside full poses (where there
-    were none, `excitation` is empty); `unusable` says why a run cannot be used; `remarks` are
-    sentences its owner can act on.
+    None where nothing was commanded; `posed` whether full poses were measured, `channels` what was
+    beside or instead of them; `excitation` of the measured axes; `unusable` says why a run cannot
+    be used; `remarks` are sentences its owner can act on.
     """
 
     noun: ClassVar[str] = "quality report"
@@ -84,6 +84,7 @@ class Quality(Result):
     outliers: int | None
     repairs: dict[str, int]
     commands: CommandLog | None
+    posed: bool = True
     excitation: dict[str, Excitation]
     noise: PoseNoise
     unusable: str | None
@@ -91,6 +92,6 @@ class Quality(Result):
     remarks: tuple[str, ...] = ()
 
     @property
-    def posed(self) -> bool:
-        """Whether full poses were measured."""
-        return bool(self.excitation)
+    def excited(self) -> tuple[str, ...]:
+        """Axes that moved enough to be judged."""
+        return tuple(axis for axis, one in self.excitation.items() if one.excited)

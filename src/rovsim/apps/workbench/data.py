@@ -111,8 +111,9 @@ def _excitation(quality: Mapping[str, Quality]) -> None:
     for run, report in quality.items():
         cells = []
         for axis in AXES:
-            one = report.excitation[axis]
-            shown = cell(one.std, f"{run}/excitation/{axis}")
-            cells.append(shown if one.excited else shown.replace("number", "number quiet"))
+            one = report.excitation.get(axis)
+            shown = cell(one.std if one else None, f"{run}/excitation/{axis}")
+            quiet = one is not None and not one.excited
+            cells.append(shown.replace("number", "number quiet") if quiet else shown)
         rows.append((run, cells))
     table("Standard deviation of the body velocity", heads, rows)

@@ -25,9 +25,8 @@ def horizon_text(horizon: float | None) -> str:
 
 def excited(bench: Workbench, run: str) -> list[str]:
     """Axes that moved in a run, at most three to begin with."""
-    known = bench.data.quality[run].excitation
-    moved = [axis for axis in AXES if known[axis].excited]
-    return (moved or list(AXES))[:3]
+    known = bench.data.quality[run]
+    return list(known.excited or known.excitation or AXES)[:3]
 
 
 def panels(

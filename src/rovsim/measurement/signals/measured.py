@@ -38,6 +38,11 @@ class Measured:
         return Measured(*(arrays[f"measured.{name}"] for name in NAMES))
 
 
+def find_measured(measured: Measured | None) -> Array:
+    """Which axes (6,) were measured."""
+    return np.ones(6, bool) if measured is None else measured.axes
+
+
 def blank(measured: Measured | None, x: Array, value: float) -> Array:
     """Velocities or accelerations (..., 6) with `value` where nothing was measured."""
     return x if measured is None else np.where(measured.axes, x, value)

@@ -56,7 +56,7 @@ def draw(*, quality: Mapping[str, Quality]) -> Figure:
 
 
 def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:
-    """A cell for each axis; with a dash where no full poses tell how much it moved."""
+    """A cell for each axis; with a dash where nothing was measured."""
     for k, axis in enumerate(AXES):
         known = excitation.get(axis)
         color = EXCITED if known and known.excited else STILL

@@ -85,9 +85,11 @@ def _against_nothing(errors: DataFrame) -> list[str]:
 
 def quiet_sentences(quality: Mapping[str, Quality]) -> list[str]:
     """Name the axes that hardly moved on any test run: nothing can be judged there."""
-    tests = [report.excitation for report in quality.values() if report.split == "test"]
-    quiet = [axis for axis in AXES if not any(one[axis].excited for one in tests)]
-    if not quiet or not tests:
+    tests = [report for report in quality.values() if report.split == "test"]
+    measured = {axis for report in tests for axis in report.excitation}
+    moved = {axis for report in tests for axis in report.excited}
+    quiet = [axis for axis in AXES if axis in measured - moved]
+    if not quiet:
         return []
     return [f"The test runs hardly move in {listed(quiet)}: errors there say little about a model."]
 

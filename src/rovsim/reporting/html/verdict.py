@@ -65,6 +65,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         *scale_sentences(found.common_scale),
         *unexplained_sentences(found),
         *still_sentences(found.not_excited),
+        *silent_sentences(found),
     ]
     missing = tuple(_missing(one, catalogue.get(one.effect)) for one in found.selected)
     return Verdict(
@@ -167,3 +168,11 @@ def still_sentences(axes: Sequence[str]) -> list[str]:
     if not axes:
         return []
     return [f"Nothing can be said about {listed(axes)}: no train run moves there."]
+
+
+def silent_sentences(found: Diagnosis) -> list[str]:
+    """Axes that nobody measured, and effects that the recordings could not show."""
+    axes, effects = found.not_measured, found.not_observable
+    unmeasured = f"Nothing was measured of {listed(axes)}: errors have no value there."
+    unseen = f"These recordings could not show {listed(effects)}, were they there."
+    return [*([unmeasured] if axes else []), *([unseen] if effects else [])]
