@@ -193,6 +193,20 @@ def test_a_second_name_is_false_and_a_missing_one_is_not_exact():
     assert (fewer.exact, fewer.first, fewer.false) == (False, True, 0)
 
 
+def test_what_the_runs_cannot_show_has_a_column_of_its_own():
+    both = case(LAG, DRAG)
+    named = diagnosis("thruster_lag").model_copy(update={"not_observable": ("quadratic_damping",)})
+    assert (score(both, named).exact, score(both, named).unseen) == (False, True)
+    assert not score(both, diagnosis("thruster_lag")).unseen
+    assert not score(case(LAG), named).unseen  # exact
+    other = diagnosis("thruster_lag", "lift").model_copy(
+        update={"not_observable": ("quadratic_damping",)}
+    )
+    assert not score(both, other).unseen
+    silent = diagnosis().model_copy(update={"not_observable": ("quadratic_damping",)})
+    assert score(case(DRAG), silent).unseen
+
+
 def test_a_number_left_out_says_the_default():
     answer = {"surge": {"value": 88.0, "std": 2.0}}
     found = score(case(DRAG), diagnosis("quadratic_damping", quadratic_damping=answer)).parameters

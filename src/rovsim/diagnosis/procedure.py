@@ -154,7 +154,7 @@ def _diagnose(
         base, usable, found.fit, selected=selected,
         ranking=rank_alone(workspace, nothing, found.fit),
         rivals=rivals, structures=found.structures, scale=scale,
-        not_observable=list_not_observable(workspace, catalogue, base.vehicle),
+        not_observable=list_not_observable(found.selection, catalogue, base.vehicle),
     )  # fmt: skip
 
 

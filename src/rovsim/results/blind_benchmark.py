@@ -13,7 +13,8 @@ class Rates(Section):
 
     `first`: the first name is right; `exact`: the names are, and nothing else is named; `strict`:
     not counting as right what the method calls indistinguishable from it; `alike`: mean size of
-    those groups; `worse`: the model it ends with is worse than the nominal on test runs by more
+    those groups; `unseen`: not exact, as the runs cannot show what is not named, and so it says;
+    `worse`: the model it ends with is worse than the nominal on test runs by more
     than 2 %; `seconds` an answer takes, wall and CPU, the median and what 95 % stay below;
     `parameters` judged, their relative errors, and how often the 95 % intervals hold.
     """
@@ -24,6 +25,7 @@ class Rates(Section):
     first: float | None
     exact_strict: float | None
     exact: float | None
+    unseen: float | None
     false_names_strict: float | None
     false_names: float | None
     unexplained: float | None

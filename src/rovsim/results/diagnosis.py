@@ -82,6 +82,7 @@ class Answer(Section):
     selected: tuple[FittedEffect, ...]
     ranking: tuple[FittedEffect, ...] = ()
     indistinguishable: tuple[tuple[str, ...], ...] = ()
+    not_observable: tuple[str, ...] = ()
 
 
 class Diagnosis(Result):

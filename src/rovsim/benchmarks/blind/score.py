@@ -33,7 +33,9 @@ class Score:
     """What one answer is worth.
 
     `first` whether the first name is right (None where nothing is hidden); `false` names that are
-    neither hidden nor forgiven; `alike` size of the largest group that a hidden effect is in.
+    neither hidden nor forgiven; `alike` size of the largest group that a hidden effect is in;
+    `unseen` whether all is right but for hidden effects of which the answer says that the runs
+    cannot show them.
     """
 
     verdict: bool
@@ -45,6 +47,7 @@ class Score:
     false_strict: int
     false: int
     alike: int
+    unseen: bool
     parameters: tuple[ParameterScore, ...]
 
 
@@ -67,8 +70,18 @@ def score(case: Case, answer: Answer | Diagnosis) -> Score:
         false_strict=len(counted) - len(strict),
         false=len(counted) - matched,
         alike=max((len(g) for g in groups if g & set(case.names)), default=1),
+        unseen=_lacks_only_unseen(case, answer, set(counted)),
         parameters=tuple(_parameters(case, answer)),
     )
+
+
+def _lacks_only_unseen(case: Case, answer: Answer | Diagnosis, named: set[str]) -> bool:
+    """Whether the answer would be exact if what it calls not observable were not hidden."""
+    missing = set(case.names) - named
+    if not missing or not missing <= set(answer.not_observable) or named - set(case.names):
+        return False
+    rest = tuple(entry for entry in case.hidden if entry.effect not in missing)
+    return answer.verdict in case.model_copy(update={"hidden": rest}).verdicts
 
 
 def _first(selected: Sequence[str], truth: Sequence[str], groups: list[set[str]]) -> bool | None:

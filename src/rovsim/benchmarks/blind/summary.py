@@ -106,6 +106,7 @@ def rate(found: Sequence[Judged]) -> Rates:
         first=share([bool(s and s.first) for s in naming]),
         exact_strict=share([bool(s and s.exact_strict) for s in scores]),
         exact=share([bool(s and s.exact) for s in scores]),
+        unseen=share([bool(s and s.unseen) for s in scores]),
         false_names_strict=share([bool(s and s.false_strict) for s in scores]),
         false_names=share([bool(s and s.false) for s in scores]),
         unexplained=share([bool(s and s.flagged) for s in scores]),

@@ -9,7 +9,8 @@ from rovsim.results.blind_benchmark import BlindSummary, Calibration, Claims, Ra
 
 KIND_COLUMNS = {
     "cases": "cases", "verdict": "verdict right", "first": "first name right",
-    "exact_strict": "exact", "exact": "exact, lenient", "false_names": "a false name",
+    "exact_strict": "exact", "exact": "exact, lenient", "unseen": "the rest not observable",
+    "false_names": "a false name",
     "error_median": "parameter error", "error_95": "95 % of errors below",
     "coverage": "intervals hold", "worse": "worse than nominal", "seconds": "s",
     "seconds_95": "95 % below", "cpu_seconds": "CPU s", "cpu_seconds_95": "95 % below",
@@ -20,8 +21,8 @@ EFFECT_COLUMNS = {
     "instead": "said instead",
 }  # fmt: skip
 OUTSIDE_COLUMNS = {"cases": "cases", "verdict": "flagged", "false_names": "a false name"}
-PERCENT = {"verdict", "first", "exact_strict", "exact", "false_names", "error_median", "error_95",
-           "coverage", "worse", "covered", "p_value"}  # fmt: skip
+PERCENT = {"verdict", "first", "exact_strict", "exact", "unseen", "false_names",
+           "error_median", "error_95", "coverage", "worse", "covered", "p_value"}  # fmt: skip
 RANK_COLUMNS = {
     "values": "values", "covered": "inside 95 %", "stretch": "times too narrow",
     "p_value": "chance of such ranks", "counts": "ranks", "said": "intervals are",

@@ -2,16 +2,21 @@
 
 Every tried effect has columns: how it would change what the filter could not foresee. Where even a
 large change would gain less likelihood than its parameter costs, nothing can be said about it.
+A loop on board takes demands from the mixer, so that thrusters may hardly push at all: beside one,
+what acts through them is looked at anew.
 """
 
 from typing import Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.proposals import TRUSTED
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.sensitivities import CandidateColumns, linearise_candidates
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Means
 from rovsim.dynamics.vehicle import Vehicle
@@ -20,29 +25,45 @@ LOGGED: tuple[Means, ...] = ("commands", "demands")  # without a log of them, no
 
 
 def list_not_observable(
-    workspace: SearchWorkspace, catalogue: Catalogue, vehicle: Vehicle
+    selection: Selection, catalogue: Catalogue, vehicle: Vehicle
 ) -> tuple[str, ...]:
     """Ids of the tried effects that the runs cannot show, in the order of the catalogue.
 
     Those that need a part which the vehicle does not have are not among them.
     """
+    workspace = selection.workspace
     runs = workspace.bank.runs
-    shown, tried = _find_shown(workspace)
-    silent = (tried - shown) | _find_unlogged(runs, catalogue, vehicle)
+    sizes = np.sqrt(np.diag(workspace.inner_products))
+    shown = _find_shown(sizes, workspace.sensitivities.blocks, workspace.price)
+    if selection.found.hypothesis.model.thrust_path.autopilots:
+        shown |= _look_beside_loops(selection)
+    silent = {name for name, yes in shown.items() if not yes}
+    silent |= _find_unlogged(runs, catalogue, vehicle)
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
 
 
-def _find_shown(workspace: SearchWorkspace) -> tuple[set[str], set[str]]:
-    """Effects some of whose columns can pay their price, and all that have columns."""
-    needed = np.sqrt(workspace.price) / TRUSTED  # at one scale
-    sizes = np.sqrt(np.diag(workspace.inner_products))
-    shown, tried = set(), set()
-    for block in workspace.sensitivities.blocks:
+def _look_beside_loops(selection: Selection) -> dict[str, bool]:
+    """Whether the runs show what acts through thrusters where loops push in place of the mixer."""
+    workspace, model = selection.workspace, selection.found.hypothesis.model
+    named = {term.id for term in selection.found.hypothesis.terms}
+    each = [block.candidate for block in workspace.sensitivities.blocks]
+    driven = [c for c in each if c.effect.through == "thrusters" and c.effect.id not in named]
+    if not driven:
+        return {}
+    anew = linearise_candidates(workspace.bank, Hypothesis(model), driven)
+    sizes = np.linalg.norm(anew.bank.flatten(anew.columns, workspace.noise), axis=1)
+    return _find_shown(sizes, anew.blocks, workspace.price)
+
+
+def _find_shown(sizes: Array, blocks: Sequence[CandidateColumns], price: float) -> dict[str, bool]:
+    """Of each effect, whether a column, `sizes` (c,) long at one scale, can pay the price."""
+    needed = np.sqrt(price) / TRUSTED
+    shown: dict[str, bool] = {}
+    for block in blocks:
         own = block.derivatives if block.secant is None else (block.secant,)
-        tried.add(block.candidate.effect.id)
-        if np.any(sizes[list(own)] > needed):
-            shown.add(block.candidate.effect.id)
-    return shown, tried
+        name = block.candidate.effect.id
+        shown[name] = shown.get(name, False) or bool(np.any(sizes[list(own)] > needed))
+    return shown
 
 
 def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle) -> set[str]:

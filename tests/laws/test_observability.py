@@ -1,0 +1,43 @@
+"""What the runs could not show is said, and only that."""
+
+from flown import observed
+from rovsim.diagnosis.checks.observability import list_not_observable
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.settings import SearchSettings
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.onboard_control import OnboardControl
+from rovsim.dynamics.model_file import EffectEntry
+from rovsim.simulation.synthetic_tank.settings import Log
+
+LOOPS = {
+    f"{name}_{axis}": value
+    for axis in ("roll", "pitch", "yaw")
+    for name, value in (("gain", 0.7), ("bandwidth", 2.0))
+}
+TRIED = ("propeller_torque", "thruster_deadband", "quadratic_damping")
+
+
+def test_behind_loops_about_all_angles_the_torque_of_propellers_cannot_be_seen(tmp_path):
+    """In demands of surge, sway and heave those of left- and right-handed ones add to zero."""
+    entry = EffectEntry(effect=OnboardControl.id, parameters=LOOPS)
+    base, runs = observed(tmp_path, duration=20.0, effects=(entry,), log=Log(kind="demand"))
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    listed = list_candidates(runs, built_in(), base.vehicle)
+    some = [c for c in listed if c.effect.id in TRIED]
+    known = linearise_candidates(bank, Hypothesis(base), some)
+    workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
+    loops = Term(OnboardControl(**LOOPS), tuple(LOOPS))
+    with_loops, without = (
+        list_not_observable(
+            Selection(workspace, workspace.fit(h), (), True), built_in(), base.vehicle
+        )
+        for h in (Hypothesis(base, (loops,)), Hypothesis(base))
+    )
+    assert with_loops == ("propeller_torque",)
+    assert without == ()
