@@ -136,7 +136,7 @@ def test_a_file_that_is_no_campaign(tmp_path, text):
 
 
 def test_a_folder_without_campaign_and_an_unknown_run(tmp_path):
-    with pytest.raises(BadInput, match=r"no campaign\.yaml.*formats\.md"):
+    with pytest.raises(BadInput, match=r"no campaign\.yaml.*rovsim init"):
         load_campaign(tmp_path)
     with pytest.raises(BadInput, match=r"no such file or folder.*Check the path"):
         load_campaign(tmp_path / "nowhere")

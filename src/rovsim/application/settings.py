@@ -112,6 +112,8 @@ class Settings(WorkbenchSettings):
     tank: TankSettings
     effects: list[str] | None = None
     to: str = "nominal"
+    files: list[str] = Field(default_factory=list)
+    force: bool = False
     study: StudySettings
     folds: FoldSettings
     timing: TimingSettings

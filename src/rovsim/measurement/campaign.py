@@ -14,6 +14,7 @@ from rovsim.core.files import read_yaml
 from rovsim.core.rotations import axes_signs
 from rovsim.core.schema import checked
 from rovsim.measurement.campaign_file import CampaignFile, CommandLog, Mocap, Run, Tank
+from rovsim.measurement.unanswered import check_answered
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,9 @@ def load_campaign(path: Path) -> Campaign:
         BadInput: a key, a value or a recording is wrong or missing.
     """
     file = _campaign_file(Path(path).expanduser()).absolute()
-    content = checked(CampaignFile, read_yaml(file), file)
+    plain = read_yaml(file)
+    check_answered(plain, file)
+    content = checked(CampaignFile, plain, file)
     _check_ids(content.runs, file)
     _check_axes(content.mocap, file)
     _check_commands(content, file)
@@ -97,7 +100,7 @@ def _campaign_file(path: Path) -> Path:
             "no campaign.yaml in this folder" if path.is_dir() else "no such file or folder",
             where=path,
             expected="a folder that holds campaign.yaml",
-            remedy="Check the path; docs/formats.md shows how to write that file.",
+            remedy="Check the path; `rovsim init FOLDER` writes that file from recordings.",
         )
     return file
 

@@ -1,6 +1,7 @@
 """`rovsim COMMAND key=value …`: one message and exit code 2 for input that cannot be used."""
 
 import pkgutil
+import re
 import sys
 from pathlib import Path
 from typing import Sequence
@@ -9,6 +10,7 @@ from rovsim.core.errors import BadInput, RovsimError, nearest
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to")
+FILES = {"init": "files"}  # commands that take files by themselves, and the key they become
 FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
 COMMANDS = Path(__file__).with_name("commands")
 
@@ -46,7 +48,10 @@ def _main(words: list[str]) -> None:
         return
     sweep = bool({"-m", "--multirun"} & set(rest))
     words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
-    overrides = [override(word) for word in words]
+    named = [word for word in words if command in FILES and is_file(word)]
+    overrides = [override(word) for word in words if word not in named]
+    if named:
+        overrides.append(f"{FILES[command]}=[{','.join(map(quoted, named))}]")
     if sweep:
         _sweep([f"command={command}", *overrides])
     else:
@@ -70,6 +75,11 @@ def _doc(name: str) -> str:
 
     source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
     return ast.get_docstring(ast.parse(source)) or ""
+
+
+def is_file(word: str) -> bool:
+    """Whether a word names a file and no key: it is there, or looks like no `key=value`."""
+    return re.match(r"[\w.]+=", word) is None or Path(word).exists()
 
 
 def override(word: str) -> str:

@@ -169,3 +169,13 @@ def _metres(content: Content) -> float:
     if unit not in METRES:
         raise _refused(content.path, f"POINT:UNITS is '{units[0]}'", f"one of {', '.join(METRES)}")
     return METRES[unit]
+
+
+def body_names(path: Path) -> list[str]:
+    """The rigid bodies of a file.
+
+    Raises:
+        BadInput: not such a file, or no rigid bodies in it.
+    """
+    with read_by("C3D", path, "a whole C3D file", RE_EXPORT):
+        return _bodies(_open(path))

@@ -201,3 +201,12 @@ def _rate(layout: Layout) -> float | None:
     except ValueError:
         return None
     return rate if np.isfinite(rate) and rate > 0 else None
+
+
+def body_names(path: Path) -> list[str]:
+    """The rigid bodies of an export.
+
+    Raises:
+        BadInput: not such a file.
+    """
+    return list(_layout(path, read_text(path).split("\n")).bodies)

@@ -173,3 +173,12 @@ def _time(table: Lines, layout: Layout, rate: float | None) -> Array:
     if "Frame" in layout.names:
         return (times(table, layout.names.index("Frame")) - 1.0) / rate
     return np.arange(len(table.cells)) / rate
+
+
+def body_names(path: Path) -> list[str]:
+    """The rigid bodies of an export.
+
+    Raises:
+        BadInput: not such a file.
+    """
+    return list(_layout(path, read_text(path).split("\n")).bodies)

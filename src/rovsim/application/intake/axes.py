@@ -1,0 +1,154 @@
+"""Which way the axes of the world and of the body point in a file."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.application.intake.pairing import AHEAD, ALIKE
+from rovsim.core.rotations import matrix
+from rovsim.measurement.survey.contents import Track
+
+# Columns: forward, starboard, down in the file's body axes.
+BODY = {
+    "flu": np.diag([1.0, -1.0, -1.0]),
+    "frd": np.eye(3),
+    "fur": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+}
+# The way down in the file's world axes.
+DOWN = {"z_up": (0.0, 0.0, -1.0), "ned": (0.0, 0.0, 1.0), "y_up": (0.0, -1.0, 0.0)}
+LEVEL = 0.7  # mean of the cosine of the tilt: 45 degrees
+CLOSE = 0.8  # correlation of depth and height
+RESTING = 5.0  # m/s2 of specific force, about half of gravity
+AXIS = "xyz"
+
+
+@dataclass(frozen=True)
+class Axes:
+    """World and body axes, empty where nobody can tell, and what speaks for them."""
+
+    world: str
+    body: str
+    said: str
+    likely: tuple[tuple[str, str], ...] = ()  # pairs of both that are possible
+
+
+def allowed(name: str) -> tuple[list[str], list[str]]:
+    """World and body axes that campaign.yaml takes for a format."""
+    if name == "ardupilot":
+        return ["ned"], ["frd"]
+    extra = name == "motive_csv"
+    return ["z_up", "ned", *["y_up"] * extra], ["flu", "frd", *["fur"] * extra]
+
+
+def find_axes(name: str, tracks: Sequence[Track], turned: Sequence[tuple[float, Array]]) -> Axes:
+    """The axes of files of one format; `turned`: likeness along each of the 24 body axes."""
+    if name == "ardupilot":
+        return Axes("ned", "frd", "ArduPilot logs in these axes")
+    worlds, bodies = allowed(name)
+    body, said = _body(turned, bodies)
+    if not body:
+        body, by_force = _by_force(tracks, bodies)
+        said = by_force or said
+    pairs = _level(tracks, worlds, bodies)
+    if body:
+        possible = {world for world, other in pairs if other == body}
+        if len(possible) == 1:
+            world = possible.pop()
+            return Axes(world, body, f"{said}; the vehicle then swims upright on average")
+        return Axes(_by_depth(tracks, worlds), body, said)
+    world = _by_depth(tracks, worlds)
+    match = [pair for pair in pairs if pair[0] == world]
+    if world and len(match) == 1:
+        return Axes(
+            world, match[0][1], f"{AXIS[-1]} goes with the depth, and the vehicle is upright"
+        )
+    if name == "rosbag2" and ("z_up", "flu") in pairs:
+        return Axes("z_up", "flu", "guess: what ROS means by default (REP 103)")
+    return Axes(world, "", said, tuple(pairs))
+
+
+def _body(turned: Sequence[tuple[float, Array]], bodies: list[str]) -> tuple[str, str]:
+    """Body axes by the motion that the commands cause, and what it says."""
+    if not turned or turned[0][0] < ALIKE:
+        best = f" (likeness {turned[0][0]:.2f})" if turned else ""
+        return "", f"no motion that its commands explain{best}" if turned else ""
+    score, axes = turned[0]
+    rival = turned[1][0]
+    name = next((n for n in bodies if np.array_equal(axes, BODY[n])), "")
+    if score < AHEAD * rival:
+        return "", f"the commands do not tell: likeness {score:.2f} and {rival:.2f} along two axes"
+    if name:
+        return (
+            name,
+            f"the commanded motion shows along them (likeness {score:.2f}, next {rival:.2f})",
+        )
+    told = [
+        f"{word} shows along {_named(axes[:, k])}"
+        for k, word in enumerate(("surge", "sway", "heave"))
+    ]
+    return "", (
+        f"commanded {', '.join(told)} of the file's body (likeness {score:.2f}): the rigid body is "
+        "turned, make it anew along the vehicle's axes"
+    )
+
+
+def _named(column: Array) -> str:
+    k = int(np.argmax(np.abs(column)))
+    return f"{'-' if column[k] < 0 else '+'}{AXIS[k]}"
+
+
+def _by_force(tracks: Sequence[Track], bodies: list[str]) -> tuple[str, str]:
+    """Body axes by gravity: specific force at rest points up."""
+    found = [
+        t.export.channels["specific_force"].value
+        for t in tracks
+        if "specific_force" in t.export.channels
+    ]
+    if not found:
+        return "", ""
+    up = float(np.nanmean(np.vstack(found)[:, 2]))
+    name = "flu" if up > RESTING else "frd" if up < -RESTING else ""
+    return (name if name in bodies else ""), f"specific force along z is {up:+.1f} m/s² on average"
+
+
+def _level(tracks: Sequence[Track], worlds: list[str], bodies: list[str]) -> list[tuple[str, str]]:
+    """Pairs of world and body axes in which the vehicle is upright on average."""
+    turns = [R for t in tracks if (R := _attitudes(t)) is not None]
+    if not turns:
+        return []
+    mean = np.mean([R.mean(axis=0) for R in turns], axis=0)
+    return [
+        (world, body)
+        for world in worlds
+        for body in bodies
+        if mean @ BODY[body][:, 2] @ np.array(DOWN[world]) > LEVEL
+    ]
+
+
+def _attitudes(track: Track) -> Array | None:
+    """Rotation matrices (n, 3, 3) of what was measured of the attitude."""
+    if track.posed:
+        return matrix(track.export.attitude[track.export.found])
+    channel = track.export.channels.get("attitude")
+    return (
+        None if channel is None else matrix(channel.value[np.isfinite(channel.value).all(axis=1)])
+    )
+
+
+def _by_depth(tracks: Sequence[Track], worlds: list[str]) -> str:
+    """World axes by a logged depth beside the height."""
+    signs = []
+    for track in tracks:
+        depth = track.export.channels.get("depth")
+        if depth is None or not track.posed:
+            continue
+        seen = track.export.found
+        z = np.interp(depth.time, track.export.time[seen], track.export.position[seen, 2])
+        if min(np.std(z), np.std(depth.value)) > 0:
+            signs.append(float(np.corrcoef(z, depth.value[:, 0])[0, 1]))
+    if not signs or min(abs(s) for s in signs) < CLOSE or len({s > 0 for s in signs}) > 1:
+        return ""
+    name = "ned" if signs[0] > 0 else "z_up"
+    return name if name in worlds else ""

@@ -1,0 +1,123 @@
+"""What looks wrong in recordings that are beside their commands: clocks, axes, thrusters."""
+
+from itertools import combinations
+from typing import Iterator, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.application.intake.choice import Choice
+from rovsim.application.intake.likeness import orientations
+from rovsim.application.intake.motions import Log, Motion
+from rovsim.application.intake.pairing import ALIKE
+from rovsim.application.intake.predicted import held, respond, wrench
+from rovsim.application.intake.vehicles import Fit, as_logged
+from rovsim.core.rotations import unrotate
+from rovsim.core.run import Commands
+from rovsim.measurement.quality import EXCITED
+from rovsim.measurement.survey.grid import even_poses, slopes
+
+# A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
+# of the likeness is known to about a tenth of a second.
+EARLIEST, LATEST = -0.25, 0.6  # s
+BETTER = 0.12  # likeness by which another order or sign must be better to be told
+
+
+def check_clocks(choice: Choice, axes: Array, names: Sequence[str]) -> Iterator[str]:
+    """Runs in which the motion comes too late or too early after its commands."""
+    for k, one in choice.runs.items():
+        score, lag = one.best(axes)
+        if score < ALIKE:
+            yield (
+                f"{names[k]}: the motion hardly follows its commands (likeness {score:.2f}): "
+                "another log, another vehicle, a tether that pulls?"
+            )
+        elif not EARLIEST <= lag <= LATEST:
+            how = "after" if lag > 0 else "before"
+            yield (
+                f"{names[k]}: the motion comes {abs(lag):.2f} s {how} its commands (likeness "
+                f"{score:.2f}): the clocks differ. Add {lag:+.2f} s to the times of the commands, "
+                "or let the effect input_delay find it"
+            )
+
+
+def check_mirror(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) -> str:
+    """Whether the commanded motion shows better with the position's axes swapped or mirrored."""
+    caused = log.caused(fit)
+    if caused is None or not motion.track.posed:
+        return ""
+    poses = even_poses(motion.track.export)
+    fast = slopes(poses.time, poses.position)
+    other = np.stack([np.interp(poses.time - lag, caused[0], c) for c in caused[1].T], axis=1)
+    excited = (caused[1].std(axis=0) > EXCITED)[:3]
+    if excited.sum() < 2:
+        return ""
+    scores = []
+    for mirror in orientations():
+        seen = unrotate(poses.attitude, fast @ np.array(mirror).T)
+        scores.append((_alike(seen @ axes, other[:, :3])[excited].mean(), mirror))
+    own = next(score for score, mirror in scores if np.array_equal(mirror, np.eye(3)))
+    best, mirror = max(scores)
+    if best < max(own + BETTER, ALIKE):
+        return ""
+    return (
+        f"positions and attitudes do not go together: with {_told(np.array(mirror))} in place of "
+        f"x, y, z the commanded motion shows better (likeness {best:.2f} against {own:.2f}). Check "
+        "how the axes were exported: some are swapped or mirrored"
+    )
+
+
+def _told(mirror: Array) -> str:
+    return ", ".join(
+        f"{'-' if row[k := int(np.argmax(np.abs(row)))] < 0 else ''}{'xyz'[k]}" for row in mirror
+    )
+
+
+def _alike(a: Array, b: Array) -> Array:
+    """Correlations (c,) of columns, where all are known."""
+    known = np.isfinite(a).all(axis=1) & np.isfinite(b).all(axis=1)
+    a, b = (x[known] - x[known].mean(axis=0) for x in (a, b))
+    return (a * b).mean(axis=0) / np.maximum(a.std(axis=0) * b.std(axis=0), 1e-12)
+
+
+def check_order(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) -> str:
+    """Whether two outputs swapped, or one reversed, would explain the motion better."""
+    commands, measured = as_logged(log.drive, fit, log.path), motion.measured
+    if commands is None or measured is None or any(fit.vehicle.angles):
+        return ""
+    if commands.kind != "thruster":
+        return ""
+    nu = measured.nu @ np.kron(np.eye(2), axes)
+    scores = {
+        label: _score(nu, measured.time - lag, Commands(commands.time, value, "thruster"), fit)
+        for label, value in _orders(commands.value, fit.columns)
+    }
+    own = scores.pop("")
+    label = max(scores, key=lambda key: scores[key])
+    if scores[label] < max(own + BETTER, ALIKE):
+        return ""
+    return (
+        f"with {label} the motion would follow the commands better (likeness {scores[label]:.2f} "
+        f"against {own:.2f}). Check the order and the signs of 'commands.columns'"
+    )
+
+
+def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
+    """How alike body velocities (n, 6) FRD and those that commands cause are."""
+    push = held(commands.time, wrench(fit.vehicle, commands), time)
+    caused = respond(fit.vehicle, push, float(time[1] - time[0]))
+    excited = caused.std(axis=0) > EXCITED
+    return float(_alike(nu, caused)[excited].mean()) if excited.any() else 0.0
+
+
+def _orders(value: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:
+    """The commands as logged, with two outputs swapped, and with one reversed."""
+    yield "", value
+    for a, b in combinations(range(len(names)), 2):
+        swapped = value.copy()
+        swapped[:, [a, b]] = value[:, [b, a]]
+        yield f"{names[a]} and {names[b]} swapped", swapped
+    for k, name in enumerate(names):
+        turned = value.copy()
+        turned[:, k] *= -1.0
+        yield f"{name} reversed", turned

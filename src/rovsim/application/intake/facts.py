@@ -1,0 +1,112 @@
+"""What files tell about a campaign, taken together."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Sequence
+
+import numpy as np
+
+from rovsim.application.intake.axes import Axes, find_axes
+from rovsim.application.intake.bodies import Body, find_body, track_of
+from rovsim.application.intake.choice import Choice, choose
+from rovsim.application.intake.motions import Log, Motion, alike, highest
+from rovsim.application.intake.names import run_ids
+from rovsim.application.intake.pairing import Pair, pair
+from rovsim.application.intake.survey import Survey
+from rovsim.application.intake.vehicles import Fit, fitting
+from rovsim.core.errors import BadInput
+from rovsim.measurement.survey import Contents
+
+
+@dataclass(frozen=True, eq=False)
+class Facts:
+    """Runs with their commands, the body, the vehicle and the axes; what is not known is empty."""
+
+    survey: Survey
+    logs: tuple[Log, ...]
+    body: Body
+    pairs: tuple[Pair, ...]
+    choice: Choice
+    axes: Axes
+    ids: tuple[str, ...]
+
+    @property
+    def motions(self) -> tuple[Contents, ...]:
+        """The files of the motions, in the order of the runs."""
+        return self.survey.motions
+
+    @property
+    def log(self) -> Log | None:
+        """A log that stands for all of them."""
+        paired = [one.log for one in self.pairs if one.log is not None]
+        return next(iter([*paired, *self.logs]), None)
+
+
+def find_facts(found: Survey) -> Facts:
+    """All that the files tell.
+
+    Raises:
+        BadInput: they are not runs of one vehicle, or not logged alike.
+    """
+    logs = _logs(found)
+    fits = _fits(logs)
+
+    def score(motion: Motion, log: Log) -> float:
+        return max((highest(alike(motion, log, fit)) for fit in fits), default=0.0)
+
+    body = find_body(found.motions, lambda name: _of_body(found, name, logs, score))
+    motions = [Motion(one.named, track_of(one, body.name)) for one in found.motions]
+    pairs = pair(motions, logs, score)
+    choice = choose(fits, pairs) if fits else _no_choice(logs)
+    known = body.name or body.choices == ("",)
+    axes = find_axes(
+        found.motions[0].format, [m.track for m in motions], choice.turned if known else ()
+    )
+    ids = run_ids([m.path.stem if m.path.is_file() else m.path.name for m in motions])
+    return Facts(found, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
+
+
+def _of_body(found: Survey, name: str, logs: Sequence[Log], score) -> float:
+    """How alike a body's motions are to the commands in the same files, or to those of any."""
+    scores = []
+    for contents in found.motions:
+        motion = Motion(contents.named, track_of(contents, name))
+        own = [log for log in logs if log.path == contents.named] or logs
+        scores.append(max((score(motion, log) for log in own), default=0.0))
+    return float(np.mean(scores))
+
+
+def _logs(found: Survey) -> list[Log]:
+    """Logs of commands: files of their own, else those in the files of the motions."""
+    alone = [Log(one.named, one.drives[0]) for one in found.logs if one.drives]
+    if alone:
+        return alone
+    inside = []
+    for one in found.motions:
+        moving = [drive for drive in one.drives if drive.moves]
+        for drive in (moving or list(one.drives))[:1]:
+            inside.append(Log(one.named, drive))
+    return inside
+
+
+def _fits(logs: Sequence[Log]) -> list[Fit]:
+    """Vehicles that fit every log."""
+    for log in logs[1:]:
+        _check_same(logs[0], log)
+    return fitting(logs[0].drive) if logs else []
+
+
+def _check_same(first: Log, log: Log) -> None:
+    if set(log.drive.columns) != set(first.drive.columns):
+        raise BadInput(
+            f"the commands {', '.join(log.drive.columns)}; those of {Path(first.path).name} are "
+            f"{', '.join(first.drive.columns)}",
+            where=log.path,
+            expected="the same columns in every log of commands",
+            remedy="Run init for each kind of log, with another out=.",
+        )
+
+
+def _no_choice(logs: Sequence[Log]) -> Choice:
+    said = "no vehicle file takes such commands" if logs else "there are no commands that tell"
+    return Choice(None, said, (), (), {})

@@ -1,0 +1,90 @@
+"""Motions and logs of commands beside each other: how alike, for each vehicle that may be it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.application.intake.likeness import REACH, Likeness, likeness, rotations
+from rovsim.application.intake.predicted import velocity
+from rovsim.application.intake.vehicles import Fit, as_logged
+from rovsim.measurement.survey.contents import Drive, Track
+from rovsim.measurement.survey.grid import STEP, Velocities, velocities
+
+LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
+SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
+BEFORE, AFTER = 1.0, 3.0  # s around the commands
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """One run's motion; its rough velocities are computed when they are needed."""
+
+    path: Path
+    track: Track
+
+    @cached_property
+    def measured(self) -> Velocities | None:
+        """Rough body velocities, None where nothing of the kind was measured."""
+        if len(self.track.export.time) < 2:
+            return None
+        found = velocities(self.track.export)
+        return found if np.isfinite(found.nu).any() else None
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """One log of commands, and the velocity that each vehicle would get of it."""
+
+    path: Path
+    drive: Drive
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_caused", {})
+
+    def caused(self, fit: Fit) -> tuple[Array, Array] | None:
+        """Times (m,) s and body velocities (m, 6) FRD; None where the log is not of that kind."""
+        known: dict = self._caused  # type: ignore[attr-defined]
+        if fit.name not in known:
+            known[fit.name] = self._velocity(fit)
+        return known[fit.name]
+
+    def _velocity(self, fit: Fit) -> tuple[Array, Array] | None:
+        commands = as_logged(self.drive, fit, self.path)
+        if commands is None or len(commands.time) < 2:
+            return None
+        end = min(commands.time[-1], commands.time[0] + LONGEST)
+        time = np.arange(commands.time[0] - BEFORE, end + AFTER, STEP)
+        return time, velocity(fit.vehicle, commands, time)
+
+
+def alike(motion: Motion, log: Log, fit: Fit) -> Likeness | None:
+    """How alike a motion and what a log would cause are; clocks that never meet are moved first."""
+    caused = log.caused(fit)
+    if motion.measured is None or caused is None:
+        return None
+    time, nu = caused
+    clock = motion.measured.time
+    if np.ptp(clock) < SHORTEST:
+        return None
+    apart = clock[-1] < time[0] or time[-1] < clock[0]
+    shift = float(clock[0] - time[0]) if apart else 0.0
+    reach = max(REACH, abs(np.ptp(time) - np.ptp(clock))) if apart else REACH
+    return likeness(motion.measured, time, nu, shift, min(reach, LONGEST))
+
+
+def turned(found: Mapping[int, Likeness]) -> list[tuple[float, Array]]:
+    """Mean of the best correlation over runs along each of the 24 axes, the best first."""
+    scored = [
+        (float(np.mean([one.best(axes)[0] for one in found.values()])), axes)
+        for axes in rotations()
+    ]
+    return sorted(scored, key=lambda pair: -pair[0])
+
+
+def highest(found: Likeness | None) -> float:
+    """Best mean correlation along any axes; 0 without a comparison."""
+    return 0.0 if found is None else max(found.best(axes)[0] for axes in rotations())

@@ -1,0 +1,108 @@
+"""Which log of commands belongs to which motion: by file, by what they cause, by name, by clock."""
+
+from dataclasses import dataclass
+from typing import Callable, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.application.intake.motions import Log, Motion
+from rovsim.application.intake.names import run_key
+
+# Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
+# most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).
+ALIKE = 0.38
+AHEAD = 1.3  # times the likeness of the next best
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A motion and its commands; `log` None without any or where `options` are to choose from.
+
+    `likely`: the log that its motion speaks for, though something else speaks against it.
+    """
+
+    motion: Motion
+    log: Log | None
+    said: str
+    options: tuple[Log, ...] = ()
+    likely: Log | None = None
+
+    @property
+    def shown(self) -> Log | None:
+        """The log whose commands show in the motion, as far as anybody can tell."""
+        return self.log or self.likely
+
+
+def pair(
+    motions: Sequence[Motion], logs: Sequence[Log], score: Callable[[Motion, Log], float]
+) -> list[Pair]:
+    """The commands of each motion; `score` tells how alike two are, 0 where nobody knows."""
+    own = {log.path: log for log in logs}
+    if all(motion.path in own for motion in motions):
+        return [Pair(m, own[m.path], "in the same file") for m in motions]
+    if not logs:
+        return [Pair(m, None, "") for m in motions]
+    table = np.array([[score(m, log) for log in logs] for m in motions])
+    by_content = _by_content(table)
+    by_name = _by_name(motions, logs)
+    by_clock = _by_clock(motions, logs)
+    return [
+        _decided(m, list(logs), table[k], by_content[k], by_name[k], by_clock[k])
+        for k, m in enumerate(motions)
+    ]
+
+
+def _by_content(table: Array) -> list[int | None]:
+    """The log that is more like each motion than any other, and like no other motion more."""
+    found: list[int | None] = []
+    for k, row in enumerate(table):
+        best = int(np.argmax(row))
+        rivals = [*np.delete(row, best), *np.delete(table[:, best], k)]
+        sure = row[best] >= ALIKE and row[best] >= AHEAD * max(rivals, default=0.0)
+        found.append(best if sure else None)
+    return found
+
+
+def _by_name(motions: Sequence[Motion], logs: Sequence[Log]) -> list[int | None]:
+    """The log whose name differs only in the words for motion and commands."""
+    ours, theirs = ([run_key(x.path.stem) for x in group] for group in (motions, logs))
+    return [
+        theirs.index(key) if key and ours.count(key) == theirs.count(key) == 1 else None
+        for key in ours
+    ]
+
+
+def _by_clock(motions: Sequence[Motion], logs: Sequence[Log]) -> list[int | None]:
+    """The only log that runs while a motion does, where clocks go on from run to run."""
+    spans = [(log.drive.time.min(), log.drive.time.max()) for log in logs]
+    meets = np.array([[m.track.start < b and a < m.track.end for a, b in spans] for m in motions])
+    return [
+        int(np.argmax(row)) if row.sum() == 1 and meets[:, np.argmax(row)].sum() == 1 else None
+        for row in meets
+    ]
+
+
+def _decided(
+    motion: Motion, logs: list[Log], scores: Array,
+    content: int | None, name: int | None, clock: int | None,
+) -> Pair:  # fmt: skip
+    if content is not None and name in (None, content):
+        how = f"its commands cause this motion (likeness {scores[content]:.2f})"
+        return Pair(
+            motion, logs[content], how + (", and the names agree" if name is not None else "")
+        )
+    if content is not None and name is not None:
+        said = (
+            f"by its name {logs[name].path.name}, but the motion is that of "
+            f"{logs[content].path.name} (likeness {scores[content]:.2f} against {scores[name]:.2f})"
+        )
+        return Pair(motion, None, said, (logs[content], logs[name]), logs[content])
+    for place, said in ((name, "by its name"), (clock, "the only log at that time")):
+        if place is not None:
+            weak = f"; the motion does not show it (likeness {scores[place]:.2f})"
+            return Pair(motion, logs[place], said + (weak if 0 < scores[place] < ALIKE else ""))
+    if len(logs) == 1:
+        return Pair(motion, logs[0], "the only log of commands")
+    order = np.argsort(-scores)
+    return Pair(motion, None, "no name, clock or motion tells which", tuple(logs[k] for k in order))

@@ -1,0 +1,75 @@
+"""Which velocity the logged commands ought to cause: each axis by itself, from rest.
+
+Good enough to tell axes, clocks and files by correlation; no replay (no Coriolis, no gaps).
+"""
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.run import Commands
+from rovsim.dynamics.vehicle import Thrusters, Vehicle
+from rovsim.dynamics.vehicle.hydrodynamics import matrix
+
+SMALL = 1e-9
+
+
+def wrench(vehicle: Vehicle, commands: Commands) -> Array:
+    """Static body wrench (m, 6) of each logged line: N, N m, FRD."""
+    if commands.kind == "wrench":
+        return commands.value
+    thrusters = Thrusters(vehicle.thrusters)
+    value, count = commands.value, thrusters.count
+    if commands.kind == "demand":
+        value = np.clip(value @ thrusters.mixing.T, -1.0, 1.0)
+    angle = np.array(vehicle.angles[: value.shape[1]], dtype=bool)
+    on_thruster = [k for k, a in enumerate(angle) if not a][:count]
+    force = thrusters.static_force(value[:, on_thruster])
+    turned = value[:, [k for k, a in enumerate(angle) if a][: int(thrusters.turning.sum())]]
+    heading = np.stack([np.cos(turned), np.sin(turned)]) if turned.size else None
+    moments = np.cross(thrusters.positions, thrusters.directions)
+    return thrusters.resolved(force, heading) @ np.hstack([thrusters.directions, moments])
+
+
+def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
+    """Body velocity (n, 6) at the even times (n,) s, commands held between their lines."""
+    tau = held(commands.time, wrench(vehicle, commands), time)
+    return respond(vehicle, tau, float(time[1] - time[0]))
+
+
+def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:
+    """Body velocity (n, 6) under a wrench (n, 6) at even times, `step` s apart, from rest."""
+    inertia, linear, quadratic, stiffness = _diagonals(vehicle)
+    nu, angle = np.zeros(6), np.zeros(6)
+    found = np.empty((len(tau), 6))
+    for k, push in enumerate(tau):
+        found[k] = nu
+        # implicit in the drag: stable at any step
+        resisted = inertia / step + linear + quadratic * np.abs(nu)
+        nu = (inertia / step * nu + push - stiffness * angle) / resisted
+        angle = angle + step * nu
+    return np.where(vehicle.free, found, 0.0)
+
+
+def held(time: Array, value: Array, at: Array) -> Array:
+    """Values (n, c) of the last line at each instant (n,); zero before the first."""
+    last = np.searchsorted(time, at, side="right") - 1
+    return np.where(last[:, None] >= 0, value[np.maximum(last, 0)], 0.0)
+
+
+def _diagonals(vehicle: Vehicle) -> tuple[Array, Array, Array, Array]:
+    """Inertia, drag by speed and by its square, and restoring stiffness, (6,) each."""
+    dry, water = vehicle.rigid_body, vehicle.hydrodynamics
+    moments = [getattr(dry.inertia, name) or 1.0 for name in ("Ixx", "Iyy", "Izz")]
+    inertia = np.array([dry.mass] * 3 + moments) + np.diag(matrix(water.added_mass))
+    weight = dry.mass * vehicle.fluid.gravity
+    center = dry.center_of_buoyancy or dry.center_of_gravity
+    righting = weight * (dry.center_of_gravity[2] - center[2])
+    stiffness = np.array([0.0, 0.0, 0.0, righting, righting, 0.0])
+    if vehicle.waterplane is not None:
+        plane = vehicle.waterplane
+        stiffness += [0.0, 0.0, plane.heave, plane.roll, plane.pitch, 0.0]
+    linear, quadratic = (
+        np.diag(matrix(water.linear_damping)),
+        np.diag(matrix(water.quadratic_damping)),
+    )
+    return inertia, linear, quadratic, np.maximum(stiffness, 0.0)

@@ -1,0 +1,80 @@
+"""All files that were named: what each holds, or one message for each that cannot be used."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Sequence
+
+from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.progress import counted
+from rovsim.measurement.survey import Contents, gather, look
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """Files with motions, files with commands alone, and why others of a folder were left out."""
+
+    motions: tuple[Contents, ...]
+    logs: tuple[Contents, ...]
+    left_out: tuple[str, ...] = ()
+
+
+def survey(paths: Sequence[Path], scratch: Path) -> Survey:
+    """Look into files, bags and folders; copies of files that need one are put into `scratch`.
+
+    Raises:
+        RovsimError: a message for each file that was named and cannot be used.
+        BadInput: no motion in any, or motions of several formats.
+    """
+    named, inside = gather(paths)
+    found: list[Contents] = []
+    refused: dict[Path, BadInput] = {}
+    for k, path in enumerate(counted([*named, *inside], "looking into the files")):
+        place = scratch / str(k)
+        place.mkdir(parents=True)
+        try:
+            found.append(look(path, place))
+        except BadInput as error:
+            refused[path] = error
+    bad = [str(refused[path]) for path in named if path in refused]
+    if bad:
+        raise RovsimError("\n".join(bad))
+    left_out = tuple(
+        f"{path.name} is left out: {refused[path].found}." for path in inside if path in refused
+    )
+    motions = tuple(one for one in found if one.tracks)
+    logs = tuple(one for one in found if not one.tracks)
+    _check(motions, logs, list(refused.values()), paths)
+    return Survey(motions, logs, left_out)
+
+
+def _check(
+    motions: Sequence[Contents],
+    logs: Sequence[Contents],
+    refused: list[BadInput],
+    paths: Sequence[Path],
+) -> None:
+    where = paths[0] if len(paths) == 1 else "the files"
+    if not motions:
+        reasons = "; ".join(f"{Path(e.where.split(',')[0]).name}: {e.found}" for e in refused[:5])
+        held = (
+            f"commands alone ({', '.join(c.named.name for c in logs[:5])})"
+            if logs
+            else "no recording"
+        )
+        raise BadInput(
+            held + (f" ({reasons})" if reasons else ""),
+            where=where,
+            expected="at least one file that tells how the vehicle moved",
+            remedy="Name the export of the motion capture, the bag or the log as well.",
+        )
+    formats: dict[str, list[str]] = {}
+    for one in motions:
+        formats.setdefault(one.format, []).append(one.named.name)
+    if len(formats) > 1:
+        listed = "; ".join(f"{name}: {', '.join(files[:5])}" for name, files in formats.items())
+        raise BadInput(
+            f"motions of {len(formats)} formats ({listed})",
+            where=where,
+            expected="one format of motions in a campaign",
+            remedy="Run init for each of them, with another out=.",
+        )

@@ -1,0 +1,45 @@
+"""A proposal becomes campaign.yaml, beside the copies that it needs."""
+
+import shutil
+from pathlib import Path
+
+from rovsim.application.intake.proposal import Proposal
+from rovsim.application.intake.yaml_file import as_yaml
+from rovsim.core.errors import BadInput
+from rovsim.core.files import appearing, write_text
+
+FILE = "campaign.yaml"
+
+
+def check_place(out: Path, force: bool = False) -> None:
+    """Make sure that nothing is overwritten.
+
+    Raises:
+        BadInput: there is a campaign.yaml, or the folder is none.
+    """
+    file = out / FILE
+    if out.exists() and not out.is_dir():
+        raise BadInput(
+            "is not a folder", where=out, expected="a folder", remedy="Give another out=."
+        )
+    if file.exists() and not force:
+        raise BadInput(
+            "there is one already",
+            where=file,
+            expected="a folder without campaign.yaml",
+            remedy="Give another out=, move that file away, or replace it with force=true.",
+        )
+
+
+def write_proposal(proposal: Proposal, out: Path, force: bool = False) -> Path:
+    """Write campaign.yaml into the folder `out`, which is made if need be; returns the file.
+
+    Raises:
+        BadInput: there is one already, or it cannot be written.
+    """
+    check_place(out, force)
+    for place, name in proposal.copies.items():
+        with appearing(out / name) as temporary:
+            shutil.copyfile(place, temporary)
+    write_text(out / FILE, as_yaml(proposal))
+    return out / FILE

@@ -1,0 +1,83 @@
+"""Look into exported files and write a commented campaign.yaml for them.
+
+rovsim init FILE… out=DIR [force=true]
+
+FILE: exports, bags, logs, or folders of them. DIR (default: the folder of the files) gets
+campaign.yaml; the recordings stay where they are. What cannot be found out is marked ANSWER, with
+the possible answers above it. An existing campaign.yaml is replaced only with force=true.
+"""
+
+import os
+import tempfile
+from pathlib import Path
+
+from rovsim.application.intake.compose import propose
+from rovsim.application.intake.proposal import Proposal
+from rovsim.application.intake.write import check_place, write_proposal
+from rovsim.application.settings import CommandSettings
+from rovsim.apps.cli.output import choose_folder, say
+from rovsim.core.errors import BadInput
+from rovsim.dynamics.catalogue import Catalogue
+
+
+class Settings(CommandSettings):
+    """What `rovsim init` takes."""
+
+    files: list[str]
+    force: bool
+
+
+def run(settings: Settings, catalogue: Catalogue) -> None:
+    """Look, write, and say what was found and what is left to answer."""
+    paths = [Path(name).expanduser() for name in settings.files]
+    if not paths:
+        raise BadInput(
+            "no file was named",
+            where="command line",
+            expected="rovsim init FILE… out=DIR",
+            remedy="Name the exports, or the folder that they lie in.",
+        )
+    out = choose_folder(settings, _folder(paths))
+    check_place(out, settings.force)
+    with tempfile.TemporaryDirectory() as scratch:
+        proposal = propose(paths, out, Path(scratch))
+        file = write_proposal(proposal, out, settings.force)
+    say(settings, _told(proposal, file), _content(proposal, file))
+
+
+def _folder(paths: list[Path]) -> str:
+    """The folder that all files lie in; a folder of recordings that was named is that itself."""
+    folders = {
+        str(p.absolute() if p.is_dir() and not _bag(p) else p.absolute().parent) for p in paths
+    }
+    return os.path.commonpath(sorted(folders))
+
+
+def _bag(path: Path) -> bool:
+    return (path / "metadata.yaml").is_file()
+
+
+def _told(proposal: Proposal, file: Path) -> str:
+    parts = ["\n".join(f"  {line}" for line in proposal.found)]
+    if proposal.checks:
+        parts.append("\n".join(f"CHECK  {line}" for line in proposal.checks))
+    if proposal.questions:
+        asked = [
+            f"  {q.place}: {q.asks} {', '.join(v for v, _ in q.answers)}"
+            for q in proposal.questions
+        ]
+        parts.append(f"{len(asked)} to be answered in {file}:\n" + "\n".join(asked))
+    parts.append(f"{file}\nThen: rovsim compare campaign={file.parent}")
+    return "\n\n".join(parts)
+
+
+def _content(proposal: Proposal, file: Path) -> dict:
+    return {
+        "campaign": str(file),
+        "found": proposal.found,
+        "checks": proposal.checks,
+        "questions": [
+            {"key": q.place, "asks": q.asks, "answers": [v for v, _ in q.answers]}
+            for q in proposal.questions
+        ],
+    }

@@ -1,0 +1,138 @@
+"""Motions and commands in csv files."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.commands import ALLOWED
+from rovsim.measurement.recording.csv import KNOWN, read_csv
+from rovsim.measurement.recording.table import (
+    Lines,
+    column_places,
+    csv_lines,
+    numbers,
+    times,
+    without_cut_line,
+)
+from rovsim.measurement.recording.tidying import tidy_export
+from rovsim.measurement.survey.contents import Contents, Drive, Kind, Track
+from rovsim.measurement.survey.headings import rewritten
+
+# Columns that count or watch something, whatever their size.
+WATCHED = re.compile(
+    r"(frame|index|idx|count|seq|id|line|row|unnamed.*|volt.*|battery.*|bat|current.*|amp.*|temp.*|"
+    r"pressure.*|mode|armed|status|quality|residual|sec|nsec|stamp|time.*|)(_.*)?",
+    re.IGNORECASE,
+)
+SOME = 0.5  # share of the lines in which a column of commands has a value
+
+
+def look_into_csv(path: Path, scratch: Path) -> Contents:
+    """Read what a csv file holds, of a copy in `scratch` where its columns have other names.
+
+    Raises:
+        BadInput: neither a measured channel nor what looks like commands.
+    """
+    place, notes = rewritten(path, scratch)
+    lines = csv_lines(place)
+    known = [name for name in lines.names if name in KNOWN]
+    drive = _drive(lines)
+    if not known and drive is None:
+        raise BadInput(
+            f"no measured channel and nothing like commands in the columns {_some(lines.names)}",
+            where=path,
+            expected="time_s with positions, angles …, or with commands (docs/formats.md)",
+            remedy="Name the columns with their units, or leave the file out.",
+        )
+    tracks = (_track(place),) if known else ()
+    drives = () if drive is None else (drive,)
+    return Contents(place, "csv", tracks, drives, None if place == path else path, notes)
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:12]) + (" …" if len(names) > 12 else "")
+
+
+def _track(path: Path) -> Track:
+    mocap = Mocap(format="csv", world_axes="ned", body_axes="frd")
+    return Track("", tidy_export(read_csv(path, mocap), path)[0])
+
+
+def _drive(lines: Lines) -> Drive | None:
+    """Columns that look like commands, if there are any."""
+    if "time_s" not in lines.names:
+        return None
+    named = [
+        n for n in lines.names if n not in KNOWN and n != "time_s" and lines.names.count(n) == 1
+    ]
+    kept = [name for name in named if not WATCHED.fullmatch(name)]
+    voltage = tuple(name for name in named if name == "voltage")
+    places = column_places(lines.path, lines.names, ["time_s", *kept])
+    table, _ = without_cut_line(lines, places)
+    time = times(table, places[0])
+    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
+               if (v := _numbers(table, p)) is not None}  # fmt: skip
+    kind, chosen, said = _kind(columns)
+    if not chosen:
+        return None
+    value = np.stack([columns[name] for name in chosen], axis=1)
+    return Drive("csv", tuple(chosen), time, value, kind, said, auxiliary=voltage)
+
+
+def _numbers(table: Lines, place: int) -> Array | None:
+    """A column (n,), None where it is no column of numbers or mostly empty."""
+    try:
+        value = numbers(table, [place])[:, 0]
+    except BadInput:
+        return None
+    return value if np.isfinite(value).mean() >= SOME else None
+
+
+def _kind(columns: dict[str, Array]) -> tuple[Kind | None, list[str], str]:
+    """Kind, columns and how both are known."""
+    axes = [name for name in columns if name in AXES]
+    if len(axes) > 1 or (axes and len(columns) == 1):
+        if all(within(columns[name], "demand") for name in axes):
+            return "demand", axes, "named after axes, within -1 and 1"
+        return "wrench", axes, "named after axes, beyond -1 and 1"
+    pulses = [name for name in columns if within(columns[name], "pwm")]
+    if pulses:
+        low, high = _range([columns[name] for name in pulses])
+        return "pwm", ordered(pulses), f"all from {low:.0f} to {high:.0f}: pulses in us"
+    shares = [name for name in columns if within(columns[name], "normalized")]
+    if shares and len(shares) == len(columns):
+        return "normalized", ordered(shares), "all within -1 and 1"
+    numbered = [name for name in columns if re.search(r"\d$", name)]
+    return None, ordered(numbered), _sizes([columns[name] for name in numbered])
+
+
+def within(value: Array, kind: Kind) -> bool:
+    """Whether a column can be of that kind, by the size of its numbers."""
+    low, high = ALLOWED[kind][:2]
+    known = value[np.isfinite(value)]
+    return bool(len(known) and known.min() >= low and known.max() <= high)
+
+
+def ordered(names: list[str]) -> list[str]:
+    """Names in the order of the numbers they end in, where they differ in nothing else."""
+    parts = [re.fullmatch(r"(.*?)(\d+)", name) for name in names]
+    if not all(parts) or len({part[1] for part in parts if part}) > 1:
+        return names
+    return sorted(names, key=lambda name: int(re.sub(r".*?(\d+)$", r"\1", name)))
+
+
+def _range(values: list[Array]) -> tuple[float, float]:
+    return min(float(np.nanmin(v)) for v in values), max(float(np.nanmax(v)) for v in values)
+
+
+def _sizes(values: list[Array]) -> str:
+    if not values:
+        return ""
+    low, high = _range(values)
+    what = "revolutions per minute? " if high > 100.0 else ""
+    return f"{what}numbers from {low:.4g} to {high:.4g}"

@@ -1,0 +1,145 @@
+"""Recordings on a common, even clock: rough, robust, good enough to compare them with."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
+from rovsim.measurement.recording.channels import Channel, Channels
+from rovsim.measurement.recording.readers import Export
+
+# A vehicle's speed answers within tenths of a second; a median over a step rejects single outliers.
+STEP = 0.05  # s
+BRIDGED = 0.3  # s without a pose over which a straight line still serves
+# Lines over this many steps to either side: their slope is the velocity.
+HALF_WINDOW = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Poses on the even clock `time` (n,) s: `position` (n, 3), `attitude` (n, 4); NaN unknown."""
+
+    time: Array
+    position: Array
+    attitude: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Velocities:
+    """Body velocities `nu` (n, 6) along the body axes of a file, NaN where unknown."""
+
+    time: Array
+    nu: Array
+
+
+def even_poses(export: Export) -> Poses:
+    """Found poses as medians over steps of the even clock; short gaps are bridged."""
+    seen = export.found
+    time, position, attitude = (
+        export.time[seen], export.position[seen], continuous(export.attitude[seen])
+    )  # fmt: skip
+    clock = even_clock(time)
+    step = clock[1] - clock[0]
+    bins = np.floor((time - clock[0]) / step + 0.5).astype(int)
+    middle = _medians(bins, np.column_stack([time, position, attitude]))
+    known = np.flatnonzero(np.isfinite(middle).all(axis=1))
+    filled = np.stack([np.interp(clock, middle[known, 0], c) for c in middle[known, 1:].T], axis=1)
+    filled[_far(clock, time)] = np.nan
+    return Poses(clock, filled[:, :3], normalized(filled[:, 3:]))
+
+
+def even_clock(time: Array) -> Array:
+    """An even clock over the times (n,): steps of STEP, or the usual step where that is longer."""
+    step = max(STEP, float(np.median(np.diff(time))))
+    return time[0] + step * np.arange(max(int((time[-1] - time[0]) / step) + 1, 2))
+
+
+def _medians(bins: Array, values: Array) -> Array:
+    """Median of the rows of each bin; NaN for those without a row."""
+    starts = np.flatnonzero(np.diff(bins, prepend=-1))
+    found = np.full((bins[-1] + 1, values.shape[1]), np.nan)
+    for first, last in zip(starts, [*starts[1:], len(bins)], strict=True):
+        found[bins[first]] = np.median(values[first:last], axis=0)
+    return found
+
+
+def _far(clock: Array, time: Array) -> Array:
+    """Which instants (n,) of the clock lie in a long gap of the times."""
+    after = np.clip(np.searchsorted(time, clock), 1, len(time) - 1)
+    step = clock[1] - clock[0]
+    return time[after] - time[after - 1] > max(BRIDGED, 2.0 * step)
+
+
+def velocities(export: Export) -> Velocities:
+    """Body velocities by slopes of full poses, or of the channels that were measured."""
+    if export.nu is not None:
+        return _exported(export)
+    if not export.found.any():
+        return _of_channels(export.channels)
+    poses = even_poses(export)
+    linear = unrotate(poses.attitude, slopes(poses.time, poses.position))
+    return Velocities(poses.time, np.hstack([linear, _rates(poses.time, poses.attitude)]))
+
+
+def _exported(export: Export) -> Velocities:
+    seen, clock = export.found, even_clock(export.time[export.found])
+    assert export.nu is not None
+    nu = _interpolated(clock, export.time[seen], export.nu[seen])
+    return Velocities(clock, nu)
+
+
+def _of_channels(channels: Channels) -> Velocities:
+    """What was measured of the velocity (n, 6); columns that nobody measured are NaN throughout."""
+    times = [c.time for c in channels.values() if len(c.time) > 1]
+    clock = even_clock(np.unique(np.concatenate(times)))
+    nu = np.full((len(clock), 6), np.nan)
+    if "velocity" in channels:
+        nu[:, :3] = _interpolated(clock, *_whole(channels["velocity"]))
+    if "rates" in channels:
+        nu[:, 3:] = _interpolated(clock, *_whole(channels["rates"]))
+    elif "attitude" in channels and len(channels["attitude"].time) > 1:
+        turn = channels["attitude"]
+        q = normalized(_interpolated(clock, turn.time, continuous(turn.value)))
+        nu[:, 3:] = _rates(clock, q)
+    return Velocities(clock, nu)
+
+
+def _whole(channel: Channel) -> tuple[Array, Array]:
+    known = np.isfinite(channel.value).all(axis=1)
+    return channel.time[known], channel.value[known]
+
+
+def _interpolated(clock: Array, time: Array, values: Array) -> Array:
+    if len(time) < 2:
+        return np.full((len(clock), values.shape[1]), np.nan)
+    found = np.stack([np.interp(clock, time, c) for c in values.T], axis=1)
+    found[_far(clock, time)] = np.nan
+    return found
+
+
+def _rates(time: Array, attitude: Array) -> Array:
+    """Angular velocities (n, 3) in the body axes of attitudes (n, 4)."""
+    turns = log(multiply(conjugate(attitude[:-1]), attitude[1:]))
+    return smooth(np.vstack([turns, turns[-1:]]) / (time[1] - time[0]))
+
+
+def slopes(time: Array, values: Array) -> Array:
+    """Slopes (n, c) of straight lines through the neighbours of each sample."""
+    step, k = time[1] - time[0], np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
+    return _windowed(values, k[::-1] / (step * np.sum(k**2)))
+
+
+def smooth(values: Array) -> Array:
+    """Means (n, c) over the neighbours of each sample."""
+    count = 2 * HALF_WINDOW + 1
+    return _windowed(values, np.ones(count) / count)
+
+
+def _windowed(values: Array, weights: Array) -> Array:
+    found = np.full(values.shape, np.nan)
+    inside = slice(HALF_WINDOW, len(values) - HALF_WINDOW)
+    if len(values) >= len(weights):
+        for k, column in enumerate(values.T):
+            found[inside, k] = np.convolve(column, weights, mode="valid")
+    return found

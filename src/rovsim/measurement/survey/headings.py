@@ -1,0 +1,262 @@
+"""Csv files whose columns have other names or units: a copy that says the same as `time_s, x_m, …`.
+
+The format csv takes columns by name and unit, so other names need a copy; what was done is told.
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.core.files import write_text
+from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
+from rovsim.measurement.recording.table import Lines, csv_lines, numbers
+
+DEGREE = np.pi / 180.0
+# Names after their units, brackets and case are gone; `{}` stands for a letter of the channel.
+FORMS = {
+    "time_s": "t|time|timestamp|time_stamp|secs?|seconds|elapsed|elapsed_time|time_boot|rostime",
+    **{
+        ours: f"{letter}|p{letter}|pos_?{letter}|position_?{letter}|(pose_)*position_{letter}|"
+        f"t{letter}|translation_{letter}|{letter}_pos(ition)?"
+        for ours, letter in zip(POSITION, "xyz", strict=True)
+    },
+    **{
+        ours: f"q_?{letter}|quat(ernion)?_?{letter}|(pose_)*orientation_{letter}|{letter}_quat|"
+        f"rot(ation)?_{letter}"
+        for ours, letter in zip(QUATERNION, "wxyz", strict=True)
+    },
+    **{ours: ours.removesuffix("_rad") for ours in EULER},
+    **{ours: ours.removesuffix("_m_s") for ours in LINEAR},
+    **{ours: ours.removesuffix("_rad_s") for ours in ANGULAR},
+    "depth_m": "depth",
+}
+FORMS["roll_rad"] += "|phi"
+FORMS["pitch_rad"] += "|theta"
+FORMS["yaw_rad"] += "|psi|heading"
+UNITS = {
+    "mm": 1e-3, "cm": 1e-2, "m": 1.0, "deg": DEGREE, "degrees": DEGREE, "rad": 1.0, "radians": 1.0,
+    "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9,
+    "m_s": 1.0, "mm_s": 1e-3, "deg_s": DEGREE, "rad_s": 1.0,
+}  # fmt: skip
+# Sizes that no vehicle reaches in a tank or a bay.
+FASTEST, FARTHEST = 30.0, 1000.0  # m/s, m
+FASTEST_TURN = 10.0  # rad/s, usual over a recording
+SLOW_ENOUGH = 10.0  # m/s in which a unit of metres is believed
+SHORTEST_STEP, LONGEST_STEP = 2e-4, 5.0  # s between two lines of any recording
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of ours: its place in the file, the factor to our unit, and how it is known."""
+
+    ours: str
+    place: int
+    factor: float
+    said: str
+
+
+def rewritten(path: Path, scratch: Path) -> tuple[Path, tuple[str, ...]]:
+    """The file to read: itself, or a copy in `scratch` with our names and units, and what changed.
+
+    Raises:
+        BadInput: not a csv file, or its units cannot be told.
+    """
+    lines = csv_lines(path)
+    found = _columns(lines)
+    changed = [c for c in found if c.factor != 1.0 or lines.names[c.place] != c.ours]
+    if not changed or not any(c.ours == "time_s" for c in found):
+        return path, ()
+    copy = scratch / f"{path.stem}.csv"
+    write_text(copy, _text(lines, {c.place: c for c in found}))
+    told = [f"'{lines.names[c.place]}' is {c.ours}{c.said}" for c in changed]
+    return copy, (f"{path.name} is read as a copy with other columns: {'; '.join(told)}",)
+
+
+def _text(lines: Lines, columns: dict[int, Column]) -> str:
+    names = [columns[k].ours if k in columns else name for k, name in enumerate(lines.names)]
+    rows = [",".join(names)]
+    for cells in lines.cells:
+        rows.append(",".join(_cell(cell, columns.get(k)) for k, cell in enumerate(cells)))
+    return "\n".join(rows) + "\n"
+
+
+def _cell(text: str, column: Column | None) -> str:
+    text = text.strip()
+    if column is None or column.factor == 1.0 or not text:
+        return text
+    try:
+        return repr(float(text) * column.factor)
+    except ValueError:
+        return text
+
+
+def _columns(lines: Lines) -> list[Column]:
+    """Columns that are ours under another name or unit."""
+    plain = {k: _plain(name) for k, name in enumerate(lines.names)}
+    places = {
+        ours: k for ours, form in FORMS.items() for k, (stem, _) in plain.items()
+        if lines.names[k] == ours or (ours not in lines.names and re.fullmatch(form, stem))
+    }  # fmt: skip
+    _drop_ambiguous(places, lines)
+    if "time_s" not in places:
+        return []
+    time, said = _time(lines, places["time_s"], plain[places["time_s"]][1])
+    columns = [Column("time_s", places["time_s"], time, said)]
+    seconds = _values(lines, places["time_s"]) * time
+    for group in (POSITION, EULER, QUATERNION, LINEAR, ANGULAR, ["depth_m"]):
+        here = {ours: places[ours] for ours in group if ours in places}
+        columns += _group(lines, here, {k: plain[k][1] for k in here.values()}, seconds)
+    return columns
+
+
+def _plain(name: str) -> tuple[str, str]:
+    """A name without its unit, in lower case with underscores, and the unit."""
+    text = re.sub(r"[\s.\[\](){}/]+", "_", name.strip().lower().lstrip("%")).strip("_")
+    for unit in sorted(UNITS, key=len, reverse=True):
+        if text.endswith(f"_{unit}"):
+            return text.removesuffix(f"_{unit}"), unit
+    return text, ""
+
+
+def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
+    """Bare letters are channels only in company: 'roll' may be a demand, 'p' and 'u' anything."""
+    renamed = {ours for ours, place in places.items() if lines.names[place] != ours}
+    whole = all(name in places for name in QUATERNION)
+    demanded = bool({"surge", "sway", "heave"} & set(lines.names)) or "x_m" not in places
+    dropped = set() if whole else set(QUATERNION)
+    bare = {n for n in EULER if n in renamed and lines.names[places[n]].lower() in AXES}
+    dropped |= renamed & set(EULER) if whole else bare if demanded else set()
+    for group in (LINEAR, ANGULAR):
+        dropped |= set() if all(name in places for name in group) else renamed & set(group)
+    for name in dropped & set(places):
+        del places[name]
+
+
+def _values(lines: Lines, place: int) -> Array:
+    try:
+        return numbers(lines, [place])[:, 0]
+    except BadInput:
+        return np.full(len(lines.cells), np.nan)
+
+
+def _time(lines: Lines, place: int, unit: str) -> tuple[float, str]:
+    """Factor to seconds of the times, and how it is known."""
+    if lines.names[place] == "time_s":
+        return 1.0, ""
+    if unit:
+        return UNITS[unit], f" in {unit}"
+    value = _values(lines, place)
+    step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
+    late = float(np.nanmax(np.abs(value), initial=0.0))
+    for name, size in (("ns", 1e17), ("us", 1e14), ("ms", 1e11)):
+        if late > size:
+            return UNITS[name], f" in {name} since 1970, by its size"
+    if SHORTEST_STEP <= step < LONGEST_STEP or not step > 0.0:
+        return 1.0, " in s, by its steps"
+    name = "ms" if step < 1e3 * LONGEST_STEP else "us" if step < 1e6 * LONGEST_STEP else "ns"
+    return UNITS[name], f" in {name}, by its steps"
+
+
+def _group(lines: Lines, here: dict[str, int], units: dict[int, str], time: Array) -> list[Column]:
+    """Columns of one kind; those without a unit in their name get one by their size."""
+    if not here:
+        return []
+    names = list(here)
+    value = np.stack([_values(lines, place) for place in here.values()], axis=1)
+    if names[0] in QUATERNION:
+        return [Column(n, p, 1.0, "") for n, p in here.items()]
+    factor, said = _by_size(lines, names, value, time)
+    return [
+        Column(n, p, UNITS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
+        for n, p in here.items()
+    ]
+
+
+def _of(unit: str) -> str:
+    return f" in {unit}" if unit else ""
+
+
+def _by_size(lines: Lines, names: list[str], value: Array, time: Array) -> tuple[float, str]:
+    """Factor to our unit where the size of the numbers says one, and how; else 1 and nothing.
+
+    Raises:
+        BadInput: the columns name no unit, and their numbers allow two.
+    """
+    named = all(name in lines.names or _plain_unit(lines, name) for name in names)
+    if names[0] in POSITION:
+        return _metres(lines, value, time, named)
+    if names[0] in EULER:
+        return _radians(lines, names, value, time, named)
+    return 1.0, ""
+
+
+def _plain_unit(lines: Lines, ours: str) -> str:
+    found = [_plain(name) for name in lines.names]
+    return next((unit for stem, unit in found if re.fullmatch(FORMS[ours], stem) and unit), "")
+
+
+def _metres(lines: Lines, value: Array, time: Array, named: bool) -> tuple[float, str]:
+    far = float(np.nanmax(np.nanpercentile(value, 99, axis=0) - np.nanpercentile(value, 1, axis=0)))
+    fast = _usual_speed(value, time)
+    unit = any(_plain(name)[1] in ("mm", "cm") for name in lines.names)
+    if unit and named:
+        return 1.0, ""
+    if fast > FASTEST or far > FARTHEST:
+        return 1e-3, f" in mm, by its size ({fast:.0f} m/s if it were m)"
+    if named:
+        return 1.0, ""
+    if fast < SLOW_ENOUGH and far < 0.1 * FARTHEST:
+        return 1.0, " in m, by its size"
+    raise BadInput(
+        f"positions over {far:.3g}, {fast:.3g} per second, without a unit",
+        where=lines.path,
+        expected="x_m, y_m, z_m or x_mm, y_mm, z_mm",
+        remedy="Rename these columns.",
+    )
+
+
+def _usual_speed(value: Array, time: Array) -> float:
+    """A high but usual speed: the 90th percentile over tenths of a second, free of noise."""
+    known = np.isfinite(value).all(axis=1) & np.isfinite(time) & value.any(axis=1)
+    if known.sum() < 10:
+        return 0.0
+    t, x = time[known], value[known]
+    stride = max(1, round(0.2 / max(float(np.median(np.diff(t))), 1e-6)))
+    dt, dx = t[stride:] - t[:-stride], np.linalg.norm(x[stride:] - x[:-stride], axis=1)
+    good = dt > 0
+    return float(np.percentile(dx[good] / dt[good], 90)) if good.any() else 0.0
+
+
+def _radians(
+    lines: Lines, names: list[str], value: Array, time: Array, named: bool
+) -> tuple[float, str]:
+    unit = any(_plain(name)[1] in ("deg", "degrees") for name in lines.names)
+    if named and unit:
+        return 1.0, ""
+    if named:  # angles that count on may be large: only what no vehicle does speaks against a name
+        fast = _usual_speed(np.unwrap(value, axis=0), time)
+        absurd = fast > FASTEST_TURN
+        return (DEGREE, f" in degrees, by its size ({fast:.0f} rad/s)") if absurd else (1.0, "")
+    size = np.nanmax(np.abs(value), axis=0)
+    turns = [s for n, s in zip(names, size, strict=True) if n != "yaw_rad"]
+    # a pitch lies within a quarter turn, a roll within half a turn; a heading may count its turns
+    degrees = max(turns, default=0.0) > 1.02 * np.pi or (not turns and size.max() > 6 * np.pi)
+    if degrees:
+        return DEGREE, " in degrees, by its size"
+    heading = value[:, names.index("yaw_rad")] if "yaw_rad" in names else value[:, 0]
+    spread = float(np.nanmax(heading) - np.nanmin(heading))
+    if 1.0 < spread < 2.02 * np.pi:
+        return 1.0, " in rad, by its size"
+    if spread >= 2.02 * np.pi:
+        return DEGREE, " in degrees, by its size"
+    raise BadInput(
+        f"angles up to {size.max():.3g} without a unit: rad or degrees?",
+        where=lines.path,
+        expected="roll_rad, pitch_rad, yaw_rad or roll_deg, pitch_deg, yaw_deg",
+        remedy="Rename these columns.",
+    )

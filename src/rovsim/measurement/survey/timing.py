@@ -1,0 +1,42 @@
+"""Rates, jitter and gaps of times."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+JITTERY = 0.1  # share of the usual step; clocks of computers stay below
+
+
+@dataclass(frozen=True)
+class Timing:
+    """`rows` over `seconds`, at `rate` Hz; `jitter` is the spread of steps over the usual one.
+
+    `gaps` are steps longer than twice the usual, `longest` s the longest step.
+    """
+
+    rows: int
+    seconds: float
+    rate: float
+    jitter: float
+    gaps: int
+    longest: float
+
+    @staticmethod
+    def of(time: Array) -> "Timing":
+        """Of increasing times (n,) s, n > 1."""
+        steps = np.diff(time)
+        usual = float(np.median(steps))
+        regular = steps[steps < 1.5 * usual]
+        return Timing(
+            len(time), float(time[-1] - time[0]), 1.0 / usual, float(regular.std() / usual),
+            int(np.sum(steps > 2.0 * usual)), float(steps.max()),
+        )  # fmt: skip
+
+    def __str__(self) -> str:
+        said = f"{self.rows} rows, {self.seconds:.1f} s at {self.rate:.4g} Hz"
+        if self.jitter > JITTERY:
+            said += f", steps vary by {self.jitter:.0%}"
+        if self.gaps:
+            said += f", {self.gaps} gaps, the longest {self.longest:.2f} s"
+        return said

@@ -1,0 +1,38 @@
+"""Lines of a `campaign.yaml` that `rovsim init` left to its reader."""
+
+import re
+from pathlib import Path
+from typing import Any, Iterator
+
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text
+
+ANSWER = "ANSWER"  # the value of what nobody has answered yet
+HERE = re.compile(rf"^[^#]*\b{ANSWER}\b")
+
+
+def check_answered(content: Any, file: Path) -> None:
+    """Make sure that no question is left.
+
+    Raises:
+        BadInput: names the lines and the keys that are still to be answered.
+    """
+    open_places = list(_unanswered(content, ""))
+    if not open_places:
+        return
+    lines = [n for n, line in enumerate(read_text(file).split("\n"), 1) if HERE.match(line)]
+    listed = ", ".join(f"line {n} ({p})" for n, p in zip(lines, open_places, strict=False))
+    raise BadInput(
+        f"still to be answered: {listed or ', '.join(open_places)}",
+        where=file,
+        expected=f"an answer in place of {ANSWER}; the comment above each line tells the choices",
+        remedy="Answer them in a text editor, or open the folder in `rovsim ui`.",
+    )
+
+
+def _unanswered(content: Any, place: str) -> Iterator[str]:
+    if content == ANSWER:
+        yield place
+    pairs = content.items() if isinstance(content, dict) else []
+    for key, inner in enumerate(content) if isinstance(content, list) else pairs:
+        yield from _unanswered(inner, f"{place}.{key}".lstrip("."))
