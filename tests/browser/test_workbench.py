@@ -1,11 +1,13 @@
 """The workbench as its users meet it: from the recordings to a model in which the error fell."""
 
 import json
+import shutil
 import urllib.request
 
 import pytest
+import yaml
 
-from chromium import DESK, started
+from chromium import DESK, Tab, started
 from rovsim import AXES
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench.traces import HORIZONS
@@ -174,12 +176,51 @@ def test_every_screen_fits_a_desk_and_a_phone(tab, phone, screen):
 
 def test_another_campaign_is_opened_and_a_bad_one_explained(tab, campaign, tmp_path):
     tab.go("open")
-    tab.page.get_by_label("Folder that holds campaign.yaml").fill(str(tmp_path / "nowhere"))
+    tab.page.get_by_label("Folder of a campaign, or of recordings").fill(str(tmp_path / "nowhere"))
     tab.page.get_by_role("button", name="Open", exact=True).click()
     tab.page.get_by_text("no such file").wait_for()
-    tab.page.get_by_label("Folder that holds campaign.yaml").fill(str(campaign))
+    tab.page.get_by_label("Folder of a campaign, or of recordings").fill(str(campaign))
     tab.page.get_by_role("button", name="Open", exact=True).click()
     tab.page.get_by_role("heading", name="Compare").wait_for()
+
+
+def test_recordings_without_a_description_are_looked_into_asked_about_and_opened(
+    chromium, campaign, tmp_path
+):
+    """Motions alone: the vehicle and the axes have to be asked; then compare has nothing to say."""
+    raw = tmp_path / "own recordings"
+    raw.mkdir()
+    for path in campaign.glob("*_6D.tsv"):
+        shutil.copy(path, raw)
+    process, address = started(tmp_path)
+    try:
+        tab = Tab(chromium.new_page(viewport={"width": DESK[0], "height": DESK[1]}), address)
+        page = tab.page
+        page.goto(f"{address}/open")
+        page.get_by_label("Folder of a campaign, or of recordings").fill(str(raw))
+        page.get_by_role("button", name="Open", exact=True).click()
+        page.get_by_role("heading", name="New campaign").wait_for(timeout=60_000)
+        tab.picture("new-campaign")
+        write = page.get_by_role("button", name="Write campaign.yaml and open it")
+        write.click()
+        page.get_by_text("Answer every question").wait_for()
+        assert not (raw / "campaign.yaml").exists()
+        page.get_by_role("button", name="bluerov2_heavy", exact=True).click()
+        for label, answer in (("world", "z_up"), ("rigid body", "flu")):
+            page.get_by_label(f"Axes of the {label}").click()
+            page.get_by_role("option", name=f"{answer}: ").click()
+        write.click()
+        page.get_by_role("heading", name="Compare").wait_for(timeout=60_000)
+        content = yaml.safe_load((raw / "campaign.yaml").read_text())
+        assert (content["vehicle"], content["mocap"]["body_axes"]) == ("bluerov2_heavy", "flu")
+        assert {f"{run['id']}_6D.tsv" for run in content["runs"]} == {
+            p.name for p in raw.glob("*.tsv")
+        }
+        assert tab.complaints == []
+        page.close()
+    finally:
+        process.terminate()
+        process.wait(20)
 
 
 def test_a_newcomer_without_recordings_gets_some_to_practise_on(chromium, tmp_path):

@@ -26,7 +26,7 @@ def check_answered(content: Any, file: Path) -> None:
         f"still to be answered: {listed or ', '.join(open_places)}",
         where=file,
         expected=f"an answer in place of {ANSWER}; the comment above each line tells the choices",
-        remedy="Answer them in a text editor, or open the folder in `rovsim ui`.",
+        remedy="Write the answers into the file.",
     )
 
 

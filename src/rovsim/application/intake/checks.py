@@ -13,14 +13,28 @@ from rovsim.application.intake.pairing import ALIKE
 from rovsim.application.intake.predicted import held, respond, wrench
 from rovsim.application.intake.vehicles import Fit, as_logged
 from rovsim.core.rotations import unrotate
-from rovsim.core.run import Commands
-from rovsim.measurement.quality import EXCITED
+from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.measurement.quality import EXCITED, usable_reason
+from rovsim.measurement.recording import Recording
+from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.survey.grid import even_poses, slopes
 
 # A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
 # of the likeness is known to about a tenth of a second.
 EARLIEST, LATEST = -0.25, 0.6  # s
 BETTER = 0.12  # likeness by which another order or sign must be better to be told
+
+
+def unusable(motion: Motion) -> str | None:
+    """Why rovsim will not use a motion: too short, or it does not move."""
+    export = motion.track.export
+    commands = Commands(np.empty(0), np.empty((0, 6)), "wrench")
+    recording = Recording(
+        RunInfo("", "", ""), Site.unknown(), export.time, export.position, export.attitude,
+        export.found, commands, export.rate or measured_rate(export.time), export.nu,
+        export.channels,
+    )  # fmt: skip
+    return usable_reason(recording)
 
 
 def check_clocks(choice: Choice, axes: Array, names: Sequence[str]) -> Iterator[str]:

@@ -53,6 +53,9 @@ def _lines(facts: Facts) -> Iterator[str]:
 
 def _checked(facts: Facts) -> Iterator[str]:
     """What looks wrong."""
+    for name, one in zip(facts.ids, facts.pairs, strict=True):
+        if reason := checks.unusable(one.motion):
+            yield f"{name} will not be used: {reason}"
     used = [one.log for one in facts.pairs]
     if not any(one.options for one in facts.pairs):
         yield from (f"{log.path.name} belongs to no run" for log in facts.logs if log not in used)

@@ -37,6 +37,17 @@ class Proposal:
     checks: tuple[str, ...] = ()
     copies: Mapping[Path, str] = field(default_factory=dict)
 
+    def fully(self, answers: Mapping[str, str]) -> "Proposal":
+        """The proposal with an answer to every question.
+
+        Raises:
+            BadInput: one is missing, or not among the choices.
+        """
+        found = self.answered(answers)
+        for question in found.questions:
+            raise _ask_for(question)
+        return found
+
     def answered(self, answers: Mapping[str, str]) -> "Proposal":
         """The proposal with answers by place; those that are empty stay open.
 
@@ -52,6 +63,15 @@ class Proposal:
             _check(question, answer)
             _put(content, question.place.split("."), answer)
         return replace(self, content=content, questions=tuple(left))
+
+
+def _ask_for(question: Question) -> BadInput:
+    return BadInput(
+        "no answer",
+        where=question.place,
+        expected=f"one of {', '.join(value for value, _ in question.answers)}",
+        remedy="Answer every question; the recordings do not tell.",
+    )
 
 
 def _check(question: Question, answer: str) -> None:

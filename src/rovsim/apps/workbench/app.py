@@ -2,10 +2,11 @@
 
 import asyncio
 import gc
+import tempfile
 from functools import partial
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Callable
+from typing import Any, Callable, Mapping
 
 from fastapi.responses import FileResponse
 from nicegui import app as server
@@ -37,11 +38,49 @@ class App:
         self.work: Any = None
         self.version = 0  # changes when the screens must be drawn again
         self.opening = asyncio.Lock()
+        self.proposal: Any = None  # of a folder that nobody has described
+        self.described = Path()
+        self.scratch: Any = None
 
     def choose(self, folder: str) -> None:
-        """Open another campaign."""
+        """Open another campaign, or look into a folder that holds none."""
+        place = Path(folder).expanduser()
+        self.proposal = None
+        if folder and place.is_dir() and not (place / "campaign.yaml").exists():
+            self._look_into(place)
+            return
         self.settings = self.settings.model_copy(update={"campaign": folder, "diagnosis": None})
         self.bench, self.problem, self.said = None, "", ""
+        self.version += 1
+
+    def _look_into(self, folder: Path) -> None:
+        from rovsim.apps.workbench import tasks
+        from rovsim.apps.workbench.work import Work
+
+        self.scratch = tempfile.TemporaryDirectory()
+        self.problem, self.said, self.described = "", "", folder
+        self.work = Work.start(
+            "Looking into the files", self._found, tasks.look_into, folder, Path(self.scratch.name)
+        )
+
+    def _found(self, proposal: Any) -> None:
+        self.proposal = proposal
+
+    def write(self, answers: Mapping[str, str]) -> None:
+        """Write campaign.yaml into the folder that was looked into, and open it."""
+        from rovsim.application.intake.write import write_proposal
+
+        try:
+            write_proposal(self.proposal.fully(answers), self.described)
+        except RovsimError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+            return
+        self.scratch.cleanup()
+        self.choose(str(self.described))
+
+    def leave(self) -> None:
+        """Forget what was looked into."""
+        self.proposal = None
         self.version += 1
 
     def practise(self) -> None:
@@ -88,6 +127,8 @@ class App:
             self.bench.work = None
         if work.state == "done":
             work.after(work.said)
+        elif work.state == "failed" and self.bench is None:
+            self.problem = work.said
         self.version += 1
         self.said = {
             "done": f"{work.title}: done in {work.elapsed:.0f} s.",
@@ -159,7 +200,7 @@ class Page:
             self.campaign.text = self._name()
             if self.shared.said:
                 ui.notify(self.shared.said, color="dark", position="bottom-right", multi_line=True)
-            if self.name:
+            if self.name or self.shared.proposal is not None or self.shared.problem:
                 self.pages.refresh()
             else:
                 ui.navigate.to("/compare")
@@ -205,8 +246,12 @@ class Page:
         self._choose()
 
     def _choose(self) -> None:
-        from rovsim.apps.workbench import campaigns
+        from rovsim.apps.workbench import campaigns, new_campaign
 
+        shared = self.shared
+        if shared.proposal is not None:
+            new_campaign.show(shared.proposal, str(shared.described), shared.write, shared.leave)
+            return
         campaigns.show(self.shared.choose, self.shared.practise, self.shared.problem)
 
 

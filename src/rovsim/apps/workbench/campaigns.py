@@ -23,10 +23,15 @@ def show(choose: Callable[[str], None], practise: Callable[[], None], problem: s
     if problem:
         text(problem, "warning")
     with ui.row().classes("controls"):
-        folder = ui.input("Folder that holds campaign.yaml").classes("control wide")
+        folder = ui.input("Folder of a campaign, or of recordings").classes("control wide")
         folder.props("outlined dense")
         folder.on("keydown.enter", lambda: choose(folder.value.strip()))
         ui.button("Open", on_click=lambda: choose(folder.value.strip())).props("unelevated no-caps")
+    text(
+        "A folder without campaign.yaml is looked into: exports, bags, logs of commands. You are "
+        "shown what is in them, and asked what no file tells.",
+        "soft",
+    )
     if found := known():
         section("Near here")
         with ui.column().classes("effects"):

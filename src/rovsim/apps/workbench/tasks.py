@@ -3,6 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
+from rovsim.application.intake.compose import propose
+from rovsim.application.intake.proposal import Proposal
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_models, load_one_model
@@ -65,6 +67,11 @@ def report_into(
         if result := getattr(shown, name):
             result.write(out / f"{name}.json")
     return out / "report.html"
+
+
+def look_into(folder: Path, scratch: Path) -> Proposal:
+    """What a campaign.yaml in a folder of recordings would say; copies lie in `scratch`."""
+    return propose([folder], folder, scratch)
 
 
 def practise(tank: TankSettings, out: Path) -> Path:
