@@ -8,7 +8,7 @@ import pytest
 from flown import observed
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.gate import Gate, _compare, keep_apart
+from rovsim.diagnosis.selection.gate import Gate, _compare, _costs, keep_apart
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
@@ -53,6 +53,15 @@ def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
     passed, whole = gate.judge(impossible)
     assert passed.found.hypothesis.terms == ()
     assert not whole
+
+
+def test_where_physics_is_left_a_name_must_be_surely_worth_it():
+    error = np.linspace(0.5, 1.5, 20)
+    assert _costs(1.1 * error, error, 0.02)
+    assert not _costs(1.03 * error, error, 0.02)  # a root mean square of 1.5 % more
+    once = error + np.where(np.arange(20) == 3, 10.0, 0.0)
+    assert not _costs(once, error, 0.02)
+    assert _costs(np.full(20, np.nan), error, 0.02)
 
 
 class Workspace:

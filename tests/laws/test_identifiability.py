@@ -4,7 +4,7 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.diagnosis.advice import advise
-from rovsim.diagnosis.checks.identifiability import group_joint_parameters
+from rovsim.diagnosis.checks.identifiability import find_doubtful, group_joint_parameters
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
@@ -53,6 +53,14 @@ def test_a_value_that_is_surely_there_is_known_by_itself():
     assert group_joint_parameters(fit(covariance, np.array([5.0, 0, 0, 0, 0, 0, 0]))) == [
         ["linear_damping.roll", "linear_damping.pitch"]
     ]
+
+
+def test_a_term_is_doubtful_where_all_its_values_may_be_those_of_absence():
+    sure, unsure = np.array([9.0, 0, 0, 0, 0, 0, 9.0]), np.array([9.0, 0, 0, 0, 0, 0, 1.0])
+    assert find_doubtful(fit(alike(), sure)) is None
+    assert find_doubtful(fit(alike(), unsure)) == 1
+    assert find_doubtful(fit(alike(), np.array([0, 0, 0, 0, 0, 0, 9.0]))) == 0
+    assert find_doubtful(fit(alike((2, 6, 0.99)), unsure)) is None  # known together with drag
 
 
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():

@@ -1,5 +1,7 @@
 """Where all of it is wrong at once: what the demands command, and how much drag there is."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,16 +9,18 @@ from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.joint_fit import fit_jointly
+from rovsim.diagnosis.selection.joint_fit import _prune_together, fit_jointly
 from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Log
 
 GAIN = dict(zip(AXES, (0.9, 0.8, 0.7, 2.0, 2.0, 2.0), strict=True))
@@ -29,6 +33,33 @@ HIDDEN = (
     ),
     EffectEntry(effect="quadratic_damping", parameters={"surge": -90.0, "sway": -150.0}),
 )
+
+
+class OpenScale:
+    """Drag is twice what the file says; while the gain is free, no value is sure."""
+
+    price = 10.0
+
+    def fit(self, h, reach):
+        free = {term.id for term in h.terms}
+        std = np.full(len(h.x), 100.0 if "thruster_gain" in free else 0.1)
+        return SimpleNamespace(hypothesis=h, std=std)
+
+    def score(self, found):
+        free = {term.id for term in found.hypothesis.terms}
+        return (100.0 if "quadratic_damping" in free else 0.0) - self.price * len(free)
+
+
+def test_of_an_open_scale_the_gain_goes_and_what_differs_stays():
+    base = nominal(load_vehicle("bluerov2_heavy"))
+    terms = (
+        Term(built_in()["added_mass"](), ("surge",)),
+        Term(built_in()["quadratic_damping"](surge=80.0), ("surge",)),
+        Term(built_in()["thruster_gain"](all=2.0), ("all",)),
+    )
+    start = Hypothesis(base, terms)
+    found = _prune_together(OpenScale(), OpenScale().fit(start, np.inf))
+    assert [term.id for term in found.hypothesis.terms] == ["quadratic_damping"]
 
 
 def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):

@@ -20,6 +20,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.checks.common_scale import CommonScale, include_scale
+from rovsim.diagnosis.checks.identifiability import find_doubtful
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
@@ -32,7 +33,7 @@ from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.gate import Gate, keep_apart
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit
+from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit, judge
 from rovsim.diagnosis.selection.held_out import drop_idle
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
@@ -144,7 +145,7 @@ def _diagnose(
         better = gate.prefers(found.selection, joint.selection)
         found = found if better or (better is None and found.score >= joint.score) else joint
     if found.structures and len(found.fit.hypothesis.x):
-        found = replace(found, fit=fit_to_replays(found.fit, found.bank))
+        found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
     rivals = found.selection.named_rivals
     wider, scale = include_scale(found.fit, usable.runs)
     selected = rank_selected(base, wider, rivals, usable.runs)
@@ -200,6 +201,18 @@ def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
     if not whole and not structures:
         structures = [REFUSED]
     return _Settled(selection, found, bank, score, structures)
+
+
+def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
+    """The values that replay best, without effects that these might as well lack."""
+    again = fit_to_replays(found, bank)
+    while len(again.hypothesis.terms) > 1:
+        doubtful = find_doubtful(again)
+        if doubtful is None:
+            break
+        fewer = bank.linearise(again.hypothesis.without(doubtful))
+        again = fit_to_replays(judge(fewer, bank, found.noise), bank)
+    return again
 
 
 def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:

@@ -1,12 +1,15 @@
-"""Values that are known only together: the runs fix what they do jointly, not each of them."""
+"""What values say of themselves: some are known only together, some might as well be absent."""
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
+from scipy.stats import chi2
 
+from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.selection.gauss_newton import Fit
 
 ALIKE = 0.95  # correlation; each would be three times as sure if the other were known
 UNSURE = 2.0  # standard deviations: the value could as well be that of absence
+DOUBT = 0.01  # chance of values as far from absence
 
 
 def group_joint_parameters(found: Fit) -> list[list[str]]:
@@ -19,3 +22,20 @@ def group_joint_parameters(found: Fit) -> list[list[str]]:
     _, label = connected_components(alike, directed=False)
     groups = [[names[k] for k in unsure[label == g]] for g in range(label.max(initial=-1) + 1)]
     return sorted((g for g in groups if len(g) > 1), key=lambda g: (-len(g), g))
+
+
+def find_doubtful(found: Fit) -> int | None:
+    """The term whose values are the likeliest to be those of its absence; None if none may be.
+
+    What is known only together with others is not doubtful: without it they would seem sure.
+    """
+    h = found.hypothesis
+    together = {name.split(".")[0] for group in group_joint_parameters(found) for name in group}
+    chances = np.zeros(len(h.terms))
+    for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
+        if own and term.id not in together:
+            change = (h.x - h.absence)[own]
+            distance = change @ solve(found.covariance[np.ix_(own, own)], change)
+            chances[i] = chi2.sf(distance, len(own))
+    likeliest = int(np.argmax(chances))
+    return likeliest if chances[likeliest] > DOUBT else None

@@ -7,7 +7,7 @@ and an answer that replays them worse than the model before is no answer.
 
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -21,9 +21,12 @@ from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.model import Model
 
+Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
+
 KEPT_APART = 0.2  # of each run's time
 SHORTEST = 60.0  # s of a run, less than which a fifth shows too few windows of 2 s
 WORSE = 0.02  # of the error: less is within what the windows happen to hold
+SLIGHT = 0.005  # of the error: what is let go one after the other adds up to about WORSE
 CERTAIN = 2.0  # standard errors over the windows
 CLOSE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
 SMALLEST = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
@@ -79,18 +82,23 @@ class Gate:
     def keep_earning(self, selection: Selection) -> Selection:
         """Where physics is left that no name explains: only what makes a difference there.
 
-        A name then stands for part of what has none, unless replays are better for it. What the
-        vehicle file states counts together.
+        A name then stands for part of what has none, unless replays are surely better for it. What
+        the vehicle file states counts together; then whatever of it is not sure by itself goes.
         """
-        found, all_of_it = selection.found, None
-        while self.runs and found.hypothesis.terms:
-            fewer, errors = self._do_without(selection, found, _group(found.hypothesis))
-            all_of_it = errors[0] if all_of_it is None else all_of_it
-            losses = [_ratio(other, all_of_it) - 1.0 for other in errors[1:]]
-            least = int(np.argmin(losses))
-            if losses[least] > WORSE:
+        for split, least in ((_group, WORSE), (_list_stated, SLIGHT)):
+            selection = self._drop_idle(selection, split, least)
+        return selection
+
+    def _drop_idle(self, selection: Selection, split: Split, least: float) -> Selection:
+        """Without groups of terms whose absence does not surely cost that share of the error."""
+        found = selection.found
+        while self.runs and (groups := split(found.hypothesis)):
+            fewer, errors = self._do_without(selection, found, groups)
+            idle = [k for k, e in enumerate(errors[1:]) if not _costs(e, errors[0], least)]
+            if not idle:
                 break
-            found = selection.workspace.fit(fewer[least])
+            losses = [_ratio(errors[1 + k], errors[0]) for k in idle]
+            found = selection.workspace.fit(fewer[idle[int(np.argmin(losses))]])
         return replace(selection, found=found)
 
     def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:
@@ -140,6 +148,11 @@ def _compare_axes(windows: Windows, models: Sequence[Model]) -> Array:
     return windows.compare(models).swapaxes(1, 2)
 
 
+def _list_stated(h: Hypothesis) -> list[tuple[Term, ...]]:
+    """Each effect that a vehicle file states, by itself."""
+    return [(term,) for term in h.terms if term.id in STATED]
+
+
 def _group(h: Hypothesis) -> list[tuple[Term, ...]]:
     """Each special effect by itself, and all that a vehicle file states together."""
     stated = tuple(term for term in h.terms if term.id in STATED)
@@ -153,13 +166,24 @@ def _ratio(error: Array, other: Array) -> float:
         return float(np.sqrt(np.nan_to_num(np.mean(error) / np.mean(other), nan=np.inf)))
 
 
+def _costs(error: Array, usual: Array, least: float) -> bool:
+    """Whether an error (w,) is surely larger than the usual one, and by more than that share."""
+    if not np.isfinite(error).all():
+        return True
+    return _ratio(error, usual) - 1.0 > least and _is_surely_less(usual, error)
+
+
+def _is_surely_less(one: Array, other: Array) -> bool:
+    """Whether an error (w,) is less than another, beyond what windows differ by chance."""
+    less = other - one
+    return bool(np.mean(less) > CERTAIN * np.std(less) / np.sqrt(len(less)))
+
+
 def _compare(error: Array, other: Array) -> float:
     """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure."""
     if not np.isfinite(other).all():
         return 0.0
     if not np.isfinite(error).all():
         return np.inf
-    less = error - other
-    mean, sure = float(np.mean(less)), float(np.std(less)) / np.sqrt(len(less))
     share = 1.0 - _ratio(other, error)
-    return share if share > WORSE and mean > CERTAIN * sure else 0.0
+    return share if share > WORSE and _is_surely_less(other, error) else 0.0
