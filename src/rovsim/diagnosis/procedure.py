@@ -24,6 +24,7 @@ from rovsim.diagnosis.checks.identifiability import find_doubtful
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
+from rovsim.diagnosis.checks.rest_of_file import include_rest
 from rovsim.diagnosis.observer.camera import find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
@@ -148,6 +149,7 @@ def _diagnose(
         found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
     rivals = found.selection.named_rivals
     wider, scale = include_scale(found.fit, usable.runs)
+    wider = include_rest(wider, usable.runs)
     selected = rank_selected(base, wider, rivals, usable.runs)
     if smoothing:
         selected = [rank_smoothing(base, smoothing, usable.runs), *selected]

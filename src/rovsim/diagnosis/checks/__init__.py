@@ -3,6 +3,7 @@
 residual_structure   does what is left vary with something? (residual, regressors,
                      spectral_lines, sudden_pushes)
 common_scale         does a factor of all forces stay open?
+rest_of_file         what does the rest of a vehicle file that is off leave open? (left_open)
 identifiability      which values are known only together?
 noise_floor          what would a perfect model score?
 """

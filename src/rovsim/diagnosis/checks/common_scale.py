@@ -14,9 +14,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.checks.left_open import leave_open, name_parameters
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, GAIN, ONE_GAIN
@@ -49,7 +48,7 @@ def include_scale(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonS
     """
     if not _may_share(found.hypothesis, runs):
         return found, None
-    names = _name(found.hypothesis)
+    names = name_parameters(found.hypothesis)
     if GAIN_NAME in names:
         gain = names.index(GAIN_NAME)
         variance = float(found.covariance[gain, gain])
@@ -63,18 +62,11 @@ def include_scale(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonS
 
 def _free_gain(found: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
     """Variance of the gain once it is free, and how the parameters (k,) follow it, all scaled."""
-    freed = found.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN))
-    bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
-    seen = bank.linearise(freed)
-    k = _name(freed).index(GAIN_NAME)
-    if not seen.finite:
+    opened = leave_open(found, found.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
+    if opened is None:
         return 0.0, np.zeros(len(found.std))
-    J = bank.whiten(seen.J, found.noise)
-    H = inner_products(J.reshape(len(J), -1))
-    others = np.delete(np.arange(len(H)), k)
-    along = -solve(H[np.ix_(others, others)], H[others, k])
-    told = max(float(H[k, k] + H[k, others] @ along), 0.0)  # by the runs, of the gain
-    return 1.0 / (told + (SCALE / GAIN) ** 2), along
+    told = max(float(opened.told[0, 0]), 0.0)
+    return 1.0 / (told + (SCALE / GAIN) ** 2), opened.along[:, 0]
 
 
 def _describe(found: Fit, names: list[str], variance: float, along: Array) -> CommonScale | None:
@@ -82,10 +74,6 @@ def _describe(found: Fit, names: list[str], variance: float, along: Array) -> Co
     share = variance * along**2 / np.maximum(np.diag(found.covariance), 1e-300)
     moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
     return CommonScale(float(std), tuple(moved)) if std > UNKNOWN and moved else None
-
-
-def _name(h: Hypothesis) -> list[str]:
-    return [f"{term.id}.{p.name}" for term in h.terms for p in term.parameters]
 
 
 def _may_share(h: Hypothesis, runs: Sequence[ObservedRun]) -> bool:

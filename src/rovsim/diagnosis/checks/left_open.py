@@ -1,0 +1,51 @@
+"""What a fit would not know if further parameters were free, to first order.
+
+With H the information about all of them, s those fitted and n the further ones: the fitted follow
+by A = -H_ss^-1 H_sn where the further ones are not what was assumed, and the runs tell
+H_nn + H_ns A of these (Schur's complement).
+"""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.selection.gauss_newton import Fit
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOpen:
+    """How the fitted (k,) follow further parameters (n,), `along` (k, n), all scaled.
+
+    The runs give these the information `told` (n, n) and the likeliest values told^-1 `drawn` (n,).
+    """
+
+    along: Array
+    told: Array
+    drawn: Array
+
+
+def leave_open(found: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> LeftOpen | None:
+    """What is open with more parameters free; None where the observer cannot hold such a model."""
+    bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
+    seen = bank.linearise(freed)
+    if not seen.finite:
+        return None
+    names, fitted = name_parameters(freed), name_parameters(found.hypothesis)
+    s = [names.index(name) for name in fitted]
+    n = [k for k, name in enumerate(names) if name not in fitted]
+    J, e = bank.whiten(seen.J, found.noise), bank.whiten(seen.e, found.noise)
+    rows = J.reshape(len(J), -1)
+    H, slope = inner_products(rows), rows @ e.ravel()
+    along = -solve(H[np.ix_(s, s)], H[np.ix_(s, n)])
+    return LeftOpen(along, H[np.ix_(n, n)] + H[n][:, s] @ along, -slope[n] - along.T @ slope[s])
+
+
+def name_parameters(h: Hypothesis) -> list[str]:
+    """The free parameters, as `effect.parameter`."""
+    return [f"{term.id}.{p.name}" for term in h.terms for p in term.parameters]
