@@ -12,9 +12,12 @@ import yaml
 from recordings import CLOCKS, Swim, motive_lines, write_lines, write_poses
 from rovsim.apps.cli.main import main
 from rovsim.core.rotations import matrix
+from rovsim.dynamics.catalogue import built_in
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.qtm_tsv import read_qtm
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 RUNS = ("3dof-1", "3dof-2", "6dof-1", "6dof-2")
 QUARTER_X = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # z_up to y_up, and flu to fur
@@ -243,3 +246,36 @@ def test_a_question_that_is_left_is_one_message_with_its_lines(flown, tmp_path, 
     assert said.count("\n") == 1
     for n, key in zip(lines, ("vehicle", "mocap.world_axes", "mocap.body_axes"), strict=True):
         assert f"line {n} ({key})" in said
+
+
+@pytest.mark.parametrize(
+    "name", ["bluerov2", "bluerov2_heavy_t200", "cybership2", "otter", "remus100"]
+)
+def test_another_vehicle_comes_back_or_is_asked_for(tmp_path, name):
+    wide = {axis: (0.0, 120.0) for axis in "xy"} | {"z": (0.0, 20.0)}
+    space = {} if name.startswith("bluerov2") else {"tank": wide}
+    settings = TankSettings(name=name, seed=3, vehicle=name, duration=30.0, **space)
+    make_campaign(settings, tmp_path / name, built_in())
+    truth = yaml.safe_load((tmp_path / name / "campaign.yaml").read_text())
+    (tmp_path / name / "campaign.yaml").unlink()
+    content, text = init(tmp_path / name)
+    truth.pop("tank")
+    wrong = {
+        place: (found, flat(truth)[place])
+        for place, found in flat(content).items()
+        if found not in (flat(truth).get(place), "ANSWER")
+    }
+    # what is proposed for want of anything better is marked as that
+    assert all("control" in place or "split" in place for place in wrong)
+    assert content["commands"]["columns"] == truth["commands"]["columns"]
+    assert len(re.findall("# ANSWER", text)) <= 3
+
+
+def flat(content, place="") -> dict:
+    """Values by place."""
+    pairs = content.items() if isinstance(content, dict) else enumerate(content)
+    found = {}
+    for key, value in pairs:
+        here = f"{place}.{key}"
+        found |= flat(value, here) if isinstance(value, dict | list) else {here: value}
+    return found

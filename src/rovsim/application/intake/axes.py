@@ -47,7 +47,7 @@ def find_axes(name: str, tracks: Sequence[Track], turned: Sequence[tuple[float, 
     if name == "ardupilot":
         return Axes("ned", "frd", "ArduPilot logs in these axes")
     worlds, bodies = allowed(name)
-    body, said = _body(turned, bodies)
+    body, said = _body(_upright(turned, tracks, worlds), bodies)
     if not body:
         body, by_force = _by_force(tracks, bodies)
         said = by_force or said
@@ -69,13 +69,31 @@ def find_axes(name: str, tracks: Sequence[Track], turned: Sequence[tuple[float, 
     return Axes(world, "", said, tuple(pairs))
 
 
+def _upright(
+    turned: Sequence[tuple[float, Array]], tracks: Sequence[Track], worlds: list[str]
+) -> list[tuple[float, Array]]:
+    """The turns in which the vehicle is upright or upside down on average, if any is."""
+    mean = _mean_attitude(tracks)
+    if mean is None:
+        return list(turned)
+    vertical = [np.abs(DOWN[world]) @ mean for world in worlds]
+    kept = [(s, axes) for s, axes in turned if any(abs(v @ axes[:, 2]) > LEVEL for v in vertical)]
+    return kept or list(turned)
+
+
+def _mean_attitude(tracks: Sequence[Track]) -> Array | None:
+    """Mean of the rotation matrices (3, 3) over all runs alike; None where none was measured."""
+    turns = [R.mean(axis=0) for t in tracks if (R := _attitudes(t)) is not None]
+    return np.mean(turns, axis=0) if turns else None
+
+
 def _body(turned: Sequence[tuple[float, Array]], bodies: list[str]) -> tuple[str, str]:
     """Body axes by the motion that the commands cause, and what it says."""
     if not turned or turned[0][0] < ALIKE:
         best = f" (likeness {turned[0][0]:.2f})" if turned else ""
         return "", f"no motion that its commands explain{best}" if turned else ""
     score, axes = turned[0]
-    rival = turned[1][0]
+    rival = turned[1][0] if len(turned) > 1 else 0.0
     name = next((n for n in bodies if np.array_equal(axes, BODY[n])), "")
     if score < AHEAD * rival:
         return "", f"the commands do not tell: likeness {score:.2f} and {rival:.2f} along two axes"
@@ -115,10 +133,9 @@ def _by_force(tracks: Sequence[Track], bodies: list[str]) -> tuple[str, str]:
 
 def _level(tracks: Sequence[Track], worlds: list[str], bodies: list[str]) -> list[tuple[str, str]]:
     """Pairs of world and body axes in which the vehicle is upright on average."""
-    turns = [R for t in tracks if (R := _attitudes(t)) is not None]
-    if not turns:
+    mean = _mean_attitude(tracks)
+    if mean is None:
         return []
-    mean = np.mean([R.mean(axis=0) for R in turns], axis=0)
     return [
         (world, body)
         for world in worlds

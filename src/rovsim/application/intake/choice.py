@@ -1,13 +1,14 @@
 """Which vehicle: of those whose columns fit, the one that the motion is like."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Sequence
 
+import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.intake.likeness import Likeness
 from rovsim.application.intake.motions import alike, turned
-from rovsim.application.intake.pairing import ALIKE, Pair
+from rovsim.application.intake.pairing import AHEAD, ALIKE, Pair
 from rovsim.application.intake.vehicles import Fit
 from rovsim.dynamics.vehicle import default_vehicle
 
@@ -26,21 +27,41 @@ class Choice:
 
 
 def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
-    """The vehicle of these runs."""
-    compared = {fit.name: _compared(fit, pairs) for fit in fits}
-    scores = {name: turned(found) for name, found in compared.items() if found}
-    ordered = sorted(fits, key=lambda fit: -_best(scores, fit))
-    if not ordered:
+    """The vehicle of these runs: no other hull explains them nearly as well."""
+    if not fits:
         return Choice(None, "no vehicle file has as many commands", (), (), {})
-    first = ordered[0]
-    near = [fit for fit in ordered if _best(scores, fit) > _best(scores, first) - SAME]
-    chosen = next((fit for fit in near if fit.name == default_vehicle()), first)
-    told = Choice(None, _told(ordered, scores), tuple(ordered),
-                  tuple(scores.get(chosen.name, [])), compared[chosen.name])  # fmt: skip
-    alone = len(near) == 1 or chosen.name == default_vehicle() or _one_hull(near)
-    shown = _best(scores, chosen) >= ALIKE
-    sure = (shown and alone) or (chosen.by_name and len(ordered) == 1)
-    return Choice(chosen, told.said, told.fits, told.turned, told.runs) if sure else told
+    compared = {fit.name: _compared(fit, pairs) for fit in fits}
+    turns = {name: turned(found) for name, found in compared.items() if found}
+    scores = {name: _score(compared[name], turns[name]) for name in turns}
+    ordered = sorted(fits, key=lambda fit: -scores.get(fit.name, 0.0))
+    first = _first(ordered, scores)
+    told = Choice(None, _told(ordered, scores), tuple(ordered), tuple(turns.get(first.name, [])),
+                  compared[first.name])  # fmt: skip
+    rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, first)]
+    known = scores.get(first.name, 0.0) >= ALIKE
+    alone = scores.get(first.name, 0.0) >= AHEAD * max(rivals, default=0.0)
+    named = first.by_name and len(ordered) == 1
+    return replace(told, fit=first) if named or (known and alone) else told
+
+
+def _score(found: dict[int, Likeness], turns: Sequence[tuple[float, Array]]) -> float:
+    """Likeness along the best axes, less where the vehicle is too fast or too slow (Lin 1989).
+
+    The concordance of two series is their correlation times 2 r / (1 + r^2), r the ratio of their
+    standard deviations.
+    """
+    ratios = np.array([one.strength for one in found.values()])
+    return turns[0][0] * float(np.mean(2.0 * ratios / (1.0 + ratios**2)))
+
+
+def _first(ordered: Sequence[Fit], scores: dict[str, float]) -> Fit:
+    """The best; of one hull with thrusters that do nearly as well, the default vehicle."""
+    best = ordered[0]
+    for fit in ordered:
+        near = scores.get(fit.name, 0.0) > scores.get(best.name, 0.0) - SAME
+        if near and fit.name == default_vehicle() and _one_hull(fit, best):
+            return fit
+    return best
 
 
 def _compared(fit: Fit, pairs: Sequence[Pair]) -> dict[int, Likeness]:
@@ -48,18 +69,13 @@ def _compared(fit: Fit, pairs: Sequence[Pair]) -> dict[int, Likeness]:
     return {k: one for k, one in found.items() if one is not None and one.excited.any()}
 
 
-def _best(scores: dict[str, list[tuple[float, Array]]], fit: Fit) -> float:
-    return scores[fit.name][0][0] if fit.name in scores else 0.0
+def _one_hull(a: Fit, b: Fit) -> bool:
+    """Whether two vehicles differ in their thrusters' curves alone."""
+    return a.vehicle.hydrodynamics == b.vehicle.hydrodynamics
 
 
-def _one_hull(fits: Sequence[Fit]) -> bool:
-    """Whether the vehicles differ in their thrusters' curves alone."""
-    hulls = [fit.vehicle.hydrodynamics.model_dump() for fit in fits]
-    return all(hull == hulls[0] for hull in hulls)
-
-
-def _told(fits: Sequence[Fit], scores: dict[str, list[tuple[float, Array]]]) -> str:
+def _told(fits: Sequence[Fit], scores: dict[str, float]) -> str:
     if not scores:
         return f"the columns fit {', '.join(fit.name for fit in fits)}"
-    told = [f"{fit.name} ({_best(scores, fit):.2f})" for fit in fits]
+    told = [f"{fit.name} ({scores.get(fit.name, 0.0):.2f})" for fit in fits]
     return f"the columns fit, and the motion is like that of (likeness) {', '.join(told)}"

@@ -23,12 +23,13 @@ class Likeness:
     """Correlations (l, 6, 6) of measured along file axes with commanded along FRD, by lag (l,) s.
 
     A positive lag: the motion comes after its commands. `excited` (6,): the axes that the commands
-    move enough to be seen.
+    move enough to be seen. `strength`: measured over commanded speed, 1 for the right vehicle.
     """
 
     lag: Array
     correlation: Array
     excited: Array
+    strength: float
 
     def along(self, axes: Array) -> Array:
         """Mean correlation (l,) over the excited axes, the file's body axes being `axes` (3, 3).
@@ -98,7 +99,15 @@ def likeness(
     known = np.isfinite(table).all(axis=(1, 2))
     excited = here & (commanded.std(axis=0) > EXCITED)
     table = np.where(known[:, None, None], table, 0.0)
-    return Likeness(lags[::-1] + shift, table[::-1], excited)
+    return Likeness(lags[::-1] + shift, table[::-1], excited, _strength(nu, commanded, excited))
+
+
+def _strength(nu: Array, commanded: Array, excited: Array) -> float:
+    """How fast the vehicle was, over how fast the commands would make it (body axes apart)."""
+    axes = slice(0, 3) if excited[:3].any() else slice(3, 6)
+    measured = np.sqrt(np.nansum(np.nanvar(nu[:, axes], axis=0)))
+    caused = np.sqrt(np.sum(commanded[:, axes].var(axis=0)))
+    return float(measured / max(caused, SPARSE))
 
 
 def _correlations(a: Array, b: Array) -> Array:

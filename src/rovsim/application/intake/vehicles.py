@@ -50,9 +50,8 @@ def _fit(name: str, drive: Drive) -> Fit | None:
         )
     # port and starboard, fins by name: t1, t2 … are names that anybody gives
     own = not all(column[-1].isdigit() for column in expected)
-    if expected and (
-        set(expected) == set(drive.columns) or (own and set(expected) < set(drive.columns))
-    ):
+    held = {*drive.columns, *(drive.rest if own else ())}
+    if expected and (set(expected) == set(drive.columns) or (own and set(expected) <= held)):
         kind = drive.kind or _kind(drive, vehicle)
         return Fit(name, vehicle, expected, kind, own) if kind else None
     count = len(expected)
@@ -67,7 +66,7 @@ def _fit(name: str, drive: Drive) -> Fit | None:
 def _kind(drive: Drive, vehicle: Vehicle) -> Kind | None:
     """Kind by the columns of thrusters; those of angles are rad in any log."""
     own = [n for n, angle in zip(vehicle.command_columns, vehicle.angles, strict=True) if not angle]
-    value = drive.value[:, [drive.columns.index(name) for name in own]].ravel()
+    value = drive.of(own).ravel()
     kinds: tuple[Kind, ...] = ("pwm", "normalized")
     return next((kind for kind in kinds if within(value, kind)), None)
 
@@ -92,17 +91,13 @@ def as_logged(drive: Drive, fit: Fit, path: Path) -> Commands | None:
     ]
     if not log.per_axis:
         log = log.model_copy(update={"angles": [n for n in log.names if n in angles]})
-    chosen = _columns(drive, log)
+    chosen = drive.of(log.names)
     try:
         export = as_commands(drive.time, chosen, log, lambda line, column: str(path),
                              pulses=_pulses(chosen, log))  # fmt: skip
         return tidy_commands(export, path)[0]
     except BadInput:
         return None
-
-
-def _columns(drive: Drive, log: CommandLog) -> Array:
-    return drive.value[:, [drive.bare.index(name) for name in log.names]]
 
 
 def _pulses(value: Array, log: CommandLog) -> bool:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, Mapping
+from typing import Any, Literal, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -46,7 +46,7 @@ class Drive:
     """What looks like commands: `time` (m,) s and `value` (m, c) as logged.
 
     `kind` None: their size does not say. `said` is how the rest is known. `axes` and `topic` as in
-    the section `commands`; `signed` are columns whose sign has to be turned.
+    the section `commands`; `rest` are other columns of numbers (m,), such as angles of fins.
     """
 
     format: str
@@ -58,6 +58,12 @@ class Drive:
     topic: str | None = None
     axes: tuple[str, ...] = ()
     auxiliary: tuple[str, ...] = ()
+    rest: Mapping[str, Array] = field(default_factory=dict)
+
+    def of(self, names: Sequence[str]) -> Array:
+        """Columns (m, len(names)) by their names, of all that there are."""
+        known = dict(zip(self.bare, self.value.T, strict=True)) | dict(self.rest)
+        return np.stack([known[name] for name in names], axis=1)
 
     @property
     def bare(self) -> tuple[str, ...]:

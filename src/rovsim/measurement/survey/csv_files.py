@@ -81,7 +81,8 @@ def _drive(lines: Lines) -> Drive | None:
     if not chosen:
         return None
     value = np.stack([columns[name] for name in chosen], axis=1)
-    return Drive("csv", tuple(chosen), time, value, kind, said, auxiliary=voltage)
+    rest = {name: column for name, column in columns.items() if name not in chosen}
+    return Drive("csv", tuple(chosen), time, value, kind, said, auxiliary=voltage, rest=rest)
 
 
 def _numbers(table: Lines, place: int) -> Array | None:

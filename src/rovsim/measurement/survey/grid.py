@@ -11,6 +11,7 @@ from rovsim.measurement.recording.readers import Export
 
 # A vehicle's speed answers within tenths of a second; a median over a step rejects single outliers.
 STEP = 0.05  # s
+MOST = 20_000  # steps: a quarter of an hour tells as much as a day
 BRIDGED = 0.3  # s without a pose over which a straight line still serves
 # Lines over this many steps to either side: their slope is the velocity.
 HALF_WINDOW = 3
@@ -42,7 +43,8 @@ def even_poses(export: Export) -> Poses:
     clock = even_clock(time)
     step = clock[1] - clock[0]
     bins = np.floor((time - clock[0]) / step + 0.5).astype(int)
-    middle = _medians(bins, np.column_stack([time, position, attitude]))
+    near = bins < len(clock) + 1
+    middle = _medians(bins[near], np.column_stack([time, position, attitude])[near])
     known = np.flatnonzero(np.isfinite(middle).all(axis=1))
     filled = np.stack([np.interp(clock, middle[known, 0], c) for c in middle[known, 1:].T], axis=1)
     filled[_far(clock, time)] = np.nan
@@ -50,9 +52,10 @@ def even_poses(export: Export) -> Poses:
 
 
 def even_clock(time: Array) -> Array:
-    """An even clock over the times (n,): steps of STEP, or the usual step where that is longer."""
+    """An even clock (at most MOST steps) over times (n,): STEP apart, or more where they are."""
     step = max(STEP, float(np.median(np.diff(time))))
-    return time[0] + step * np.arange(max(int((time[-1] - time[0]) / step) + 1, 2))
+    count = min(max(int((time[-1] - time[0]) / step) + 1, 2), MOST)
+    return time[0] + step * np.arange(count)
 
 
 def _medians(bins: Array, values: Array) -> Array:

@@ -1,0 +1,165 @@
+"""`rovsim init`: what is written is read back the same; what cannot be used is one message."""
+
+import shutil
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ruamel.yaml import YAML
+
+from damage import damaged
+from recordings import FORMATS, Swim, command_lines, write_lines, write_poses
+from rovsim.application.intake.compose import propose
+from rovsim.application.intake.names import run_ids, run_key
+from rovsim.application.intake.proposal import ANSWER, Proposal, Question
+from rovsim.application.intake.write import write_proposal
+from rovsim.application.intake.yaml_file import as_yaml
+from rovsim.apps.cli.main import main
+from rovsim.core.errors import RovsimError
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording.readers import mocap_readers
+
+NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), min_size=1)
+WORDS = st.text("abc :#-'\"[]{},&*!|>%@`0123.nyesNO~", max_size=30)
+
+
+def refused(capsys, *words) -> str:
+    """The one message of a command that must end with exit code 2."""
+    with pytest.raises(SystemExit) as ended:
+        main(["init", *map(str, words)])
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    return said
+
+
+@given(name=NAMES, column=WORDS, comments=st.lists(WORDS, max_size=3), asked=st.booleans())
+def test_whatever_is_written_is_read_back_the_same(name, column, comments, asked):
+    content = {
+        "name": name,
+        "mocap": {"format": "csv", "world_axes": ANSWER if asked else "ned", "body": column},
+        "commands": {"columns": [column, name]},
+        "runs": [{"id": name, "mocap": column}, {"id": column, "mocap": name}],
+    }
+    told = tuple(comments)
+    places = ("name", "mocap", "mocap.body", "commands.columns", "runs", "runs.0", "runs.1")
+    question = Question("mocap.world_axes", f"which? {column}", (("ned", name), (column, "")))
+    proposal = Proposal(content, dict.fromkeys(places, told), (question,) * asked, checks=told)
+    assert YAML(typ="safe", pure=True).load(as_yaml(proposal)) == content
+
+
+@given(st.lists(NAMES, min_size=1, max_size=5))
+def test_runs_get_names_that_can_be_file_names_and_differ(stems):
+    ids = run_ids(stems)
+    assert len({i.casefold() for i in ids}) == len(stems)
+    assert all(i and not set(i) & set('/\\:*?"<>|{}') for i in ids)
+
+
+@pytest.mark.parametrize(
+    ("motion", "commands"),
+    [
+        ("3dof-1_6D", "3dof-1_commands"),
+        ("Run 7 mocap", "run_7_pwm"),
+        ("dive.3", "dive-3-thrusters"),
+    ],
+)
+def test_names_that_differ_in_their_role_alone_go_together(motion, commands):
+    assert run_key(motion) == run_key(commands)
+
+
+def test_a_campaign_that_is_there_is_kept_unless_it_is_forced(tmp_path, capsys):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    write_lines(tmp_path / "poses_commands.csv", command_lines(12.0))
+    (tmp_path / "campaign.yaml").write_text("name: mine")
+    said = refused(capsys, tmp_path)
+    assert "campaign.yaml: there is one already" in said
+    assert "force=true" in said
+    assert (tmp_path / "campaign.yaml").read_text() == "name: mine"
+    main(["init", str(tmp_path), "force=true", "-q"])
+    assert "format: csv" in (tmp_path / "campaign.yaml").read_text()
+
+
+def test_recordings_elsewhere_stay_there(tmp_path):
+    raw, out = tmp_path / "raw, (a=b) é", tmp_path / "out"
+    write_poses(raw, "csv", Swim.ned(frames=1200)) if raw.mkdir() is None else None
+    before = sorted(raw.iterdir())
+    main(["init", str(raw / "poses.csv"), f"out={out}", "-q"])
+    assert sorted(raw.iterdir()) == before
+    assert [path.name for path in out.iterdir()] == ["campaign.yaml"]
+    text = (out / "campaign.yaml").read_text()
+    assert "folder: ../raw" in text
+    for place, answer in (("vehicle", "bluerov2"), ("world_axes", "ned"), ("body_axes", "frd")):
+        text = text.replace(f"{place}: ANSWER", f"{place}: {answer}")
+    (out / "campaign.yaml").write_text(text)
+    campaign = load_campaign(out)
+    assert campaign.mocap_path(campaign.runs[0]) == raw / "poses.csv"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("empty.csv", b"", "the file is empty"),
+        ("noise.bin", bytes(range(128, 256)) * 40, "binary data of no known kind"),
+        ("bag.bag", b"#ROSBAG V2.0" + bytes(99), "a ROS 1 bag"),
+        ("book.csv", b"PK\x03\x04" + bytes(99), "a zip archive or a spreadsheet"),
+        ("signals.mat", b"MATLAB 5.0 MAT-file" + bytes(99), "a MATLAB file"),
+        ("poses.dat", b"SQLite format 3\0" + bytes(99), "whose name ends in '.dat'"),
+        ("notes.txt", b"Dear diary", "text that starts with 'Dear diary'"),
+        ("walk.csv", b"Trajectories\n100\n,,A\n", "an export of markers"),
+        ("table.csv", b"time_s,colour\n0,red\n1,blue\n", "no measured channel"),
+        ("pwm.csv", "\n".join(command_lines()).encode(), "commands alone (pwm.csv)"),
+        ("euler.csv", b"t,x,y,z,roll,pitch,yaw\n" + b"".join(
+            b"%g,0.1,0.2,%g,0.01,0.02,0.1\n" % (0.1 * k, 0.01 * k) for k in range(40)),
+         "rad or degrees?"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_used_is_one_message_and_nothing_is_written(
+    tmp_path, capsys, name, content, said
+):
+    path, out = tmp_path / name, tmp_path / "out"
+    path.write_bytes(content)
+    told = refused(capsys, path, f"out={out}")
+    assert said in told
+    assert told.count("\n") == 1
+    assert not out.exists()
+
+
+def test_each_bad_file_has_its_own_message(tmp_path, capsys):
+    for name in ("one.txt", "two.txt"):
+        (tmp_path / name).write_text(f"Dear {name}")
+    told = refused(capsys, tmp_path / "one.txt", tmp_path / "two.txt", f"out={tmp_path / 'out'}")
+    assert [line.count("Dear") for line in told.splitlines()] == [1, 1]
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # numbers near the largest overflow
+@pytest.mark.parametrize("name", sorted(mocap_readers()))
+def test_damaged_files_are_described_or_refused(tmp_path, name):
+    raw = tmp_path / "raw"
+    raw.mkdir()
+    target = write_poses(raw, name, Swim.ned(frames=60))
+    write_lines(raw / "commands.csv", command_lines(1.0, name))
+    files = [*(sorted(target.iterdir()) if target.is_dir() else [target]), raw / "commands.csv"]
+    random = np.random.default_rng(zlib.crc32(name.encode()))
+    for k in range(25):
+        file = files[int(random.integers(len(files)))]
+        good = file.read_bytes()
+        file.write_bytes(damaged(good, random))
+        described_or_refused(raw, tmp_path / f"scratch{k}")
+        file.write_bytes(good)
+    assert FORMATS[name] in described_or_refused(raw, tmp_path / "last")
+
+
+def described_or_refused(raw: Path, scratch: Path) -> str:
+    """What was written, nothing where it was refused."""
+    try:
+        proposal = propose([raw], raw, scratch)
+        text = write_proposal(proposal, raw).read_text()
+    except RovsimError:
+        return ""
+    finally:
+        (raw / "campaign.yaml").unlink(missing_ok=True)
+        shutil.rmtree(scratch, ignore_errors=True)
+    return text
