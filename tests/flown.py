@@ -22,5 +22,5 @@ def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[O
     campaign = load_campaign(folder / "raw")
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    runs = prepare_runs(Runs({"a": motion}, {"a": stage}), "train", ReplaySettings(), built_in())
-    return nominal(load_campaign_vehicle(campaign)), runs
+    base, flown = nominal(load_campaign_vehicle(campaign)), Runs({"a": motion}, {"a": stage})
+    return base, prepare_runs(flown, "train", ReplaySettings(), built_in(), base.body.free)

@@ -39,10 +39,8 @@ def settings():
 def test_a_tank_that_hides_it_gives_it_back(name, settings, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
     data = measure(open_campaign(str(tmp_path / "raw")), settings.signals)
-    base, runs = (
-        nominal(data.vehicle),
-        prepare_runs(data.runs, "train", settings.replay, built_in()),
-    )
+    base = nominal(data.vehicle)
+    runs = prepare_runs(data.runs, "train", settings.replay, built_in(), base.body.free)
     bank = FilterBank.design(runs, base, FIRST_NOISE)
     hidden = build_effect(flown.hidden[0], built_in()).given()
     listed = [c for c in list_candidates(runs, built_in(), base.vehicle) if c.effect.id == name]

@@ -94,7 +94,7 @@ def of_start(count):
 
 def observed():
     poses = Poses(RUN.run, RUN.site, RUN.time, RUN.eta, RUN.usable, RUN.commands)
-    return prepare_run(poses, RUN, ReplaySettings(), built_in())
+    return prepare_run(poses, RUN, ReplaySettings(), built_in(), np.ones(6, bool))
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,7 @@ def test_a_gain_that_was_selected_says_itself_how_open_the_scale_is(flown):
 def test_it_is_said_in_plain_words_with_what_to_measure(flown):
     found = fitted(flown, EVERYTHING)
     wider, scale = include_scale(found, flown[1])
-    asked = TrainDiagnosis(flown[0], UsableRuns((), (), (), 60.0), wider, scale=scale)
+    asked = TrainDiagnosis(flown[0], UsableRuns((), (), (), (), 60.0), wider, scale=scale)
     assert FIX_SCALE in advise(asked, [], [], built_in())
     told = ScaleOfForces(std=scale.std, parameters=scale.parameters)
     one = study()["diagnosis"].model_copy(update={"common_scale": told})

@@ -64,7 +64,9 @@ def test_a_term_is_doubtful_where_all_its_values_may_be_those_of_absence():
 
 
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
-    found = TrainDiagnosis(fit(alike()).hypothesis.base, UsableRuns((), (), (), 60.0), fit(alike()))
+    found = TrainDiagnosis(
+        fit(alike()).hypothesis.base, UsableRuns((), (), (), (), 60.0), fit(alike())
+    )
     loops = [f"onboard_control.gain_{axis}" for axis in AXES[:2]]
     advice = advise(found, [], [["added_mass.surge", "net_buoyancy.force"], loops], built_in())
     reveals = built_in()["onboard_control"].revealed_by

@@ -47,7 +47,7 @@ def test_steps_end_where_bins_end():
         still, time=time, eta=rows[:, :7], nu=rows[:, 7:], nu_dot=rows[:, 7:],
         state_nu=rows[:, 7:], usable=np.ones(len(time), bool), binned=True, end=time[-1] + 0.1,
     )  # fmt: skip
-    run = prepare_run(bins, bins, ReplaySettings(), built_in())
+    run = prepare_run(bins, bins, ReplaySettings(), built_in(), np.ones(6, bool))
     np.testing.assert_allclose(run.edges[run.ends], time, atol=0.005)
     parts = np.concatenate([[0], np.cumsum(run.parts)])[run.ends]
     np.testing.assert_array_equal(parts, np.round((time - time[0]) / 0.01))

@@ -45,7 +45,8 @@ def diagnose_campaign(
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
     train, test = (
-        prepare_runs(runs, split, settings.replay, catalogue) for split in ("train", "test")
+        prepare_runs(runs, split, settings.replay, catalogue, base.body.free)
+        for split in ("train", "test")
     )
     found = diagnose(
         base, train, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage

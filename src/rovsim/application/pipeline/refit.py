@@ -15,7 +15,7 @@ def refit(
     runs: Runs, base: Model, settings: ReplaySettings, catalogue: Catalogue, out: Path
 ) -> Model:
     """Refit a model's own parameters on the train runs, and write it as a model file."""
-    train = prepare_runs(runs, "train", settings, catalogue)
+    train = prepare_runs(runs, "train", settings, catalogue, base.body.free)
     model = refit_nominal(base, train)
     story = {"base": base.name, "train_runs": [one.motion.run.id for one in train]}
     write_model(model, out, provenance=story)

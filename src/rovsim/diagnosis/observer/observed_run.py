@@ -15,6 +15,7 @@ from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import Stage
+from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.settings import ReplaySettings
@@ -43,7 +44,8 @@ class ObservedRun:
     `ends` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of `parts` (s,) of one
     length, over each of which the thrust is steady. It starts at the first reading of each of the
     `spans`, at the state of that sample, and reads up to the last. `between` two lines of the log,
-    commands are held or joined; `wrenches` are those that the models of a diagnosis may have.
+    commands are held or joined; `wrenches` are those that the models of a diagnosis may have,
+    `free` (6,) the axes in which the vehicle can move at all.
     """
 
     motion: Motion
@@ -56,6 +58,7 @@ class ObservedRun:
     parts: Array
     between: Between
     wrenches: tuple[type[Wrench], ...]
+    free: Array
 
     def limited(self, kept: Array) -> "ObservedRun":
         """The same run of which only some samples or bins (n,) are usable."""
@@ -132,14 +135,19 @@ class ObservedRun:
             return np.ones(4)
         return np.concatenate([measured.coordinates, measured.heading]).astype(float)
 
+    @property
+    def axes(self) -> Array:
+        """Axes (6,) that were measured, and in which the vehicle can move."""
+        return np.asarray(find_measured(self.motion.measured) & self.free)
+
     @cached_property
     def seen(self) -> Array:
         """Which axes (k, 6) each reading shows."""
         count, measured = len(self.ends), self.motion.measured
         if measured is None:
-            return np.ones((count, 6), bool)
+            return np.tile(self.free, (count, 1))
         frames = measured.when[: count * self.group]
-        return np.asarray(frames.reshape(count, self.group, 6).any(axis=1))
+        return np.asarray(frames.reshape(count, self.group, 6).any(axis=1) & self.free)
 
     @cached_property
     def reading_kinds(self) -> Array:
@@ -211,18 +219,18 @@ class ObservedRun:
 
 
 def prepare_runs(
-    runs: Runs, split: str, settings: ReplaySettings, catalogue: Catalogue
+    runs: Runs, split: str, settings: ReplaySettings, catalogue: Catalogue, free: Array
 ) -> list[ObservedRun]:
     """The runs of one split as the observer sees them. See `prepare_run`."""
     chosen = {name: motion for name, motion in runs.motions.items() if motion.run.split == split}
     return [
-        prepare_run(runs.stages[name], motion, settings, catalogue)
+        prepare_run(runs.stages[name], motion, settings, catalogue, free)
         for name, motion in chosen.items()
     ]
 
 
 def prepare_run(
-    stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue
+    stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue, free: Array
 ) -> ObservedRun:
     """A run as the observer sees it; without usable stretches it has no spans.
 
@@ -231,16 +239,17 @@ def prepare_run(
         motion: the same run, filtered and differentiated.
         settings: the longest integration step, and how commands are held.
         catalogue: effects that may act in it.
+        free: axes (6,) in which the vehicle can move.
     """
     grid = StepGrid.over(motion, settings.step)
     wrenches = tuple(c for c in catalogue.values() if issubclass(c, Wrench))
     make = _observe_bins if motion.binned else _observe_samples
-    return make(stage, motion, grid, settings.commands, wrenches)
+    return make(stage, motion, grid, settings.commands, wrenches, free)
 
 
 def _observe_bins(
     stage: Stage, motion: Motion, grid: StepGrid, between: Between,
-    wrenches: tuple[type[Wrench], ...],
+    wrenches: tuple[type[Wrench], ...], free: Array,
 ) -> ObservedRun:  # fmt: skip
     """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
     begins = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
@@ -248,7 +257,7 @@ def _observe_bins(
     steps, ends = _divide(begins, GROUP / grid.h)
     edges = motion.time[0] + grid.h * steps
     return ObservedRun(
-        motion, edges, ends, frames, 1, ends, edges, np.diff(steps), between, wrenches
+        motion, edges, ends, frames, 1, ends, edges, np.diff(steps), between, wrenches, free
     )
 
 
@@ -266,7 +275,7 @@ def _divide(at: Array, most: float) -> tuple[Array, Array]:
 
 def _observe_samples(
     stage: Stage, motion: Motion, grid: StepGrid, between: Between,
-    wrenches: tuple[type[Wrench], ...],
+    wrenches: tuple[type[Wrench], ...], free: Array,
 ) -> ObservedRun:  # fmt: skip
     """A group of frames is a reading, and one step leads from it to the next."""
     assert isinstance(stage, Poses)
@@ -278,7 +287,7 @@ def _observe_samples(
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
     return ObservedRun(
         motion, grid.edges, np.arange(count) * grid.stride, frames, group, ends, edges,
-        np.diff(steps), between, wrenches,
+        np.diff(steps), between, wrenches, free,
     )  # fmt: skip
 
 

@@ -18,12 +18,14 @@ SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
 class UsableRuns:
     """Runs with something to observe, and s of settled readings.
 
-    `still` axes that were measured, and none of them moved; `unmeasured` those nobody measured.
+    `still` axes that were measured, and none of them moved; `unmeasured` those nobody measured,
+    `held` those in which the vehicle cannot move.
     """
 
     runs: tuple[ObservedRun, ...]
     still: tuple[str, ...]
     unmeasured: tuple[str, ...]
+    held: tuple[str, ...]
     seconds: float
 
     @property
@@ -34,25 +36,28 @@ class UsableRuns:
     @property
     def moved(self) -> tuple[str, ...]:
         """Axes about which something can be said."""
-        return tuple(axis for axis in AXES if axis not in (*self.still, *self.unmeasured))
+        silent = (*self.still, *self.unmeasured, *self.held)
+        return tuple(axis for axis in AXES if axis not in silent)
 
 
 def select_usable(train: Sequence[ObservedRun]) -> UsableRuns:
     """The train runs that have a usable stretch."""
     runs = tuple(run for run in train if len(run.spans))
     seconds = float(sum(run.settled.sum() * run.period for run in runs))
-    each = np.array([find_measured(run.motion.measured) for run in runs]).reshape(-1, len(AXES))
-    measured = np.asarray(each.any(axis=0) if runs else np.ones(len(AXES), bool))
-    return UsableRuns(runs, _name(measured & ~_find_moved(runs)), _name(~measured), seconds)
+    free, measured, moved = _ask(runs)
+    still, unmeasured, held = measured & free & ~moved, free & ~measured, ~free
+    return UsableRuns(runs, _name(still), _name(unmeasured), _name(held), seconds)
 
 
 def _name(axes: Array) -> tuple[str, ...]:
     return tuple(np.array(AXES)[axes].tolist())
 
 
-def _find_moved(runs: Sequence[ObservedRun]) -> Array:
-    """Which axes (6,) some run moved: nothing can be said about the others."""
-    moved = np.zeros(len(AXES), bool)
+def _ask(runs: Sequence[ObservedRun]) -> tuple[Array, Array, Array]:
+    """Axes (6,) free to move, measured in some run, and moved in some."""
+    free, measured, moved = (np.zeros(len(AXES), bool) for _ in range(3))
     for run in runs:
+        free |= run.free
+        measured |= find_measured(run.motion.measured)
         moved |= np.std(run.motion.nu[run.motion.usable], axis=0) > EXCITED
-    return moved
+    return free, measured, moved

@@ -16,7 +16,6 @@ from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalize, rms
-from rovsim.measurement.signals.measured import blank
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.measured_states import as_true
 from rovsim.simulation.sharpened import stage_outputs
@@ -82,7 +81,7 @@ class Windows:
     def compare(
         self, models: Sequence[Model], starts: Array | None = None, pushes: Array | None = None
     ) -> Array:
-        """Predicted minus measured velocity (m, n, 6); zero where nothing was measured.
+        """Predicted minus measured velocity (m, n, 6); zero where none was measured or can be.
 
         Args:
             models: to predict with.
@@ -139,7 +138,7 @@ class Windows:
         each = zip(self.spans, nu, strict=True)
         parts = [self._at_readings(span, v) - self._measured(span) for span, v in each]
         found = np.concatenate([np.empty((0, 6)), *parts])
-        return blank(self.run.motion.measured, found, 0.0)
+        return np.where(self.run.axes, found, 0.0)
 
     def _measured(self, span: tuple[int, int]) -> Array:
         return self.run.motion.nu[self._compared(span)]

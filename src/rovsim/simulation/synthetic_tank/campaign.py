@@ -16,8 +16,9 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import build_effect
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.simulation.synthetic_tank.description import SEALED, describe, seal
+from rovsim.simulation.synthetic_tank.description import SEALED, describe, motion_file, seal
 from rovsim.simulation.synthetic_tank.exports import export_commands, export_poses
+from rovsim.simulation.synthetic_tank.sensors import export_channels
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 from rovsim.simulation.synthetic_tank.true_run import fly_run
 
@@ -103,10 +104,13 @@ def _record(
 ) -> None:
     box = np.array([getattr(settings.tank, axis) for axis in "xyz"])
     tank = np.sort(box * HALF_TURN_X[:, None], axis=1)
-    truth = fly_run(model, settings, run.control, tank, random)
-    poses = export_poses(truth, settings.camera, model.mocap_view, random)
-    write_text(folder / f"{run.id}_6D.tsv", poses)
-    write_text(
-        folder / f"{run.id}_commands.csv",
-        export_commands(truth, settings.log, model.vehicle, random),
-    )
+    truth = fly_run(model, settings, run.control, tank, random, run.release)
+    if settings.sensors:
+        gravity = model.vehicle.fluid.gravity
+        seen = export_channels(truth, settings.sensors, float(tank[2, 0]), gravity, random)
+    else:
+        seen = export_poses(truth, settings.camera, model.mocap_view, random)
+    write_text(folder / motion_file(settings, run), seen)
+    if not run.release:
+        commands = export_commands(truth, settings.log, model.vehicle, random)
+        write_text(folder / f"{run.id}_commands.csv", commands)

@@ -1,15 +1,22 @@
 """The two files beside the recordings: what a reader is told, and the sealed answer."""
 
-from typing import Sequence
+from typing import Any, Mapping, Sequence
 
 from rovsim import AXES
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.campaign_file import CampaignFile
-from rovsim.simulation.synthetic_tank.settings import TankSettings
+from rovsim.simulation.synthetic_tank.settings import (
+    PLACES,
+    Sensor,
+    SensorKind,
+    TankRun,
+    TankSettings,
+)
 
 BODY = "vehicle"
+CAMERAS = {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"}
 SEALED = "truth.yaml"  # nothing that reads a campaign may open it
 
 
@@ -47,17 +54,42 @@ def describe(settings: TankSettings) -> CampaignFile:
     content = {
         "name": settings.name,
         "vehicle": settings.vehicle,
-        "tank": {axis: list(getattr(settings.tank, axis)) for axis in "xyz"},
-        "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
+        "tank": _describe_walls(settings),
+        "mocap": _describe_sensors(settings.sensors) if settings.sensors else CAMERAS,
         "commands": {
             "format": "csv", "kind": kind, "columns": columns if kind == "pwm" else list(AXES),
         },
         "runs": [
-            {**run.model_dump(), "mocap": f"{run.id}_6D.tsv", "commands": f"{run.id}_commands.csv"}
+            {
+                "id": run.id, "control": run.control, "split": run.split,
+                "mocap": motion_file(settings, run),
+                "commands": "none" if run.release else f"{run.id}_commands.csv",
+            }
             for run in settings.runs
         ],
     }  # fmt: skip
     return checked(CampaignFile, content, "the settings of the tank")
+
+
+def motion_file(settings: TankSettings, run: TankRun) -> str:
+    """Name of the file that holds what was measured of a run."""
+    return f"{run.id}.csv" if settings.sensors else f"{run.id}_6D.tsv"
+
+
+def _describe_walls(settings: TankSettings) -> dict[str, list[float]]:
+    """The tank along the axes of the recordings: NED where no cameras look on."""
+    box = {axis: list(getattr(settings.tank, axis)) for axis in "xyz"}
+    if settings.sensors:
+        box |= {axis: [-high, -low] for axis, (low, high) in box.items() if axis != "x"}
+    return box
+
+
+def _describe_sensors(sensors: Mapping[SensorKind, Sensor]) -> dict[str, Any]:
+    late = {kind: sensor.delay for kind, sensor in sensors.items() if sensor.delay}
+    places = {PLACES[kind]: sensor.at for kind, sensor in sensors.items() if any(sensor.at)}
+    where = places | ({"delay_s": late} if late else {})
+    axes = {"world_axes": "ned", "body_axes": "frd"}
+    return {"format": "csv", **axes, "velocity": "instant"} | ({"sensors": where} if where else {})
 
 
 def seal(

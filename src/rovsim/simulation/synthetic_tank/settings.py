@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal, Mapping
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat
+from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section
 from rovsim.dynamics.effects.base import Means
@@ -13,12 +13,32 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Interval = tuple[float, float]
 
 
+SensorKind = Literal["position", "attitude", "depth", "velocity", "rates", "specific_force"]
+# Of sensors that sit somewhere in the body, by the key of campaign.yaml that says where.
+PLACES: Mapping[SensorKind, str] = {
+    "velocity": "velocity_at",
+    "specific_force": "imu_at",
+    "depth": "depth_at",
+}
+
+
+class Release(Section):
+    """Let go, and nothing is commanded: how far from rest, along surge … yaw.
+
+    `pose` m and rad, `velocity` m/s and rad/s in the body's axes.
+    """
+
+    pose: tuple[float, float, float, float, float, float] = (0.0,) * 6
+    velocity: tuple[float, float, float, float, float, float] = (0.0,) * 6
+
+
 class TankRun(Section):
-    """One run to record."""
+    """One run to record; flown by a pilot, or let go."""
 
     id: str
     control: Literal["3dof", "6dof"]
     split: Literal["train", "test"]
+    release: Release | None = None
 
 
 class Box(Section):
@@ -44,6 +64,18 @@ class Camera(Section):
     longest_burst: Annotated[int, Field(ge=1)] = 35  # frames
     outliers_per_minute: NonNegativeFloat = 3.0  # swapped markers, one frame each
     outlier_size: Interval = (0.05, 0.2)  # m, the distance between two markers
+
+
+class Sensor(Section):
+    """A sensor on board or ashore: its rate, white noise of each component, place and delay.
+
+    Noise in the unit of the channel; `at` m in FRD from CO; `delay` s by which stamps are late.
+    """
+
+    rate: PositiveFloat
+    noise: NonNegativeFloat
+    at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    delay: float = 0.0
 
 
 class Log(Section):
@@ -78,10 +110,20 @@ class TankSettings(Section):
     )
     tank: Box = Box()
     camera: Camera = Camera()
+    sensors: dict[SensorKind, Sensor] = Field(default_factory=dict)  # in place of the cameras
     log: Log = Log()
     turbulence: Turbulence = Turbulence()
     effects: tuple[EffectEntry, ...] = ()  # hidden
     step: PositiveFloat = 0.001  # s; Heun's error is then far below the noise
+
+    @field_validator("sensors")
+    @classmethod
+    def _sit_at_the_origin(cls, sensors: dict[SensorKind, Sensor]) -> dict[SensorKind, Sensor]:
+        """A place means nothing to the other kinds."""
+        for kind, sensor in sensors.items():
+            if kind not in PLACES and any(sensor.at):
+                raise ValueError(f"a sensor of {kind} has no place: leave `at` out")
+        return sensors
 
 
 # Where effects show that need more than the default vehicle: room to go ahead; waves that heave,

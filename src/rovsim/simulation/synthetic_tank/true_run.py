@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.rotations import HALF_TURN_X
+from rovsim.core.rotations import HALF_TURN_X, from_euler, multiply, rotate
 from rovsim.core.run import CommandKind, Commands, Site
 from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.effects.current import Current
@@ -19,7 +19,7 @@ from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.synthetic_tank.allocation import Allocation
 from rovsim.simulation.synthetic_tank.pilot import Helmsman, Pilot
-from rovsim.simulation.synthetic_tank.settings import TankSettings
+from rovsim.simulation.synthetic_tank.settings import Release, TankSettings
 from rovsim.simulation.synthetic_tank.turbulence import draw_currents, draw_turbulence
 
 FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact to a nanosecond
@@ -35,8 +35,9 @@ class TrueRun:
 
 
 def fly_run(
-    model: Model, settings: TankSettings, control: str, tank: Array, random: np.random.Generator
-) -> TrueRun:
+    model: Model, settings: TankSettings, control: str, tank: Array, random: np.random.Generator,
+    release: Release | None = None,
+) -> TrueRun:  # fmt: skip
     """Fly one run.
 
     Args:
@@ -45,6 +46,7 @@ def fly_run(
         control: 3dof or 6dof.
         tank: walls (3, 2) in NED, m.
         random: generator of this run.
+        release: how it is let go, in place of a pilot.
 
     Raises:
         LeftTank: the hidden effects are stronger than the pilot.
@@ -61,15 +63,26 @@ def fly_run(
     if model.vehicle.floats:
         states[0, 2] = vehicle.site.level
         tank = tank - [[0.0, 0.0], [0.0, 0.0], [np.inf, 0.0]]  # its middle is at the surface
+    if release is not None:
+        states[0] = _let_go(states[0], release) * vehicle.free
     for k in range(ticks):
         first = k * per_tick
-        command = vehicle.log(pilot.steer(k, states[first]))
+        demand = np.zeros(6) if release else pilot.steer(k, states[first])
+        command = vehicle.log(demand)
         rows = slice(first, first + per_tick)
         vehicle.carry(currents[k])
         states[first + 1 :][:per_tick] = vehicle.advance(k, command, states[first], pushes[rows])
         _stay_inside(states[first + per_tick], tank, (k + 1) * tick)
     time = np.arange(len(states)) * h
     return TrueRun(time, states, Commands(vehicle.times, vehicle.commands, vehicle.kind))
+
+
+def _let_go(rest: Array, release: Release) -> Array:
+    """State (13,) as far from this one as a release says."""
+    pose = np.array(release.pose)
+    place = rest[:3] + rotate(rest[3:7], pose[:3])
+    attitude = multiply(rest[3:7], from_euler(*pose[3:]))
+    return np.concatenate([place, attitude, release.velocity])
 
 
 class _TrueVehicle:
