@@ -94,7 +94,8 @@ class ObservedRun:
     def read(self, view: MocapView) -> Array:
         """Readings (k, 13), one a group, as `view` turns them.
 
-        A group's mean, but for what the curve of the motion adds to it.
+        A group's mean, but for what the curve of the motion adds to it; its middle where sums are
+        read: their noise adds up, and a mean would carry it into the next.
         """
         return self._read_as_reported if view.key == NO_CHANGE.key else self._read(view)
 
@@ -110,8 +111,15 @@ class ObservedRun:
             return frames
         smooth = view.poses(view.sharpen(self.motion.eta, period))
         mean = self._average(frames[:, :7]) + smooth[self.sample] - self._average(smooth)
+        mean = np.where(self._summed, frames[self.sample, :7], mean)
         poses = np.hstack([mean[:, :3], normalized(mean[:, 3:])])
         return np.hstack([poses, np.zeros((len(poses), 6))])
+
+    @property
+    def _summed(self) -> Array:
+        """Which of the seven numbers of a pose are sums."""
+        summed = self.reading_kinds == SUM
+        return np.append(summed[:3], np.repeat(summed[3:].any(), 4))
 
     def _average(self, x: Array) -> Array:
         count = len(self.ends)

@@ -1,0 +1,88 @@
+"""Which channels tell how a vehicle turned and moved, the finest first."""
+
+from dataclasses import dataclass
+from typing import Mapping
+
+import numpy as np
+
+from rovsim.core import rotations
+from rovsim.measurement.recording.channels import Channel
+from rovsim.measurement.recording.recording import Recording
+
+# Vehicles move below 2 Hz (filter.py): what comes less often than twice that does not show it all.
+OFTEN = 4.0  # Hz
+
+
+@dataclass(frozen=True, eq=False)
+class ChosenChannels:
+    """Channels by kind, the finest first: `turning` and `moving`, as late as they were measured.
+
+    Those behind the first, but for a depth, say only how far what is summed up drifts.
+    """
+
+    turning: Mapping[str, Channel]
+    moving: Mapping[str, Channel]
+
+    @property
+    def all(self) -> dict[str, Channel]:
+        """All of them."""
+        return {**self.turning, **self.moving}
+
+    @property
+    def read(self) -> dict[str, Channel]:
+        """What is read: the first of each, and the depth."""
+        first = [*list(self.turning)[:1], *list(self.moving)[:1], "depth"]
+        return {kind: channel for kind, channel in self.all.items() if kind in first}
+
+
+def choose_channels(recording: Recording) -> ChosenChannels:
+    """The channels that tell the motion of a recording."""
+    delays = recording.sensors.delay_s.model_dump()
+    known = {
+        kind: Channel(channel.time - delays[kind], channel.value)
+        for kind, channel in recording.channels.items()
+        if len(channel.time) > 1
+    }
+    return ChosenChannels(_choose_turning(known), _choose_moving(known))
+
+
+def _choose_turning(known: Mapping[str, Channel]) -> dict[str, Channel]:
+    """Rates in front of attitudes that are seldom, rougher or without a yaw."""
+    direct = [kind for kind in ("attitude", "euler") if kind in known][:1]
+    rates = ["rates"] if "rates" in known else []
+    if rates and direct and _heads(direct[0], known) and _suffices(known, direct[0], "rates"):
+        rates = []
+    return {kind: known[kind] for kind in (*rates, *direct)}
+
+
+def _choose_moving(known: Mapping[str, Channel]) -> dict[str, Channel]:
+    """Velocities in front of positions that are seldom or rougher; depth where it is finer."""
+    place, velocity, depth = ([k] if k in known else [] for k in ("position", "velocity", "depth"))
+    if velocity and place and _suffices(known, "position", "velocity"):
+        velocity = []
+    if depth and place and not velocity and np.isfinite(known["position"].value[:, 2]).any():
+        depth = depth if noise_density(known["depth"]) < noise_density(known["position"]) else []
+    return {kind: known[kind] for kind in (*velocity, *place, *depth)}
+
+
+def _heads(kind: str, known: Mapping[str, Channel]) -> bool:
+    """Whether the yaw was measured."""
+    return kind == "attitude" or bool(np.isfinite(known[kind].value[:, 2]).any())
+
+
+def _suffices(known: Mapping[str, Channel], direct: str, rate: str) -> bool:
+    """Whether what is read comes often, and knows a change over a second better than a sum."""
+    often = (known[direct].rate or 0.0) >= OFTEN
+    return often and noise_density(known[direct]) <= noise_density(known[rate])
+
+
+def noise_density(channel: Channel) -> float:
+    """Noise of a channel over a second: that of a sample by the square root of the rate.
+
+    The noise of a sample from its second differences, whose variance is 6 times its own.
+    """
+    value = channel.value
+    if value.shape[1] == 4:  # small turns are twice the vector part of a quaternion
+        value = 2.0 * rotations.continuous(value)
+    noise = np.nanstd(np.diff(value, 2, axis=0)) / np.sqrt(6.0)
+    return float(noise / np.sqrt(channel.rate or 1.0))
