@@ -53,8 +53,8 @@ class Correction:
 
     `readings` of each model (k, 13): pose, and mean velocity since the reading before; `time`
     (s+1,) s at which steps begin and end, `ends` (k,) those at which the readings hold; `seen`
-    (k, 6) 1 for the axes that each of them shows, `known` (4,) 1 where x, y, z and yaw were
-    measured at all; `gains`
+    (k, 6) 1 for the axes that each of them shows, `known` (5,) see `pose_error` of the
+    engine; `gains`
     (3, 6) of pose, velocity and disturbance per unit of innovation; `decay` (s, 6) of the
     disturbance over each step; `by_velocity`: by the velocities, and poses are taken as they are
     read.

@@ -137,11 +137,11 @@ class ObservedRun:
 
     @property
     def known(self) -> Array:
-        """1 where x, y, z and yaw were measured (4,), else 0."""
+        """What was measured (5,), as the engine's `pose_error` asks for it."""
         measured = self.motion.measured
         if measured is None:
-            return np.ones(4)
-        return np.concatenate([measured.coordinates, measured.heading]).astype(float)
+            return np.array([1.0, 1.0, 1.0, 1.0, 0.0])
+        return np.concatenate([measured.coordinates, measured.heading, [True]]).astype(float)
 
     @property
     def axes(self) -> Array:

@@ -44,25 +44,40 @@ def turned(q, v):
 
 
 @inline_internal
-def headed(q, y):
-    """Measured attitude, in y (7,) behind the position, turned by the predicted yaw."""
+def heading(q):
+    """The yaw of an attitude, as a quaternion."""
     w, i, j, k = q
     half = 0.5 * atan2(2.0 * (w * k + i * j), w * w + i * i - j * j - k * k)
-    c, s = cos(half), sin(half)
+    return cos(half), 0.0, 0.0, sin(half)
+
+
+@inline_internal
+def headed(q, y):
+    """Measured attitude, in y (7,) behind the position, turned by the predicted yaw."""
+    c, _, _, s = heading(q)
     return c * y[3] - s * y[6], c * y[4] - s * y[5], c * y[5] + s * y[4], c * y[6] + s * y[3]
 
 
 @inline_internal
-def pose_error(x, y, known):
-    """Measured pose y (7,) minus the predicted one, in body axes: m and rad.
+def axes_of_errors(q, known):
+    """Rotation from the axes in which errors of the position stand: the body's, or level ones."""
+    if known[4] == 1.0:
+        return rotation(heading(q))
+    return rotation(q)
 
-    `known` (4,): 1 where x, y, z and yaw were measured, 0 where they are taken as predicted.
+
+@inline_internal
+def pose_error(x, y, known):
+    """Measured pose y (7,) minus the predicted one, along the axes of errors: m and rad.
+
+    `known` (5,): 1 where x, y, z and yaw were measured, 0 where they are taken as predicted; last
+    1 where sensors of their own tell height and place: level axes keep the noise of each apart.
     """
     moved = (
         known[0] * (y[0] - x.position[0]), known[1] * (y[1] - x.position[1]),
         known[2] * (y[2] - x.position[2]),
     )  # fmt: skip
-    d = into_body(rotation(x.attitude), moved)
+    d = into_body(axes_of_errors(x.attitude, known), moved)
     w, i, j, k = x.attitude
     a, b, c, e = y[3], y[4], y[5], y[6]
     if known[3] == 0.0:
@@ -87,13 +102,13 @@ def velocity_error(mean, y):
 
 
 @inline_internal
-def corrected(x, y, e, gain_pose, gain_nu, by_velocity):
+def corrected(x, y, e, known, gain_pose, gain_nu, by_velocity):
     """The state after a reading; where velocities are read, poses are taken as measured."""
     nu = add6(x.nu, 1.0, each6(gain_nu, e))
     if by_velocity:
         return State((y[0], y[1], y[2]), (y[3], y[4], y[5], y[6]), nu)
     k = each6(gain_pose, e)
-    position = add3(x.position, 1.0, into_world(rotation(x.attitude), k[:3]))
+    position = add3(x.position, 1.0, into_world(axes_of_errors(x.attitude, known), k[:3]))
     return State(position, turned(x.attitude, k[3:]), nu)
 
 
@@ -148,7 +163,7 @@ def observe(
             y = readings[row[m], k]
             e = velocity_error(mean, y) if by_velocity else pose_error(x, y, known)
             e = each6(vector6(seen[k]), e)
-            x = renormalised(corrected(x, y, e, gain_pose, gain_nu, by_velocity))
+            x = renormalised(corrected(x, y, e, known, gain_pose, gain_nu, by_velocity))
             a = add6(a, 1.0, each6(gain_a, e))
             for i in range(6):
                 out[at + k - first - 1, i] = e[i]
