@@ -83,7 +83,7 @@ class OnClock:
         """
         width = np.clip(noise_density(direct) / max(noise_density(summed), 1e-12), *DRIFT)
         sigma = np.sqrt(2.0) * width / self.step
-        return np.asarray(gaussian_filter1d(apart, sigma, axis=0, mode="nearest"))
+        return np.asarray(gaussian_filter1d(apart, sigma, axis=0, mode="reflect"))
 
 
 def instants_between(time: Array) -> Array:
