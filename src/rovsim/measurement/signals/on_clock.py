@@ -68,22 +68,29 @@ class OnClock:
         edges, rate = instants_between(channel.time), np.nan_to_num(channel.value)
         turns = rotations.exp(rate * np.diff(edges)[:, None])
         q = np.empty((len(edges), 4))
-        q[0] = start
+        q[0] = [1.0, 0.0, 0.0, 0.0]
         for k, turn in enumerate(turns):
             q[k + 1] = rotations.multiply(q[k], turn)
         own = np.clip(np.searchsorted(edges, self.clock, "right") - 1, 0, len(turns) - 1)
         rest = rotations.exp(rate[own] * (self.clock - edges[own])[:, None])
-        return rotations.multiply(q[own], rest)
+        found = rotations.multiply(q[own], rest)
+        return rotations.multiply(rotations.multiply(start, rotations.conjugate(found[0])), found)
 
     def drift(self, apart: Array, summed: Channel, direct: Channel) -> Array:
-        """How far (n, c) what was summed up has drifted, of how far `apart` from what was read.
+        """How far (n, c) a sum has drifted, of how far `apart` (m, c) it is from each reading.
 
         Noise that adds up against noise that does not: the best smoothing is exponential, with the
-        ratio of the two as its time (Wiener); here a bell of the same width.
+        ratio of the two as its time (Wiener); here a bell of the same width. NaN without readings.
         """
         width = np.clip(noise_density(direct) / max(noise_density(summed), 1e-12), *DRIFT)
-        sigma = np.sqrt(2.0) * width / self.step
-        return np.asarray(gaussian_filter1d(apart, sigma, axis=0, mode="reflect"))
+        sigma = np.sqrt(2.0) * width * (direct.rate or 1.0)
+        found = np.full((len(self.clock), apart.shape[1]), np.nan)
+        for k, column in enumerate(apart.T):
+            known = np.isfinite(column)
+            if known.any():
+                smooth = gaussian_filter1d(column[known], sigma, mode="reflect")
+                found[:, k] = np.interp(self.clock, direct.time[known], smooth)
+        return found
 
 
 def instants_between(time: Array) -> Array:

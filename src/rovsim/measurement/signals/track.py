@@ -83,7 +83,9 @@ def _turn(at: OnClock, turning: Mapping[str, Channel]) -> _Tracked:
     rates = turning["rates"]
     q, known = at.turn_up(rates, direct.value[0]), np.isfinite(rates.value).any(axis=0)
     for channel in beside.values():
-        apart = rotations.log(rotations.multiply(rotations.conjugate(q), direct.value))
+        read = _read_attitude(OnClock(channel.time, at.max_gap), beside).value
+        summed = between(channel.time, at.clock, rotations.continuous(q))
+        apart = rotations.log(rotations.multiply(rotations.conjugate(summed), read))
         drift = np.where(direct.known, at.drift(apart, rates, channel), 0.0)
         q = rotations.multiply(q, rotations.exp(drift))
     return _Tracked(_continuous(q), known | direct.known, known)
@@ -120,10 +122,12 @@ def _move(
     if "velocity" in moving:
         position, summed = _sum_velocities(at, moving["velocity"], attitude, recording)
     if "position" in moving:
-        direct = at.values(moving["position"])
+        place = moving["position"]
+        direct = at.values(place)
         if summed.any():
-            drift = at.drift(direct - position, moving["velocity"], moving["position"])
-            direct = np.where(summed & np.isfinite(drift).all(axis=0), position + drift, direct)
+            total = [np.interp(place.time, at.clock, column) for column in position.T]
+            drift = at.drift(place.value - np.stack(total, axis=1), moving["velocity"], place)
+            direct = np.where(summed, position + drift, direct)
         position = np.where(np.isnan(direct), position, direct)
     if "depth" in moving:
         position[:, 2] = _depth_of_origin(at.values(moving["depth"])[:, 0], attitude, recording)
