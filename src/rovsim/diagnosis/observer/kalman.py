@@ -12,6 +12,8 @@ from numba import njit
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.small_matrices import (
+    FROM_PYTHON,
+    INTERNAL,
     add_to_diagonal,
     increase,
     invert,
@@ -88,7 +90,7 @@ def design_filter(kind: int, h: float, damping: float, noise: AxisNoise) -> Axis
     return AxisFilter(*solve_steady_state(kind, h, damping, *noise))
 
 
-@njit(cache=True)
+@njit(**FROM_PYTHON)
 def solve_steady_state(kind, h, d, level, memory, reading, colour, colour_memory):
     """F, C, gain, variance of the innovations, poles and forgetting of the filter of one axis.
 
@@ -130,7 +132,7 @@ def solve_steady_state(kind, h, d, level, memory, reading, colour, colour_memory
     return F, C, gain, variance, characteristic(multiply(F, left)), forgets
 
 
-@njit(cache=True)
+@njit(**INTERNAL)
 def solve_riccati(F, C, Q, r):
     """Steady covariance (n, n) of x' = F x + w, y = C x + v, predicted; w has Q, v has variance r.
 
@@ -156,7 +158,7 @@ def solve_riccati(F, C, Q, r):
     return H
 
 
-@njit(cache=True)
+@njit(**FROM_PYTHON)
 def characteristic(A):
     """Coefficients of det(z I - A), highest power first (Faddeev-LeVerrier)."""
     n = len(A)
@@ -171,7 +173,7 @@ def characteristic(A):
     return found
 
 
-@njit(cache=True, inline="always")
+@njit(inline="always", **INTERNAL)
 def _filtered(b, a, value, state):
     """Next output of a filter, a[0] = 1; `state` changes (direct form II, transposed)."""
     order = len(state)
@@ -182,7 +184,7 @@ def _filtered(b, a, value, state):
     return out
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, **FROM_PYTHON)
 def filter_kept(b, a, e, spans, kept, shown, scale, out):
     """Filter each span of e (k, 6, n) by itself, axis by axis; the kept ones (k, 6, m) into out.
 
@@ -212,7 +214,7 @@ def filter_kept(b, a, e, spans, kept, shown, scale, out):
                     m += 1
 
 
-@njit(cache=True)
+@njit(**FROM_PYTHON)
 def sum_of_squares(b, a, e, spans, kept, shown):
     """Sum of squares of the kept filtered values of e (n,), of those shown, and their count."""
     total, count = 0.0, 0
@@ -228,7 +230,7 @@ def sum_of_squares(b, a, e, spans, kept, shown):
     return total, count
 
 
-@njit(cache=True)
+@njit(**INTERNAL)
 def convolve(a, b):
     """Product of two polynomials; `numpy.convolve` takes longer to call than to work."""
     out = np.zeros(len(a) + len(b) - 1)
@@ -238,7 +240,7 @@ def convolve(a, b):
     return out
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(nogil=True, error_model="numpy", **FROM_PYTHON)
 def negative_log_likelihood(noise, kind, h, damping, poles, forgets, e, spans, kept, shown):
     """Of innovations e (n,) of one run under a noise (5,), up to a constant.
 

@@ -7,8 +7,12 @@ expressions, take some 10 s more to compile than these loops.
 import numpy as np
 from numba import njit
 
+# Called by compiled functions alone; what makes one callable from outside takes as long to compile.
+INTERNAL = {"cache": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+FROM_PYTHON = {"cache": True, "no_cfunc_wrapper": True}
 
-@njit(cache=True)
+
+@njit(**INTERNAL)
 def multiply(A, B):
     """A (n, k) times B (k, m)."""
     out = np.zeros((A.shape[0], B.shape[1]))
@@ -19,7 +23,7 @@ def multiply(A, B):
     return out
 
 
-@njit(cache=True)
+@njit(**INTERNAL)
 def transpose(A):
     """The transpose of A (n, n), as a copy."""
     out = np.zeros(A.shape)
@@ -29,7 +33,7 @@ def transpose(A):
     return out
 
 
-@njit(cache=True)
+@njit(**INTERNAL)
 def increase(A, B):
     """Add B to A (n, m) in place; the largest size of what was added, and of what is there now."""
     added, there = 0.0, 0.0
@@ -40,14 +44,14 @@ def increase(A, B):
     return added, there
 
 
-@njit(cache=True)
+@njit(**INTERNAL)
 def add_to_diagonal(A, value):
     """Add a number to the diagonal of A (n, n) in place."""
     for i in range(len(A)):
         A[i, i] += value
 
 
-@njit(cache=True)
+@njit(**INTERNAL)
 def invert(A):
     """Inverse of A (n, n), which is lost, by Gauss-Jordan elimination with partial pivoting."""
     n = len(A)

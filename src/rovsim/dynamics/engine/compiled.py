@@ -21,6 +21,7 @@ from rovsim.dynamics.engine.cache import DYNAMICS, cache_folder, digest
 
 MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
 # What makes a function callable from outside takes half of the time that it takes to compile.
+FROM_PYTHON: dict[str, Any] = {"no_cfunc_wrapper": True}  # from there, but not from C
 UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
@@ -40,9 +41,9 @@ def keep(**options: Any) -> Callable[[Callable], Any]:
     return decorate
 
 
-kept = keep(nogil=True, **MATHS)  # what Python calls, from any thread
+kept = keep(nogil=True, **MATHS, **FROM_PYTHON)  # what Python calls, from any thread
 # Parts that are the same in every engine.
-inline_shared = keep(forceinline=True, **MATHS)
+inline_shared = keep(forceinline=True, **MATHS, **FROM_PYTHON)
 inline_internal = keep(forceinline=True, **MATHS, **UNSEEN)  # not called from Python
 internal = keep(**MATHS, **UNSEEN)  # too large or too rare to be inlined
 # Parts that depend on the effects: compiled anew for each engine, and kept as parts of it. What is

@@ -9,6 +9,7 @@ from pydantic import field_validator
 
 from rovsim.core.rotations import unrotate
 from rovsim.core.schema import Section
+from rovsim.dynamics.engine.compiled import FROM_PYTHON, UNSEEN
 from rovsim.dynamics.learned.layout import BLOCKS
 
 Block = Literal["velocity", "wrench", "acceleration", "gravity"]
@@ -72,7 +73,7 @@ def assemble(
     return np.concatenate([blocks[block] for block in settings.blocks], axis=1)
 
 
-@njit
+@njit(**UNSEEN)
 def _append(values, x, at):
     """Write values into x from `at` on; returns where the next block starts."""
     for i in range(len(values)):
@@ -80,7 +81,7 @@ def _append(values, x, at):
     return at + len(values)
 
 
-@njit
+@njit(**FROM_PYTHON)
 def assemble_one(data, nu, nu_dot, wrench, R, x):
     """Write the features of one sample into x (at least d long), as `assemble` would.
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
+from rovsim.dynamics.engine.compiled import UNSEEN
 from rovsim.dynamics.learned.layout import (
     COUNT,
     FADING_RANK,
@@ -27,7 +28,7 @@ from rovsim.dynamics.learned.layout import (
 )
 from rovsim.dynamics.learned.simd import add_squares, exponentials, products, scaled
 
-plain = njit(error_model="numpy")
+plain = njit(error_model="numpy", **UNSEEN)
 
 
 class Part(NamedTuple):

@@ -7,13 +7,13 @@ trust them. They are safe to call from many threads: scratch lies on the caller'
 import numpy as np
 from numba import carray
 
-from rovsim.dynamics.engine.compiled import keep
+from rovsim.dynamics.engine.compiled import FROM_PYTHON, keep
 from rovsim.dynamics.learned.kernel_expansion import faded, posterior
 from rovsim.dynamics.learned.layout import KIND, NEIGHBOURS, OUTPUTS
 from rovsim.dynamics.learned.neighbours import neighbours
 from rovsim.dynamics.learned.simd import SCRATCH, stack
 
-kept = keep(error_model="numpy")
+kept = keep(error_model="numpy", **FROM_PYTHON)
 
 
 @kept

@@ -12,15 +12,16 @@ from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from rovsim.dynamics.engine.compiled import FROM_PYTHON, UNSEEN
 from rovsim.dynamics.learned.layout import LANES, MOST_POINTS
 
 # 64 KiB for the values of kernels, and a little more for what each kernel keeps beside them
 SCRATCH = MOST_POINTS + 1024
 
 # Sums may be reordered: a prediction may differ in its last bits between processors.
-reordered = njit(error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+reordered = njit(error_model="numpy", fastmath={"reassoc", "contract", "nsz"}, **UNSEEN)
 # Not here: a bound that rounds as the distance it bounds is never too large (`neighbours`).
-exact = njit(error_model="numpy")
+exact = njit(error_model="numpy", **UNSEEN)
 
 
 @intrinsic
@@ -81,7 +82,7 @@ _C = [1.0 / float(np.prod(np.arange(1.0, k + 1.0))) for k in range(14)]  # Taylo
 C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, C13 = _C[2:]
 
 
-@njit(error_model="numpy", fastmath={"contract"})
+@njit(error_model="numpy", fastmath={"contract"}, **FROM_PYTHON)
 def exponentials(s):
     """Replace every s >= 0 by exp(-s) within 2e-16 of it; NaN stays NaN.
 
