@@ -27,10 +27,14 @@ def copy_of(repository: Path, folder: Path) -> Path:
     return folder
 
 
-def snakemake(folder: Path, *words: str) -> str:
-    """Output of one Snakemake call in the copy, with the copy's own package."""
+def snakemake(folder: Path, *words: str, source: Path = ROOT / "src") -> str:
+    """Output of one Snakemake call in the copy.
+
+    The package is the repository's, of which other tests compile the same parts, or an edited one:
+    what Snakemake compares is content.
+    """
     command = [sys.executable, "-m", "snakemake", "--cores", "2", *words]
-    environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+    environment = os.environ | {"PYTHONPATH": str(source)}
     done = subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, timeout=500
     )
@@ -40,7 +44,7 @@ def snakemake(folder: Path, *words: str) -> str:
 
 def to_run(folder: Path) -> set[str]:
     """Rules a dry run would run."""
-    text = snakemake(folder, "-n", "--config", f"overrides={OVERRIDES}")
+    text = snakemake(folder, "-n", "--config", f"overrides={OVERRIDES}", source=folder / "src")
     return set(re.findall(r"^(?:local)?rule (\w+):", text, re.MULTILINE))
 
 

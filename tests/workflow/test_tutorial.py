@@ -26,11 +26,9 @@ def commands() -> list[str]:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("one_figure_a_run")
 def test_the_tutorial_ends_with_the_error_fallen(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(
-        "rovsim.apps.cli.commands.compare.PER_RUN", ("velocities",)
-    )  # one figure a run
     for line in commands():
         if not line.startswith(ELSEWHERE):
             words = shlex.split(line)[1:]
