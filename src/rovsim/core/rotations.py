@@ -33,10 +33,15 @@ def half_turn(signs: Array) -> Array:
     return np.array([1.0, 0, 0, 0]) if signs[1] > 0 else np.array([0.0, 1, 0, 0])
 
 
+def _elements(q: Array) -> tuple[Array, Array, Array, Array]:
+    """w, x, y, z of quaternions (..., 4)."""
+    return q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+
+
 def multiply(a: Array, b: Array) -> Array:
     """Hamilton product of quaternions (..., 4)."""
-    aw, ax, ay, az = np.moveaxis(a, -1, 0)
-    bw, bx, by, bz = np.moveaxis(b, -1, 0)
+    aw, ax, ay, az = _elements(a)
+    bw, bx, by, bz = _elements(b)
     return np.stack(
         [
             aw * bw - ax * bx - ay * by - az * bz,
@@ -78,7 +83,7 @@ def unrotate(q: Array, x: Array) -> Array:
 
 def matrix(q: Array) -> Array:
     """Rotation matrices (..., 3, 3), body to world (Fossen 2021, eq. 2.73)."""
-    w, x, y, z = np.moveaxis(q, -1, 0)
+    w, x, y, z = _elements(q)
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
@@ -109,15 +114,17 @@ def from_euler(roll: Array, pitch: Array, yaw: Array) -> Array:
 
 def to_euler(q: Array) -> Array:
     """Roll, pitch, yaw (..., 3) in rad; pitch within +-pi/2. For people, never for rates."""
-    w, x, y, z = np.moveaxis(q, -1, 0)
+    w, x, y, z = _elements(q)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
-    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
+    pitch = np.arcsin(np.minimum(np.maximum(2 * (w * y - z * x), -1.0), 1.0))
     yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
     return np.stack([roll, pitch, yaw], axis=-1)
 
 
 def exp(rotation: Array) -> Array:
     """Quaternions (..., 4) of rotation vectors (..., 3) in rad."""
+    if not np.any(rotation):  # of every model that turns nothing; SciPy is slow to import
+        return np.tile([1.0, 0.0, 0.0, 0.0], (*np.shape(rotation)[:-1], 1))
     # SciPy takes no read-only array
     return scipy.spatial.transform.Rotation.from_rotvec(np.array(rotation)).as_quat(
         scalar_first=True

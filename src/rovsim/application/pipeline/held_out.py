@@ -15,7 +15,6 @@ from rovsim.evaluation.held_out.published_errors import (
 from rovsim.evaluation.scores import score_all
 from rovsim.learning.learner import LearnerSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.tables import tabulate_published_errors
 from rovsim.results.comparison import Comparison
 from rovsim.results.pitfalls import Pitfalls
 
@@ -46,6 +45,8 @@ def compare_with_published(
     Raises:
         BadInput: the published errors cannot be read, or are of other runs.
     """
+    from rovsim.reporting.tables import tabulate_published_errors  # a fold is scored without it
+
     moved = {motion.run.id: find_demanded(motion.commands) for motion in motions}
     found = compare_published(read_published(published), comparisons, moved)
     tabulate_published_errors(found).write(tables, "published_errors")

@@ -1,5 +1,7 @@
 """What a demand asks of thrusters and surfaces: the mixer, or their levers where there is none."""
 
+from functools import cached_property
+
 import numpy as np
 from numpy import ndarray as Array
 
@@ -29,16 +31,17 @@ class Allocation:
 
     def command(self, demand: Array) -> Array:
         """Commands and angles, as `Vehicle.command_columns`, of a demand (6,)."""
-        mixer = self.thrusters.mixer
-        throttle = (self.thrusters.mixing() if mixer else self.pushes) @ demand
         columns: list[float] = []
-        for k, unit in enumerate(self.units):
-            own = [float(throttle[k])]
-            if unit.azimuth:
-                own = self._turned(k, demand)
-            columns += [float(np.clip(own[0], -self.limit, self.limit)), *own[1:]]
+        for k, throttle in enumerate((self._shares @ demand).tolist()):
+            own = self._turned(k, demand) if self.units[k].azimuth else [throttle]
+            columns += [min(max(own[0], -self.limit), self.limit), *own[1:]]
         angles = FULL_ANGLE * np.clip(self.levers @ demand[3:], -1.0, 1.0)
         return np.array([*columns, *angles])
+
+    @cached_property
+    def _shares(self) -> Array:
+        """What each thruster (n, 6) does for a demand."""
+        return self.thrusters.mixing() if self.thrusters.mixer else self.pushes
 
     def _turned(self, k: int, demand: Array) -> list[float]:
         """Command and angle of a thruster that turns: along what is asked of its place."""

@@ -97,7 +97,8 @@ class _TrueVehicle:
         self.kind: CommandKind = "demand" if settings.log.kind == "demand" else "thruster"
         model.check(site, self.kind)
         columns = model.thrust_path.columns(self.kind)
-        self.times, self.commands = np.empty(0), np.empty((0, columns))
+        ticks = round(settings.duration / tick)
+        self.times, self.commands = np.empty(ticks), np.empty((ticks, columns))
         self.lag: list | None = None
         self.memory = np.zeros(6)
         self.site, self.batch = site, Batch([model], site)
@@ -122,18 +123,19 @@ class _TrueVehicle:
         No command acts before it is given: where the clocks say so, the log's clock is ahead.
         """
         stamp, arrival = t, self.model.thrust_path.arrival
+        if not self.model.thrust_path.clocks:
+            return t
         for _ in range(FIXED_POINT):
             stamp += max(0.0, t - float(arrival(np.array([stamp]))[0]))
         return stamp
 
     def advance(self, k: int, command: Array, state: Array, pushes: Array) -> Array:
         """Take the command of tick k; the states (steps, 13) up to the next tick."""
-        self.times = np.append(self.times, self._stamp(k * self.tick))
-        self.commands = np.vstack([self.commands, command])
+        self.times[k], self.commands[k] = self._stamp(k * self.tick), command
         path, t, steps = self.model.thrust_path, k * self.tick, len(pushes)
         middle = t + self.h * (0.5 + np.arange(steps))
-        arrival = path.arrival(self.times)
-        held = self.commands[np.clip(np.searchsorted(arrival, middle, "right") - 1, 0, None)]
+        arrival = path.arrival(self.times[: k + 1])
+        held = self.commands[np.maximum(np.searchsorted(arrival, middle, "right") - 1, 0)]
         command = path.thruster_commands(held, self.kind)
         static = path.static(command, middle, self.duration)
         force, self.lag = path.respond(static, self.h, self.lag)
