@@ -4,12 +4,14 @@ Written out: to call BLAS and LAPACK takes longer than the work itself, and they
 expressions, take some 10 s more to compile than these loops.
 """
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
 # Called by compiled functions alone; what makes one callable from outside takes as long to compile.
-INTERNAL = {"cache": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-FROM_PYTHON = {"cache": True, "no_cfunc_wrapper": True}
+INTERNAL: dict[str, Any] = {"cache": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+FROM_PYTHON: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True}
 
 
 @njit(**INTERNAL)
