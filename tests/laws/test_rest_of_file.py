@@ -14,6 +14,7 @@ from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.dynamics.model_file import EffectEntry
 
 OFF = 0.2  # of each coefficient
+WEAK = 0.95  # thrusters of this strength
 COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")
 
 
@@ -24,6 +25,7 @@ def flown(tmp_path_factory):
     body = base.body
     stated = dict(zip(COEFFICIENTS, (body.linear, body.quadratic, np.diag(body.M_A)), strict=True))
     off = {n: dict(zip(AXES, OFF * x, strict=True)) for n, x in stated.items()}
+    off["thruster_gain"] = {"all": WEAK}
     hidden = tuple(EffectEntry(effect=name, parameters=own) for name, own in off.items())
     base, runs = observed(folder / "off", duration=20.0, effects=hidden)
     return base, runs, off
@@ -45,15 +47,16 @@ def miss(found, off):
 
 
 def test_what_the_rest_of_the_file_hides_is_in_the_intervals(flown):
-    """Nothing is fitted of heave and of rotations, which are as wrong."""
+    """Nothing is fitted of heave, rotations and thrust, which are as wrong."""
     _, runs, off = flown
     found = fitted(flown, ("surge", "sway"))
-    wider = include_rest(found, runs)
+    wider, scale = include_rest(found, runs)
     assert np.abs(miss(found, off)).max() > 2.5
     assert np.abs(miss(wider, off)).max() < 2.5
     assert np.all(wider.std >= found.std)
+    assert "added_mass.surge" in scale.parameters  # heavier, and pushed as much harder
 
 
 def test_one_effect_may_be_all_that_is_wrong(flown):
     found = fitted(flown, AXES, ("added_mass",))
-    assert include_rest(found, flown[1]) is found
+    assert include_rest(found, flown[1]) == (found, None)

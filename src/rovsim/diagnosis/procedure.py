@@ -19,7 +19,7 @@ from typing import Callable, Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rovsim.diagnosis.checks.common_scale import CommonScale, include_scale
+from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import find_doubtful
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
@@ -148,8 +148,7 @@ def _diagnose(
     if found.structures and len(found.fit.hypothesis.x):
         found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
     rivals = found.selection.named_rivals
-    wider, scale = include_scale(found.fit, usable.runs)
-    wider = include_rest(wider, usable.runs)
+    wider, scale = include_rest(found.fit, usable.runs)
     selected = rank_selected(base, wider, rivals, usable.runs)
     if smoothing:
         selected = [rank_smoothing(base, smoothing, usable.runs), *selected]

@@ -48,16 +48,19 @@ def include_scale(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonS
     """
     if not _may_share(found.hypothesis, runs):
         return found, None
-    names = name_parameters(found.hypothesis)
-    if GAIN_NAME in names:
-        gain = names.index(GAIN_NAME)
-        variance = float(found.covariance[gain, gain])
-        along = found.covariance[gain] / variance
-    else:
-        variance, along = _free_gain(found, runs)
-        both = found.covariance + variance * np.outer(along, along)
-        found = replace(found, covariance=both)
-    return found, _describe(found, names, variance, along)
+    if GAIN_NAME in name_parameters(found.hypothesis):
+        return found, describe_fitted_scale(found)
+    variance, along = _free_gain(found, runs)
+    both = found.covariance + variance * np.outer(along, along)
+    found = replace(found, covariance=both)
+    return found, describe_scale(found, variance, along)
+
+
+def describe_fitted_scale(found: Fit) -> CommonScale | None:
+    """The scale of a fit in which the gain of all thrusters is free; None where it is known."""
+    gain = name_parameters(found.hypothesis).index(GAIN_NAME)
+    variance = float(found.covariance[gain, gain])
+    return describe_scale(found, variance, found.covariance[gain] / variance)
 
 
 def _free_gain(found: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
@@ -69,8 +72,9 @@ def _free_gain(found: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
     return 1.0 / (told + (SCALE / GAIN) ** 2), opened.along[:, 0]
 
 
-def _describe(found: Fit, names: list[str], variance: float, along: Array) -> CommonScale | None:
-    std = SCALE * np.sqrt(variance)
+def describe_scale(found: Fit, variance: float, along: Array) -> CommonScale | None:
+    """The scale where it is unknown: `variance` of the gain, and how parameters (k,) follow it."""
+    names, std = name_parameters(found.hypothesis), SCALE * np.sqrt(variance)
     share = variance * along**2 / np.maximum(np.diag(found.covariance), 1e-300)
     moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
     return CommonScale(float(std), tuple(moved)) if std > UNKNOWN and moved else None

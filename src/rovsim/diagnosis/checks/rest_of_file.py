@@ -3,7 +3,8 @@
 What was selected was fitted as if all the rest of the file were right. Where several of its effects
 were selected, the rest is taken for known as such files are known (`nominal_terms.py`), and what
 that leaves open is added to the intervals: how far the rest is open beside the runs, and how far
-the runs draw it from what the file says.
+the runs draw it from what the file says. The gain of the thrusters is part of the rest: a mass that
+was left as it is would fix the common scale, and is as little known.
 """
 
 from dataclasses import replace
@@ -11,48 +12,68 @@ from typing import Sequence
 
 import numpy as np
 
+from rovsim.diagnosis.checks.common_scale import (
+    GAIN_NAME,
+    CommonScale,
+    describe_fitted_scale,
+    describe_scale,
+    include_scale,
+)
 from rovsim.diagnosis.checks.left_open import leave_open, name_parameters
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED, spread_of_file
+from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, spread_of_file
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
 SEVERAL = 3  # effects that a file states: one or two may be all that is wrong
-COEFFICIENTS = tuple(name for name in STATED if name != ThrusterGain.id)  # its gain: common_scale
 
 
-def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> Fit:
-    """A fit whose intervals hold what the rest of the vehicle file may be off by.
+def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
+    """A fit whose intervals hold what the rest of the vehicle file may be off by, and the scale.
+
+    Where less than several of its effects were selected, they hold the common scale alone.
 
     Args:
         found: the final fit.
         runs: those it was fitted to.
     """
-    if sum(term.id in STATED for term in found.hypothesis.terms) < SEVERAL:
-        return found
-    freed = _free_rest(found.hypothesis)
-    opened = leave_open(found, freed, runs)
-    if opened is None or not opened.along.size:
-        return found
-    spread = _list_spreads(found.hypothesis, freed)
+    h = found.hypothesis
+    freed = _free_rest(h)
+    further = [name for name in name_parameters(freed) if name not in name_parameters(h)]
+    several = sum(term.id in STATED for term in h.terms) >= SEVERAL
+    opened = leave_open(found, freed, runs) if several and further else None
+    if opened is None:
+        return include_scale(found, runs)
+    spread = _list_spreads(h, freed)
     rest = solve(opened.told + np.diag(spread**-2.0), np.eye(len(spread)))
     drawn = rest @ opened.drawn
     wider = opened.along @ (rest + np.outer(drawn, drawn)) @ opened.along.T
-    return replace(found, covariance=found.covariance + wider)
+    found = replace(found, covariance=found.covariance + wider)
+    if GAIN_NAME not in further:
+        return found, describe_fitted_scale(found)
+    gain = further.index(GAIN_NAME)
+    variance = float(rest[gain, gain])
+    return found, describe_scale(found, variance, opened.along @ rest[:, gain] / variance)
 
 
 def _free_rest(h: Hypothesis) -> Hypothesis:
-    """With all free that the file states."""
+    """With all free that the file states; of the thrusters one gain."""
     fitted = set(name_parameters(h))
-    for name in COEFFICIENTS:
-        effect = built_in()[name]
-        left = [p.name for p in effect.parameters if p.fitted and f"{name}.{p.name}" not in fitted]
+    for effect in (built_in()[name] for name in STATED):
+        left = tuple(k for k in _list_stated(effect) if f"{effect.id}.{k}" not in fitted)
         if left:
-            h = h.with_term(Term(effect(), tuple(left)))
+            h = h.with_term(Term(effect(), left))
     return h
+
+
+def _list_stated(effect: type[Effect]) -> Sequence[str]:
+    if effect is ThrusterGain:
+        return ONE_GAIN
+    return [p.name for p in effect.parameters if p.fitted]
 
 
 def _list_spreads(h: Hypothesis, freed: Hypothesis) -> np.ndarray:
