@@ -2,11 +2,16 @@
 
 import os
 import shutil
+import subprocess
+import sys
 import time
 
 import pytest
+from filelock import FileLock
 
 from rovsim.dynamics.engine.cache import UNUSED, cache_folder, prune
+from rovsim.dynamics.engine.compiled import lock_file
+from rovsim.dynamics.engine.vectors import dot3
 
 DAY = 86400.0
 
@@ -54,3 +59,26 @@ def test_a_process_marks_its_folder_as_used(folders, monkeypatch):
         assert time.time() - folder.stat().st_mtime < UNUSED / 30
     finally:
         cache_folder.cache_clear()
+
+
+ONE_OF_TWO = """
+from rovsim.dynamics.engine.vectors import dot3
+print("ready", flush=True)
+dot3((1.0, 2.0, 3.0), (1.0, 2.0, 3.0))
+print(sum(dot3.stats.cache_misses.values()))
+"""
+
+
+def test_of_two_processes_that_need_a_function_one_compiles_it(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROVSIM_CACHE", str(tmp_path))
+    cache_folder.cache_clear()
+    lock = FileLock(lock_file(dot3))
+    cache_folder.cache_clear()
+    command = [sys.executable, "-c", ONE_OF_TWO]
+    with lock:  # until both have come to it
+        two = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
+        assert [one.stdout.readline() for one in two] == 2 * ["ready\n"]
+        time.sleep(0.2)
+        assert [one.poll() for one in two] == [None, None]
+    compiled = [one.communicate(timeout=60)[0] for one in two]
+    assert sorted(compiled) == ["0\n", "1\n"]

@@ -15,6 +15,7 @@ from typing import Any, Callable, Sequence
 
 import numba
 from filelock import FileLock
+from numba.core.compiler_lock import global_compiler_lock
 
 from rovsim.core.files import write_text
 from rovsim.dynamics.engine.cache import DYNAMICS, cache_folder, digest
@@ -34,11 +35,34 @@ def keep(**options: Any) -> Callable[[Callable], Any]:
     def decorate(function: Callable) -> Any:
         before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())  # type: ignore[attr-defined]
         try:
-            return numba.njit(cache=True, **options)(function)
+            return _compiled_once(numba.njit(cache=True, **options)(function))
         finally:
             numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
 
     return decorate
+
+
+def _compiled_once(function: Any) -> Any:
+    """Let one process compile it, and others wait for what comes of it, or load it.
+
+    Numba's own index of what is kept loses what two processes write at once, or takes one's for the
+    other's. Who compiles waits only for what is called, so no two wait for each other.
+    """
+    compile_it, lock = function.compile, FileLock(lock_file(function))
+
+    def compile_alone(signature: Any) -> Any:
+        if signature in function.overloads:
+            return compile_it(signature)
+        with global_compiler_lock, lock:  # in this order, whichever thread comes first
+            return compile_it(signature)
+
+    function.compile = compile_alone
+    return function
+
+
+def lock_file(function: Any) -> Path:
+    """Locked by the process that compiles a kept function."""
+    return cache_folder() / f"{function.py_func.__module__}.{function.py_func.__name__}.lock"
 
 
 kept = keep(nogil=True, **MATHS, **FROM_PYTHON)  # what Python calls, from any thread
