@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-TESTS = Path(__file__).parent
-os.environ.setdefault("ROVSIM_CACHE", str(TESTS.parent / ".pytest_cache" / "rovsim"))
+os.environ.setdefault("ROVSIM_CACHE", str(Path(__file__).parents[1] / ".pytest_cache" / "rovsim"))
 
 # The matrices are small: waiting for its siblings costs a BLAS thread more than it computes. Read
 # when NumPy and torch are loaded, so it stands before every import of them; jobs inherit it.
@@ -20,16 +19,12 @@ settings.load_profile("rovsim")
 
 
 def pytest_collection_modifyitems(items):
-    """The longest first; a browser, for which one mostly waits, beside the jobs of the study.
+    """The longest first: with several workers, none is left with a whole study at the end.
 
-    Each of two workers begins with one half of the list.
+    The browser comes after it, on the same worker: it waits 20 s for a page, no longer, and a page
+    waits for what is compiled.
     """
-    first, browser, rest = [], [], []
-    groups = {"workflow": first, "browser": browser}
-    for item in items:
-        groups.get(item.path.relative_to(TESTS).parts[0], rest).append(item)
-    half = len(items) // 2 - len(first)
-    items[:] = [*first, *rest[:half], *browser, *rest[half:]]
+    items.sort(key=lambda item: "workflow" not in item.path.parts)
 
 
 @pytest.fixture
