@@ -1,7 +1,7 @@
 """Effects that these runs could not show, were they there: what was not measured, or never moved.
 
-Every tried effect has columns: how it would change what the filter could not foresee. Where even a
-large change would gain less likelihood than its parameter costs, nothing can be said about it.
+Every tried effect has columns: how it would change what the filter could not foresee. Where a change
+worth looking for would mostly gain less likelihood than its parameter costs, nothing can be said.
 A loop on board takes demands from the mixer, so that thrusters may hardly push at all: beside one,
 what acts through them is looked at anew.
 """
@@ -14,13 +14,13 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.candidates import list_means
-from rovsim.diagnosis.selection.proposals import TRUSTED
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns, linearise_candidates
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Means
 from rovsim.dynamics.vehicle import Vehicle
 
+SURELY = 2.0  # standard deviations: found in 97 of 100 such recordings
 LOGGED: tuple[Means, ...] = ("commands", "demands")  # without a log of them, not observable
 
 
@@ -39,6 +39,7 @@ def list_not_observable(
         shown |= _look_beside_loops(selection)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
+    silent -= {term.id for term in selection.found.hypothesis.terms}
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
 
 
@@ -56,14 +57,23 @@ def _look_beside_loops(selection: Selection) -> dict[str, bool]:
 
 
 def _find_shown(sizes: Array, blocks: Sequence[CandidateColumns], price: float) -> dict[str, bool]:
-    """Of each effect, whether a column, `sizes` (c,) long at one scale, can pay the price."""
-    needed = np.sqrt(price) / TRUSTED
+    """Of each effect, whether a column, `sizes` (c,) long at one scale, surely pays the price."""
+    needed = np.sqrt(price) + SURELY
     shown: dict[str, bool] = {}
     for block in blocks:
-        own = block.derivatives if block.secant is None else (block.secant,)
         name = block.candidate.effect.id
-        shown[name] = shown.get(name, False) or bool(np.any(sizes[list(own)] > needed))
+        own = sizes[_list_telling(block)]
+        shown[name] = shown.get(name, False) or bool(np.any(own > needed))
     return shown
+
+
+def _list_telling(block: CandidateColumns) -> list[int]:
+    """The columns by any of which an effect shows."""
+    if block.secant is not None:
+        return [block.secant]
+    candidate = block.candidate
+    each = zip(candidate.free, block.derivatives, strict=True)
+    return [column for name, column in each if name in (candidate.effect.telling or (name,))]
 
 
 def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle) -> set[str]:

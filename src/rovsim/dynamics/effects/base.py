@@ -54,6 +54,7 @@ class Effect(ABC):
     starts: ClassVar[tuple[dict[str, float], ...]] = ({},)  # where fits begin; {} = the defaults
     cause: ClassVar[str] = ""  # what in a laboratory makes it happen, one sentence
     revealed_by: ClassVar[str] = ""  # what to record to be sure of it, one sentence
+    telling: ClassVar[tuple[str, ...]] = ()  # parameters by which it shows; (): by any
     signature: ClassVar[Signature | None] = None  # how the catalogue page shows it
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path

@@ -21,6 +21,7 @@ class Current(Coefficients):
         "the same side until it moves with the water, a constant wrench turns with the body, a "
         "tether pulls harder with the distance."
     )
+    telling = ("north", "east")  # water that rises is no current
     signature = Signature({"north": 0.12}, "surge", "heading")
     parameters = tuple(
         Parameter(name, "m/s", f"v_{{{name}}}", scale=0.05) for name in ("north", "east", "down")
