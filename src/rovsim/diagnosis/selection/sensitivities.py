@@ -17,7 +17,8 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
 
-ROUNDS = 3  # where the noise is not yet known
+ROUNDS = 10  # at most, where the noise is not yet known
+CLOSE = 0.1  # of a level of noise: changed by less, it is known
 SHRINK = 1e-4  # of each column's own square: parallel candidates share
 
 
@@ -92,20 +93,24 @@ def _columns(
 
 
 def fit_remaining_noise(
-    known: Sensitivities, at: Hypothesis, noise: Noise, rounds: int = ROUNDS
+    sensitivities: Sensitivities, at: Hypothesis, noise: Noise, rounds: int = ROUNDS
 ) -> Noise:
     """The noise of what a hypothesis leaves and no candidate explains, all acting together.
 
     It is close to the true one whatever is still missing: candidates are compared under it. What is
-    left depends on the noise in turn, so that this takes `rounds`.
+    left depends on the noise in turn, so that this takes up to `rounds`; the last looks for slow
+    errors of the readings.
     """
-    bank, e, columns = known.bank, known.base, known.columns
+    bank, e, columns = sensitivities.bank, sensitivities.base, sensitivities.columns
     if at.terms:
         seen = bank.linearise(at)
         e, columns = seen.e, _join(seen.J, columns)
-    for k in range(rounds):
-        left = _remainder(bank, e, columns, noise)
-        noise, _ = bank.fit_noise(left, noise, colour=k == rounds - 1)
+    for _ in range(rounds - 1):
+        known = noise
+        noise, _ = bank.fit_noise(_remainder(bank, e, columns, known), known)
+        if np.max(np.abs(np.log(noise.level / known.level))) < CLOSE:
+            break
+    noise, _ = bank.fit_noise(_remainder(bank, e, columns, noise), noise, colour=True)
     return noise
 
 
