@@ -1,7 +1,8 @@
 """Effects that these runs could not show, were they there: what was not measured, or never moved.
 
-Every tried effect has columns: how it would change what the filter could not foresee. Where a change
-worth looking for would mostly gain less likelihood than its parameter costs, nothing can be said.
+Every tried effect has columns: how it would change what the filter could not foresee. Where a
+change worth looking for would often gain less likelihood than its parameter costs, nothing can be
+said.
 A loop on board takes demands from the mixer, so that thrusters may hardly push at all: beside one,
 what acts through them is looked at anew.
 """
