@@ -42,6 +42,9 @@ def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None
     """The hypothesis without its least certain parameter; None if all of them are sure."""
     h = current.hypothesis
     certain = ((h.x - h.absence) / np.maximum(current.std, 1e-12)) ** 2
+    for term, own in zip(h.terms, h.columns, strict=True):
+        if own and not term.vanishes:  # it would go as a whole
+            certain[own] = np.max(certain[own])
     weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
     if not certain[weakest] < 2.0 * workspace.price:
         return None
@@ -122,6 +125,22 @@ def contest(
     return current, rivals
 
 
+def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """With effects that have modes in another one, where that is more likely.
+
+    A loop that holds an angle, but slowly, and more drag than there is do what a loop that holds a
+    rate does alone: neither of the two can be taken away or swapped by itself.
+    """
+    h = current.hypothesis
+    for i, term in enumerate(h.terms):
+        for start in workspace.list_other_modes(term):
+            terms = (*h.terms[:i], start, *h.terms[i + 1 :])
+            trial = prune(workspace, workspace.fit(replace(h, terms=terms)))
+            if workspace.score(trial) > workspace.score(current) + SWAP:
+                return trial
+    return current
+
+
 def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     """Without effects that the vehicle file, where it is off anyway, explains about as well.
 
@@ -167,6 +186,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
         swap = max(SWAP, SLIGHT * gained)
         current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
     current, _ = contest(workspace, current, 1)
+    current = change_mode(workspace, current)
     current = prefer_file(workspace, current)
     current, rivals = contest(workspace, current, settings.trials)
     return Selection(workspace, current, tuple(rivals), complete=True)

@@ -136,7 +136,8 @@ class Gate:
         for run in self.runs:
             windows = Windows(run)
             e = evaluate_possible(models, len(windows.number), partial(_compare_axes, windows))
-            squares = np.mean((e / self.spread[:, None]) ** 2, axis=1)
+            with np.errstate(over="ignore", invalid="ignore"):  # of a model that diverges
+                squares = np.mean((e / self.spread[:, None]) ** 2, axis=1)
             parts += [
                 squares[:, windows.number == k].mean(axis=1) for k in range(len(windows.spans))
             ]
