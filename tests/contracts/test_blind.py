@@ -9,6 +9,7 @@ from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.methods import Method
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
+from rovsim.benchmarks.blind.recordings import KINDS
 from rovsim.benchmarks.blind.run import place, read_answers, run
 from rovsim.benchmarks.blind.score import matching, score
 from rovsim.benchmarks.blind.suites import APART, FAMILIES, suite
@@ -23,6 +24,7 @@ from rovsim.dynamics.effects.damping import CubicDamping
 from rovsim.dynamics.effects.dry_friction import DryFriction
 from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.dynamics.model_file import EffectEntry, build_effect
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.reporting.html.marked import BEGIN, END, replace_tables
 from rovsim.results.blind_benchmark import BlindSummary
 from rovsim.results.diagnosis import Answer
@@ -68,6 +70,19 @@ def test_cases_are_valid_and_their_effects_do_something():
             assert build_effect(entry, built_in()).given()
         for unlisted in one.outside:
             assert unlisted.build().given()
+
+
+def test_recordings_of_others_hide_what_they_show_and_what_they_cannot():
+    cases = suite("recordings", "development")
+    assert len({c.id for c in cases}) == len(cases) == 40
+    assert {c.kind for c in cases} == set(KINDS)
+    for one in cases:
+        known = built_in().on(load_vehicle(one.settings().vehicle))
+        assert all(build_effect(entry, known).given() for entry in one.hidden)
+        assert not set(one.names) & set(one.silent)
+        assert one.partial
+    assert {len(c.silent) for c in cases} == {0, 1}
+    assert [c for c in cases if not c.hidden]
 
 
 def test_seeds_of_the_two_ranges_are_disjoint_and_cases_repeatable():
@@ -205,6 +220,14 @@ def test_what_the_runs_cannot_show_has_a_column_of_its_own():
     assert not score(both, other).unseen
     silent = diagnosis().model_copy(update={"not_observable": ("quadratic_damping",)})
     assert score(case(DRAG), silent).unseen
+
+
+def test_what_cannot_be_shown_must_be_said_and_not_named():
+    silent = case(DRAG, silent=("quadratic_damping",))
+    said = diagnosis().model_copy(update={"not_observable": ("quadratic_damping",)})
+    assert score(silent, said).exact
+    assert not score(silent, diagnosis()).exact
+    assert not score(silent, diagnosis("quadratic_damping")).exact
 
 
 def test_a_number_left_out_says_the_default():

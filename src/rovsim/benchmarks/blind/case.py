@@ -37,7 +37,8 @@ class Case(Section):
     """One case.
 
     `kind` is the row of the table it is counted in; `hidden` the truth in the catalogue's terms;
-    `outside` what no entry describes; `forgiven` effects that may be named or not; `strength` in
+    `outside` what no entry describes; `forgiven` effects that may be named or not; `silent`
+    hidden ones that the recordings cannot show, and an answer must say so; `strength` in
     terms of the recipes; `tank` settings that differ from the default campaign.
     """
 
@@ -47,13 +48,14 @@ class Case(Section):
     hidden: tuple[EffectEntry, ...] = ()
     outside: tuple[Unlisted, ...] = ()
     forgiven: tuple[str, ...] = ()
+    silent: tuple[str, ...] = ()
     strength: float = 1.0
     tank: dict[str, Any] = Field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
         """What an answer has to name."""
-        return [e.effect for e in self.hidden if e.effect not in self.forgiven]
+        return [e.effect for e in self.hidden if e.effect not in (*self.forgiven, *self.silent)]
 
     @property
     def verdicts(self) -> set[str]:
@@ -63,7 +65,14 @@ class Case(Section):
         return {"missing_effects"} if self.names else {"adequate"} | self._either()
 
     def _either(self) -> set[str]:
-        return {"missing_effects"} if self.forgiven else set()
+        quiet = {"insufficient_data"} if self.partial else set()
+        return quiet | ({"missing_effects"} if self.forgiven else set())
+
+    @property
+    def partial(self) -> bool:
+        """Whether not all axes need be measured, or move."""
+        released = any(run.get("release") for run in self.tank.get("runs", ()))
+        return bool(self.tank.get("sensors")) or released
 
     def settings(self) -> TankSettings:
         """The campaign to fly."""

@@ -56,7 +56,7 @@ def score(case: Case, answer: Answer | Diagnosis) -> Score:
     selected = [one.effect for one in answer.selected]
     counted = [s for s in selected if s not in case.forgiven]
     groups = [set(group) for group in answer.indistinguishable]
-    right = answer.verdict in case.verdicts
+    right = answer.verdict in case.verdicts and set(case.silent) <= set(answer.not_observable)
     matched = matching(counted, case.names, groups)
     strict = set(counted) & set(case.names)
     complete = len(counted) == len(case.names)

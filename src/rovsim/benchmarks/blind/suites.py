@@ -22,6 +22,7 @@ from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_o
 from rovsim.benchmarks.blind.field import CAMERAS, camera, workshops
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
+from rovsim.benchmarks.blind.recordings import recordings
 from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Camera
@@ -60,7 +61,7 @@ APART = frozenset({"fin_effectiveness", "waterplane_stiffness", "pilot_gain", "t
 
 def suite(name: str, seeds: Range) -> list[Case]:
     """All cases of a suite."""
-    return list({"quick": quick, "standard": standard, "full": full}[name](seeds))
+    return list(SUITES[name](seeds))
 
 
 def quick(seeds: Range) -> Iterator[Case]:
@@ -191,3 +192,6 @@ def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
         id=case_id, kind=kind, seed=seed_of(case_id, seeds), hidden=hidden,
         outside=(Unlisted(name=name, parameters=unlisted.given()),),
     )  # fmt: skip
+
+
+SUITES = {"quick": quick, "standard": standard, "full": full, "recordings": recordings}

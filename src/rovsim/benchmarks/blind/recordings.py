@@ -1,0 +1,154 @@
+"""Recordings of other laboratories, as the tank imitates them: whatever was measured, any vehicle.
+
+depth and attitude   a vehicle without motion capture, its pilot's demands on board
+gyro                 rates at 200 Hz, attitude and depth of an autopilot, thruster commands
+ship                 a model ship in the plane, two thrusters that turn, poses at 20 Hz
+decay                let go from an angle and not commanded, filmed
+torpedo              fins, acoustic positions, a Doppler log, an inertial unit
+
+Every kind hides in turn each effect that its channels can show, and some that they cannot.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Iterator, Mapping
+
+import numpy as np
+
+from rovsim.benchmarks.blind.case import Case, Range, random_of, seed_of
+from rovsim.dynamics.model_file import EffectEntry, Value
+
+Sizes = Mapping[str, tuple[float, float]]  # of parameters, least and most
+Hidden = tuple[str, Sizes]
+CASES = 8  # of each kind
+
+SHIP = str(Path(__file__).parent / "vehicles" / "azimuth_ship.yaml")
+# An autopilot's attitude is good to 0.2 degrees, its pressure sensor to a centimetre.
+ATTITUDE = {"rate": 10.0, "noise": 0.003}
+LAG: Hidden = ("thruster_lag", {"time_constant": (0.1, 0.25)})
+DELAY: Hidden = ("input_delay", {"delay": (0.1, 0.25)})
+CURRENT: Hidden = ("current", {"north": (0.04, 0.1), "east": (0.04, 0.1)})
+BUOYANCY: Hidden = ("net_buoyancy", {"force": (1.5, 3.0)})
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of recording: settings of the tank, effects it shows, effects it cannot show."""
+
+    tank: Mapping[str, Any]
+    shown: tuple[Hidden, ...]
+    silent: tuple[Hidden, ...] = ()
+
+
+def _runs(control: str = "6dof", **extra: Any) -> list[dict[str, Any]]:
+    splits = ("train", "train", "train", "test")
+    return [
+        {"id": f"run-{k}", "control": control, "split": split, **extra}
+        for k, split in enumerate(splits, 1)
+    ]
+
+
+def _releases() -> list[dict[str, Any]]:
+    """Let go from different angles, some depth off, some moving."""
+    angles = ((0.4, 0.0), (-0.3, 0.3), (0.2, -0.3), (0.35, 0.1))
+    return [
+        run | {"release": {"pose": (0, 0, 0, roll, pitch, 0), "velocity": (0.2, 0, 0, 0, 0, 0.2)}}
+        for run, (roll, pitch) in zip(_runs(), angles, strict=True)
+    ]
+
+
+KINDS: Mapping[str, Kind] = {
+    "depth and attitude": Kind(
+        {
+            "runs": _runs("3dof"), "log": {"kind": "demand"},
+            "sensors": {"depth": {"rate": 3.0, "noise": 0.01}, "attitude": ATTITUDE},
+        },
+        (
+            BUOYANCY, ("linear_damping", {"heave": (10.0, 20.0)}), DELAY,
+            ("buoyancy_center", {"x": (0.003, 0.008)}), LAG, ("payload", {"mass": (0.3, 0.7)}),
+        ),
+        (CURRENT,),
+    ),
+    "gyro": Kind(
+        {
+            "runs": _runs(),
+            "sensors": {
+                "rates": {"rate": 200.0, "noise": 0.01}, "attitude": ATTITUDE,
+                "depth": {"rate": 5.0, "noise": 0.01},
+            },
+        },
+        (
+            ("linear_damping", {"yaw": (1.0, 3.0)}), LAG, ("added_mass", {"yaw": (0.1, 0.3)}),
+            ("buoyancy_center", {"y": (0.003, 0.008)}), DELAY,
+            ("propeller_torque", {"ratio": (0.01, 0.03)}),
+        ),
+        (CURRENT,),
+    ),
+    "ship": Kind(
+        {
+            "runs": _runs(), "vehicle": SHIP, "duration": 120.0,
+            "tank": {"x": (0.0, 40.0), "y": (0.0, 40.0), "z": (0.0, 3.0)},
+            "turbulence": {"force": 0.05, "moment": 0.02},
+            "sensors": {
+                "position": {"rate": 20.0, "noise": 0.002},
+                "attitude": {"rate": 20.0, "noise": 0.003},
+            },
+        },
+        (
+            ("linear_damping", {"surge": (0.8, 2.0)}), ("input_delay", {"delay": (0.2, 0.5)}),
+            CURRENT, ("constant_wrench", {"sway": (0.2, 0.5)}),
+            ("thruster_gain", {"all": (0.7, 0.85)}), ("added_mass", {"sway": (3.0, 8.0)}),
+        ),
+        (BUOYANCY,),
+    ),
+    "decay": Kind(
+        {"runs": _releases(), "duration": 25.0},
+        (
+            BUOYANCY, ("buoyancy_center", {"z": (0.003, 0.008)}),
+            ("linear_damping", {"roll": (0.3, 0.8)}), ("added_mass", {"roll": (0.1, 0.25)}),
+        ),
+        (LAG, DELAY),
+    ),
+    "torpedo": Kind(
+        {
+            "runs": _runs(), "vehicle": "remus100", "duration": 90.0,
+            "tank": {"x": (0.0, 200.0), "y": (0.0, 200.0), "z": (0.0, 30.0)},
+            "sensors": {
+                "position": {"rate": 5.0, "noise": 0.3}, "velocity": {"rate": 5.0, "noise": 0.01},
+                "attitude": {"rate": 10.0, "noise": 0.005}, "rates": {"rate": 50.0, "noise": 0.005},
+                "depth": {"rate": 5.0, "noise": 0.02},
+            },
+        },
+        (
+            ("fin_effectiveness", {"all": (0.5, 0.75)}), CURRENT, BUOYANCY,
+            ("input_delay", {"delay": (0.3, 0.6)}), ("thruster_gain", {"all": (0.7, 0.85)}),
+        ),
+    ),
+}  # fmt: skip
+
+
+def recordings(seeds: Range) -> Iterator[Case]:
+    """Eight of each kind: what it shows, what it cannot, nothing, and over again."""
+    for kind in KINDS:
+        yield from (recording(kind, k, seeds) for k in range(CASES))
+
+
+def recording(kind: str, k: int, seeds: Range) -> Case:
+    """The k-th case of a kind."""
+    settings = KINDS[kind]
+    row: list[Hidden | None] = [*settings.shown, *settings.silent, None]
+    case_id, chosen = f"{kind}/{k}", row[k % len(row)]
+    entry = _draw(chosen, random_of(case_id, seeds)) if chosen else None
+    silent = tuple(name for name, _ in settings.silent if chosen and name == chosen[0])
+    return Case(
+        id=case_id, kind=kind, seed=seed_of(case_id, seeds), hidden=(entry,) if entry else (),
+        silent=silent, tank=dict(settings.tank),
+    )  # fmt: skip
+
+
+def _draw(hidden: Hidden, random: np.random.Generator) -> EffectEntry:
+    name, sizes = hidden
+    values = {
+        key: Value(value=float(f"{random.uniform(*size):.3g}")) for key, size in sizes.items()
+    }
+    return EffectEntry(effect=name, parameters=values)
