@@ -117,7 +117,8 @@ def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
     text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
     text += " (velocity in 2 s windows, in units of its spread)."
     if not math.isfinite(floor):
-        return f"{text} What a perfect model would show cannot be estimated: not all is noise."
+        why = "not all is noise, or poses were measured in part only"
+        return f"{text} What a perfect model would show cannot be estimated: {why}."
     return f"{text} A perfect model would show about {significant(floor)} (noise floor)."
 
 
