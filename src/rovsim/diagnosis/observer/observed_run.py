@@ -23,6 +23,9 @@ from rovsim.simulation.step_grid import StepGrid
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
 SETTLING = 1.0  # s
+# A velocity that nobody reads forgets its start by drag alone: within three times mass / drag, some
+# 3 s for a small vehicle at usual speeds.
+SETTLING_UNREAD = 9.0  # s
 SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
 GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
 USUAL = 0.95  # quantile of the changes from line to line: more is a jump, of few lines at most
@@ -207,8 +210,9 @@ class ObservedRun:
     def settled(self) -> Array:
         """Which innovations count: those after the observer has forgotten its start."""
         kept = np.zeros(len(self.time), bool)
+        settling = SETTLING if self.axes[self.free].all() else SETTLING_UNREAD
         for (first, last), (a, _) in zip(self.rows, self.spans, strict=True):
-            kept[first:last] = self.time[first:last] > self.instants[a] + SETTLING
+            kept[first:last] = self.time[first:last] > self.instants[a] + settling
         return kept
 
     def find_lost_commands(self, path: ThrustPath) -> Array:
