@@ -63,7 +63,11 @@ def test_a_line_that_was_lost_in_a_fast_ramp_is_known_to_be(tmp_path):
     commands = Commands(time[kept], value[kept], "thruster")
     lossy = replace(run, motion=replace(run.motion, commands=commands))
     found = lossy.find_lost_commands(base.thrust_path)
-    np.testing.assert_allclose(found, [[7.78, 7.82]])
+    np.testing.assert_allclose(run.edges[0] + found, [[7.78, 7.82]])
+    later = Commands(time[kept] + 3.0, value[kept], "thruster")  # of a clock that was not set
+    motion = replace(run.motion, commands=later)
+    moved = replace(run, motion=motion, edges=run.edges + 3.0).find_lost_commands(base.thrust_path)
+    np.testing.assert_allclose(moved, found)
 
 
 def test_a_reading_is_the_pose_in_the_middle_of_its_frames(tmp_path):

@@ -49,12 +49,16 @@ def _runs(control: str = "6dof", **extra: Any) -> list[dict[str, Any]]:
 
 
 def _releases() -> list[dict[str, Any]]:
-    """Let go from different angles, some depth off, some moving."""
-    angles = ((0.4, 0.0), (-0.3, 0.3), (0.2, -0.3), (0.35, 0.1))
-    return [
-        run | {"release": {"pose": (0, 0, 0, roll, pitch, 0), "velocity": (0.2, 0, 0, 0, 0, 0.2)}}
-        for run, (roll, pitch) in zip(_runs(), angles, strict=True)
-    ]
+    """Let go from different angles while it moves, eight times for a few seconds."""
+    angles = ((0.4, 0.0), (-0.4, 0.3), (0.3, -0.3), (-0.3, 0.1), (0.2, 0.4), (0.4, 0.2))
+    tests = ((0.35, 0.1), (-0.35, -0.2))
+    splits = ["train"] * len(angles) + ["test"] * len(tests)
+    released = []
+    for k, (split, (roll, pitch)) in enumerate(zip(splits, (*angles, *tests), strict=True), 1):
+        velocity = (roll, pitch, -roll, 0, 0, 2.0 * pitch)
+        release = {"pose": (0, 0, 0, roll, pitch, 0), "velocity": velocity}
+        released.append({"id": f"run-{k}", "control": "6dof", "split": split, "release": release})
+    return released
 
 
 KINDS: Mapping[str, Kind] = {
@@ -102,7 +106,7 @@ KINDS: Mapping[str, Kind] = {
         (BUOYANCY,),
     ),
     "decay": Kind(
-        {"runs": _releases(), "duration": 25.0},
+        {"runs": _releases(), "duration": 10.0},
         (
             BUOYANCY, ("buoyancy_center", {"z": (0.003, 0.008)}),
             ("linear_damping", {"roll": (0.3, 0.8)}), ("added_mass", {"roll": (0.1, 0.25)}),

@@ -62,7 +62,7 @@ def _judge_kick(
     factor = np.correlate(w, template, "valid") / power
     k = int(np.argmax(np.abs(factor)))
     limit = chi2.isf(FALSE_ALARM / (2 * len(KICKS) * len(AXES) * len(factor)), 1)
-    at = run.time[run.settled][k]
+    at = run.edges[0] + run.time[run.settled][k]
     yield from residual.weigh(
         f"a push of {duration:g} s at {at:.1f} s in run {run.motion.run.id}",
         size=abs(factor[k]) / MOMENT, statistic=factor[k] ** 2 * power, limit=limit,

@@ -218,7 +218,7 @@ class ObservedRun:
     def find_lost_commands(self, path: ThrustPath) -> Array:
         """Begins and ends (g, 2) of lost lines of the command log over which commands jumped.
 
-        `path` says when a logged command takes effect.
+        In s since the start of the run, as `time`; `path` says when a logged command takes effect.
         """
         commands = self.motion.commands
         steps = np.diff(commands.time)
@@ -226,7 +226,7 @@ class ObservedRun:
             return np.empty((0, 2))
         change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
         lost = (steps > GAP * np.median(steps)) & (change > np.quantile(change, USUAL))
-        at = self.edges[0] + path.arrival(commands.time - self.edges[0])
+        at = path.arrival(commands.time - self.edges[0])
         return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
