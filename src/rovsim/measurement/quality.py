@@ -11,9 +11,10 @@ from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.remarks import remark
-from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.measurement.signals.measured import find_measured
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
+from rovsim.measurement.signals.resample import Linear
+from rovsim.measurement.signals.track import track_channels
 from rovsim.results.quality import (
     CommandLog,
     Excitation,
@@ -30,6 +31,7 @@ SHORTEST_RUN = 2.0  # s; one scoring window (contract, section 3)
 # manoeuvring vehicle over decimetres within seconds.
 STILL_POSITION, STILL_ATTITUDE = 0.01, 0.02  # m, rad
 BLOCK = 0.1  # s; the median of a block rejects single outlier frames
+READINGS = 3.0  # of the slowest channel in a block: fewer are its noise
 # An axis whose velocity varies less than this cannot be judged: on runs with no command on an
 # axis, disturbances alone move it up to about 0.02 m/s and 0.1 rad/s.
 EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard deviation
@@ -130,20 +132,31 @@ def _velocity(recording: Recording) -> tuple[Array, Array]:
     if recording.posed:
         return rough_velocity(recording), np.ones(6, bool)
     try:
-        motion = clean(recording, SignalSettings())
+        poses = track_channels(recording, Linear())
     except BadInput:  # no channel of the motion: its owner hears so when the run is used
         return np.empty((0, 6)), np.zeros(6, bool)
-    return motion.nu[motion.usable], find_measured(motion.measured)
+    assert poses.measured is not None
+    length = max(BLOCK, READINGS * poses.measured.period)
+    columns = poses.time[:, None], poses.eta[:, :3], poses.eta[:, 3:]
+    each = tuple(column[poses.usable] for column in columns)
+    return _differences(*each, rate=1.0 / time_step(poses.time), length=length), poses.measured.axes
 
 
 def rough_velocity(recording: Recording) -> Array:
     """Body velocities (k, 6): the exported ones, else differences of medians of short blocks."""
     if recording.nu is not None:
         return recording.nu[recording.found]
-    size = max(1, round(BLOCK * recording.rate))
-    time, position, attitude = (_blocks(a, size) for a in _seen(recording))
+    return _differences(*_seen(recording), rate=recording.rate, length=BLOCK)
+
+
+def _differences(
+    time: Array, position: Array, attitude: Array, *, rate: float, length: float
+) -> Array:
+    """Body velocities (k, 6) between medians of blocks, `length` s each, at `rate` Hz."""
+    size = max(1, round(length * rate))
+    time, position, attitude = (_blocks(a, size) for a in (time, position, attitude))
     step = np.diff(time[:, 0])
-    near = step < 1.5 * size / recording.rate  # no difference across a gap
+    near = step < 1.5 * size / rate  # no difference across a gap
     q, dt = attitude[:-1], step[:, None]
     linear = unrotate(q, np.diff(position, axis=0) / dt)
     angular = log(multiply(conjugate(q), attitude[1:])) / dt

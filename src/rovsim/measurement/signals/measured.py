@@ -6,6 +6,7 @@ from typing import Iterator, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
+SHARE = 0.25  # of the rate of the slowest channel: half of its Nyquist frequency
 NAMES = ("coordinates", "heading", "axes", "summed", "when", "cutoff")
 
 
@@ -24,6 +25,11 @@ class Measured:
     summed: Array
     when: Array
     cutoff: Array
+
+    @property
+    def period(self) -> float:
+        """Time between two samples of the slowest channel, s."""
+        return SHARE / float(self.cutoff[0])
 
     def by_name(self) -> Iterator[tuple[str, Array]]:
         """Arrays under the names that `from_names` knows."""

@@ -14,7 +14,7 @@ from rovsim.measurement.signals.resample import find_bridged
 LONG = 2.5  # usual steps of a channel: a longer one is a gap
 # s, in which a sum may drift. Slower than the disturbances that a filter allows for (a second), so
 # that within it the noise is that of the sum alone; within a minute.
-DRIFT = (20.0, 60.0)
+DRIFT = (3.0, 60.0)
 
 
 @dataclass(frozen=True, eq=False)

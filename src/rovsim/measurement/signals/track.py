@@ -17,13 +17,13 @@ from rovsim.measurement.recording.channels import Channel
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.chosen_channels import ChosenChannels, choose_channels
 from rovsim.measurement.signals.clock import uniform_clock, without_short
-from rovsim.measurement.signals.measured import Measured
+from rovsim.measurement.signals.measured import SHARE, Measured
 from rovsim.measurement.signals.motion import Poses
 from rovsim.measurement.signals.on_clock import OnClock, between, instants_between
 from rovsim.measurement.signals.resample import Resampling
 
 FASTEST = 100.0  # Hz of the clock; a faster sensor shows no more of a motion below 2 Hz
-SHARE = 0.25  # of the rate of the slowest channel: half of its Nyquist frequency
+LONGEST = 1e7  # samples: more than a day at 100 Hz
 SUMMED = ("rates", "velocity")
 
 
@@ -41,7 +41,7 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
             expected="some of position, depth, attitude, velocity, rates",
             remedy="Name the topics or columns that hold them.",
         )
-    clock = _make_clock(chosen, settings)
+    clock = _make_clock(chosen, settings, recording.run.id)
     at = OnClock(clock, settings.max_gap)
     turned = _turn(at, chosen.turning)
     moved = _move(at, chosen.moving, turned.value, recording)
@@ -54,12 +54,19 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
     )  # fmt: skip
 
 
-def _make_clock(chosen: ChosenChannels, settings: Resampling) -> Array:
+def _make_clock(chosen: ChosenChannels, settings: Resampling, where: str) -> Array:
     """As fast as the fastest channel, in the middle between its samples where they are summed."""
     kind, fastest = max(chosen.read.items(), key=lambda one: one[1].rate or 0.0)
     rate = min(settings.rate or FASTEST, FASTEST, fastest.rate or FASTEST)
     first = max(channel.time[0] for channel in chosen.all.values())
     last = min(channel.time[-1] for channel in chosen.all.values())
+    if (last - first) * rate > LONGEST:
+        raise BadInput(
+            f"its channels last {last - first:.3g} s",
+            where=f"run {where}",
+            expected=f"at most {LONGEST / rate:.3g} s",
+            remedy="Look for time stamps that jump.",
+        )
     instants = instants_between(fastest.time) if kind in SUMMED else fastest.time
     first = float(instants[min(np.searchsorted(instants, first), len(instants) - 1)])
     return uniform_clock(first, max(last, first), rate)
