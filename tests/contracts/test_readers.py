@@ -1,6 +1,5 @@
 """What every registered reader owes: the same swim, whatever the format and the axes."""
 
-import time
 
 import numpy as np
 import pytest
@@ -110,18 +109,6 @@ def test_a_recording_survives_its_file(tmp_path, name):
     signs = recording.site.axes[:, None]
     np.testing.assert_array_equal(again.site.tank, np.sort(signs * [[0, 10], [0, 5], [0, 3]]))
     assert again.run == recording.run
-
-
-@every_format
-def test_reading_a_minute_at_100_hz_is_quick(tmp_path, name):
-    folder = write_run(tmp_path, name, Swim.ned(frames=6000))
-    campaign = load_campaign(folder)
-    durations = []
-    for _ in range(3):
-        start = time.process_time()  # whatever else the machine does
-        read_run(campaign, "one")
-        durations.append(time.process_time() - start)
-    assert min(durations) < (0.2 if name in TEXT else 1.5)
 
 
 def test_a_short_run_and_a_still_one_are_flagged_not_fatal(tmp_path):
