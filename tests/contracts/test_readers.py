@@ -1,6 +1,5 @@
 """What every registered reader owes: the same swim, whatever the format and the axes."""
 
-
 import numpy as np
 import pytest
 
