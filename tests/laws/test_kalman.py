@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 from scipy.linalg import solve_discrete_are
 from scipy.signal import lfilter
 
@@ -13,6 +14,7 @@ from rovsim.diagnosis.observer.kalman import (
     LEAST_DRIVING,
     POSE,
     SOLVABLE,
+    AxisMotion,
     AxisNoise,
     characteristic,
     design_filter,
@@ -54,7 +56,7 @@ def innovations(f, y):
 @given(noises)
 def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
     binned, d, level, memory, reading = noise
-    f = design_filter(binned, H, d, AxisNoise(level, memory, reading))
+    f = design_filter(binned, H, AxisMotion(d), AxisNoise(level, memory, reading))
     n, r = len(f.C), reading**2
     Q = SOLVABLE * r * np.eye(n)
     Q[-1, -1] = level**2 * (1.0 - np.exp(-2.0 * H / memory)) + LEAST_DRIVING
@@ -65,18 +67,28 @@ def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
 
 @given(noises)
 def test_a_filter_is_stable_and_its_poles_are_its_eigenvalues(noise):
-    f = design_filter(noise[0], H, noise[1], AxisNoise(*noise[2:]))
+    f = design_filter(noise[0], H, AxisMotion(noise[1]), AxisNoise(*noise[2:]))
     A = f.F @ (np.eye(len(f.C)) - np.outer(f.gain, f.C))
     assert np.abs(np.linalg.eigvals(A)).max() < 1.0
     np.testing.assert_allclose(f.poles, np.poly(A), atol=1e-9)
     np.testing.assert_allclose(characteristic(A), f.poles, atol=1e-12)
 
 
+@given(st.floats(0.0, 20.0), st.floats(-5.0, 40.0), st.floats(0.005, 0.4))
+def test_an_axis_goes_on_as_its_differential_equation_says(damping, stiffness, h):
+    def rates(t, x):
+        return [x[1], 0.7 - damping * x[1] - stiffness * x[0]]
+
+    expected = solve_ivp(rates, (0.0, h), [0.2, -0.5], rtol=1e-9, atol=1e-12).y[:, -1]
+    moved = AxisMotion(damping, stiffness).over(h) @ [0.2, -0.5, 0.7]
+    np.testing.assert_allclose(moved[:2], expected, rtol=1e-6, atol=1e-9)
+
+
 @pytest.mark.parametrize("binned", [False, True])
 def test_innovations_of_one_filter_become_those_of_another(binned):
     h = 0.16 if binned else H
-    old = design_filter(binned, h, 1.0, AxisNoise(0.2, 0.5, 1e-3))
-    new = design_filter(binned, h, 1.0, AxisNoise(0.05, 1.5, 2e-3))
+    old = design_filter(binned, h, AxisMotion(1.0), AxisNoise(0.2, 0.5, 1e-3))
+    new = design_filter(binned, h, AxisMotion(1.0), AxisNoise(0.05, 1.5, 2e-3))
     y = rung(new, h, 0.05, 1.5, 2e-3, 4000, 3)
     np.testing.assert_allclose(
         lfilter(*new.whitening(old), innovations(old, y)), innovations(new, y), atol=1e-9
@@ -84,7 +96,7 @@ def test_innovations_of_one_filter_become_those_of_another(binned):
 
 
 def test_the_right_filter_leaves_white_noise_of_the_variance_it_says():
-    f = design_filter(False, H, 1.0, AxisNoise(0.05, 1.0, 1e-3))
+    f = design_filter(False, H, AxisMotion(1.0), AxisNoise(0.05, 1.0, 1e-3))
     e = innovations(f, rung(f, H, 0.05, 1.0, 1e-3, 40000, 1))[500:]
     assert np.var(e) == pytest.approx(f.variance, rel=0.03)
     for lag in (1, 3, 10, 50):
@@ -94,10 +106,11 @@ def test_the_right_filter_leaves_white_noise_of_the_variance_it_says():
 @pytest.mark.parametrize("binned", [False, True])
 def test_a_push_shows_in_the_innovations_as_the_response_says(binned):
     h = 0.16 if binned else H
-    f = design_filter(binned, h, 1.0, AxisNoise(0.05, 1.0, 1e-3))
+    f = design_filter(binned, h, AxisMotion(1.0), AxisNoise(0.05, 1.0, 1e-3))
     push = np.where(np.arange(400) % 90 < 30, 0.3, -0.1)
     x, y = np.zeros(len(f.C)), np.empty(len(push))
-    B = np.array([0.5 * h * h, h, 0.0][-len(x) :])
+    moved = AxisMotion(1.0).over(h)
+    B = np.array([h, 0.0]) if binned else np.array([*moved[:2, 2], 0.0])
     for k, a in enumerate(push):  # felt over the step before the reading
         x = f.F @ x + B * a
         y[k] = f.C @ x
@@ -140,13 +153,12 @@ def test_what_is_not_shown_is_passed_over():
 
 def test_the_noise_of_made_innovations_is_found():
     true = Noise(np.full(6, 0.04), np.full(6, 1.0), np.full(6, 1.5e-3))
-    damping = np.ones(6)
+    motions = [AxisMotion(1.0)] * 6
 
     def tuned(noise):
-        axes = enumerate(damping)
-        return Tuning(
-            tuple(design_filter(False, H, d, noise.of_axis(i)) for i, d in axes), np.full(6, H)
-        )
+        axes = enumerate(motions)
+        filters = tuple(design_filter(False, H, own, noise.of_axis(i)) for i, own in axes)
+        return Tuning(filters, np.full(6, H))
 
     start = Noise(np.full(6, 0.1), np.full(6, 0.5), np.full(6, 5e-4))
     found = tuned(start)
@@ -162,7 +174,7 @@ def test_the_noise_of_made_innovations_is_found():
         settled=kept,
         group=1,
     )
-    noise, _ = fit_noise([e], [run], [found], damping, start)
+    noise, _ = fit_noise([e], [run], [found], motions, start)
     np.testing.assert_allclose(noise.reading, true.reading, rtol=0.03)
     np.testing.assert_allclose(noise.level, true.level, rtol=0.25)
     assert np.all((noise.memory > 0.6) & (noise.memory < 1.7))

@@ -8,7 +8,8 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.innovations import estimate_damping, observe
+from rovsim.diagnosis.observer.innovations import estimate_motions, observe
+from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.noise import Noise, Tuning, tune, whiten
 from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
@@ -20,15 +21,15 @@ class FilterBank:
     """The runs, and the filters they are observed with."""
 
     runs: tuple[ObservedRun, ...]
-    damping: Array
+    motions: tuple[AxisMotion, ...]
     tunings: tuple[Tuning, ...]
 
     @staticmethod
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
-        damping = estimate_damping(base, runs)
-        found = tuple(tune(noise.white, damping, w) for w in runs)
-        return FilterBank(tuple(runs), damping, found)
+        motions = estimate_motions(base, runs)
+        found = tuple(tune(noise.white, motions, w) for w in runs)
+        return FilterBank(tuple(runs), motions, found)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""
@@ -55,11 +56,11 @@ class FilterBank:
 
     def tune(self, noise: Noise) -> list[Tuning]:
         """Filters of each run that suit another noise."""
-        return [tune(noise, self.damping, w) for w in self.runs]
+        return [tune(noise, self.motions, w) for w in self.runs]
 
     def fit_noise(self, e: Sequence[Array], start: Noise, colour: bool = False) -> NoiseFit:
         """The most likely noise of innovations (6, n) of each run; see `fit_noise`."""
-        return fit_noise(e, self.runs, self.tunings, self.damping, start, colour)
+        return fit_noise(e, self.runs, self.tunings, self.motions, start, colour)
 
     def linearise(self, at: Hypothesis) -> Linearised:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""

@@ -5,6 +5,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core import rotations
+from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.noise import Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
@@ -12,7 +14,7 @@ from rovsim.simulation.batch import Batch, Correction, Starts
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import as_true
 
-NUDGE = 0.05  # m/s or rad/s: a tenth of usual speeds
+NUDGE = 0.05  # m/s or rad/s, a tenth of usual speeds; m or rad
 
 
 def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
@@ -39,18 +41,37 @@ def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 
 
-def estimate_damping(model: Model, runs: Sequence[ObservedRun]) -> Array:
-    """How fast each velocity decays (6,) 1/s: -d nu_dot / d nu, mean over the measured states."""
+def estimate_motions(model: Model, runs: Sequence[ObservedRun]) -> tuple[AxisMotion, ...]:
+    """How errors of each axis go on: -d nu_dot / d nu and / d pose, mean over the measured states.
+
+    Errors of the position stand along the body's axes, or level ones (`ObservedRun.known`).
+    """
     slopes = []
     for run in runs:
         states = as_true(model, run.motion).state
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
-        states = np.tile(states[index], (7, 1, 1))
-        for i in range(6):
-            states[i + 1, :, 7 + i] += NUDGE
+        states = _nudge(states[index], level=bool(run.known[4]))
         found = _accelerate(model, run, index, states)
-        slopes.append([(found[0, :, i] - found[i + 1, :, i]) / NUDGE for i in range(6)])
-    return np.array([float(np.mean(np.concatenate(own))) for own in zip(*slopes, strict=True)])
+        axes = range(6)
+        slopes.append(
+            [[(found[0, :, i] - found[m + i, :, i]) / NUDGE for i in axes] for m in (1, 7)]
+        )
+    means = np.mean(np.concatenate([np.array(own) for own in slopes], axis=2), axis=2)
+    return tuple(AxisMotion(float(d), float(k)) for d, k in means.T)
+
+
+def _nudge(states: Array, level: bool) -> Array:
+    """States (13, k, 13): as they are, then faster on each axis, then displaced along each."""
+    found = np.tile(states, (13, 1, 1))
+    q = states[:, 3:7]
+    zero = np.zeros(len(q))
+    axes = rotations.from_euler(zero, zero, rotations.to_euler(q)[:, 2]) if level else q
+    for i, unit in enumerate(np.eye(3)):
+        found[1 + i, :, 7 + i] += NUDGE
+        found[4 + i, :, 10 + i] += NUDGE
+        found[7 + i, :, :3] += rotations.rotate(axes, NUDGE * np.tile(unit, (len(q), 1)))
+        found[10 + i, :, 3:7] = rotations.multiply(q, rotations.exp(NUDGE * unit))
+    return found
 
 
 def _accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:

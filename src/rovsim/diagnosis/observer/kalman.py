@@ -4,12 +4,13 @@ Compiled: a fit of the noise makes thousands of them.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy import ndarray as Array
+from scipy.linalg import expm
 
 from rovsim.diagnosis.observer.small_matrices import (
     FROM_PYTHON,
@@ -27,6 +28,28 @@ CONVERGED = 1e-13
 # A little noise everywhere keeps the Riccati equation solvable; it is far below the readings'.
 SOLVABLE, LEAST_DRIVING = 1e-6, 1e-12
 READ_AS_IS = 1e-4  # of the noise that adds up
+
+
+class AxisMotion(NamedTuple):
+    """How an error of one axis goes on: v' = -`damping` v - `stiffness` p, in 1/s and 1/s2."""
+
+    damping: float
+    stiffness: float = 0.0
+
+    def over(self, h: float, kind: int = POSE) -> Array:
+        """Transition (3, 3) over h s of pose, velocity and a push that stays.
+
+        Where the mean velocity of bins is read, poses are taken as measured and do not err.
+        """
+        return _integrate(h, self.damping, 0.0 if kind == BIN_MEAN else self.stiffness)
+
+
+@lru_cache(maxsize=1024)
+def _integrate(h: float, damping: float, stiffness: float) -> Array:
+    rates = [[0.0, 1.0, 0.0], [-stiffness, -damping, 1.0], [0.0, 0.0, 0.0]]
+    found = np.ascontiguousarray(expm(h * np.array(rates)))
+    found.flags.writeable = False
+    return found
 
 
 class AxisNoise(NamedTuple):
@@ -75,26 +98,27 @@ class AxisFilter:
         """
         n = len(self.C)
         A = self.F @ (np.eye(n) - np.outer(self.gain, self.C))
+        B = np.zeros(n)
         if n == 2:
-            B = np.array([self.F[0, 1], 0.0])
+            B[0] = self.F[0, 1]
         else:
-            h = self.F[0, 1]
-            B = np.array([0.5 * h * h, h, 0.0, 0.0][:n])
+            B[:2] = self.F[:2, 2]
         return (characteristic(A - np.outer(B, self.C)) - self.poles) / np.sqrt(
             self.variance
         ), self.poles
 
 
-def design_filter(kind: int, h: float, damping: float, noise: AxisNoise) -> AxisFilter:
+def design_filter(kind: int, h: float, motion: AxisMotion, noise: AxisNoise) -> AxisFilter:
     """The filter of one axis for one noise (noise.py), readings every h s."""
-    return AxisFilter(*solve_steady_state(kind, h, damping, *noise))
+    return AxisFilter(*solve_steady_state(kind, h, motion.over(h, kind), *noise))
 
 
 @njit(**FROM_PYTHON)
-def solve_steady_state(kind, h, d, level, memory, reading, colour, colour_memory):
+def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_memory):
     """F, C, gain, variance of the innovations, poles and forgetting of the filter of one axis.
 
-    Velocities of bins have no slow error of their own.
+    Its pose and velocity go on as `moved` (3, 3) says. Velocities of bins have no slow error of
+    their own.
     """
     phi, slow = np.exp(-h / memory), np.exp(-h / colour_memory)
     binned = kind == BIN_MEAN
@@ -104,11 +128,10 @@ def solve_steady_state(kind, h, d, level, memory, reading, colour, colour_memory
     C[0], forgets[0], forgets[1] = 1.0, 1.0, -phi
     F[disturbed, disturbed] = phi
     if binned:
-        F[0, 0], F[0, 1] = np.exp(-d * h), h
+        F[0, 0], F[0, 1] = moved[1, 1], h
         C[1] = -0.5 * h  # the mean over a bin is the velocity at its middle
     else:
-        F[0, 0], F[0, 1], F[0, 2] = 1.0, h, 0.5 * h * h
-        F[1, 1], F[1, 2] = 1.0 - d * h, h
+        F[0, :3], F[1, :3] = moved[0], moved[1]
     add_to_diagonal(Q, SOLVABLE * r)
     Q[disturbed, disturbed] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
     if n == 4:
@@ -241,14 +264,14 @@ def convolve(a, b):
 
 
 @njit(nogil=True, error_model="numpy", **FROM_PYTHON)
-def negative_log_likelihood(noise, kind, h, damping, poles, forgets, e, spans, kept, shown):
+def negative_log_likelihood(noise, kind, h, moved, poles, forgets, e, spans, kept, shown):
     """Of innovations e (n,) of one run under a noise (5,), up to a constant.
 
     Args:
         noise: as `AxisNoise`.
         kind: what is read.
         h: period of the readings, s.
-        damping: of the velocity, 1/s.
+        moved: transition (3, 3) over h, see `AxisMotion.over`.
         poles: of the filter that e was found with.
         forgets: likewise.
         e: innovations.
@@ -257,7 +280,7 @@ def negative_log_likelihood(noise, kind, h, damping, poles, forgets, e, spans, k
         shown: which are there at all (n,).
     """
     _, _, _, variance, own_poles, own_forgets = solve_steady_state(
-        kind, h, damping, noise[0], noise[1], noise[2], noise[3], noise[4]
+        kind, h, moved, noise[0], noise[1], noise[2], noise[3], noise[4]
     )
     b, a = convolve(own_forgets, poles), convolve(forgets, own_poles)
     squares, count = sum_of_squares(b, a, e, spans, kept, shown)

@@ -1,8 +1,9 @@
 """What no model predicts: noise of the readings, and a disturbance with memory. Per axis.
 
-    pose      x = (p, v, a):  p' = v,  v' = -d v + a,  a' = -a / T + white noise,  reading p + noise
+    pose      x = (p, v, a):  p' = v,  v' = -d v - k p + a,  a' = -a / T + white noise
+              reading p + noise
               where cameras err slowly, also b' = -b / T_b + white noise, and p + b is read
-    velocity  x = (v, a):     the same without p,      reading v (mean over the bin) + noise
+    velocity  x = (v, a):     the same without p; reading v (mean over the bin) + noise
     sum       as pose, of summed-up velocities: the noise adds up in p, and p is read as it is
 
 The steady-state Kalman filter of this linear model corrects the nonlinear one (engine/observer.py),
@@ -17,7 +18,13 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.kalman import AxisFilter, AxisNoise, design_filter, filter_kept
+from rovsim.diagnosis.observer.kalman import (
+    AxisFilter,
+    AxisMotion,
+    AxisNoise,
+    design_filter,
+    filter_kept,
+)
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
 
@@ -55,7 +62,7 @@ FIRST_NOISE = Noise(
 
 @dataclass(frozen=True, eq=False)
 class Tuning:
-    """One filter an axis, for one noise and one damping."""
+    """One filter an axis, for one noise and one way to move."""
 
     filters: tuple[AxisFilter, ...]
     periods: Array
@@ -76,11 +83,12 @@ class Tuning:
         return np.array([f.variance for f in self.filters])
 
 
-def tune(noise: Noise, damping: Array, run: ObservedRun) -> Tuning:
-    """The filters for one noise; velocities decay at `damping` (6,) 1/s."""
+def tune(noise: Noise, motions: Sequence[AxisMotion], run: ObservedRun) -> Tuning:
+    """The filters of six axes for one noise; errors go on as `motions` say."""
     kinds, periods = run.reading_kinds, run.axis_periods
     filters = [
-        design_filter(kinds[i], periods[i], d, noise.of_axis(i)) for i, d in enumerate(damping)
+        design_filter(kinds[i], float(periods[i]), motion, noise.of_axis(i))
+        for i, motion in enumerate(motions)
     ]
     return Tuning(tuple(filters), periods)
 

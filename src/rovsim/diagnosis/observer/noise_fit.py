@@ -7,7 +7,12 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
-from rovsim.diagnosis.observer.kalman import AxisFilter, AxisNoise, negative_log_likelihood
+from rovsim.diagnosis.observer.kalman import (
+    AxisFilter,
+    AxisMotion,
+    AxisNoise,
+    negative_log_likelihood,
+)
 from rovsim.diagnosis.observer.noise import Noise, Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
@@ -34,7 +39,7 @@ def fit_noise(
     e: Sequence[Array],
     runs: Sequence[ObservedRun],
     found: Sequence[Tuning],
-    damping: Array,
+    motions: Sequence[AxisMotion],
     start: Noise,
     colour: bool = False,
 ) -> NoiseFit:
@@ -46,14 +51,14 @@ def fit_noise(
         e: innovations of each run.
         runs: the runs.
         found: the tuning each was found with.
-        damping: decay (6,) of the velocities, 1/s.
+        motions: how errors of the six axes go on.
         start: where to begin.
         colour: whether to look for slow errors of the readings; if not, they stay.
     """
     noises, costs = [], []
-    for i, d in enumerate(damping):
+    for i, motion in enumerate(motions):
         filters = tuple(one.filters[i] for one in found)
-        axis = _AxisInnovations(i, tuple(one[i] for one in e), tuple(runs), filters, d)
+        axis = _AxisInnovations(i, tuple(one[i] for one in e), tuple(runs), filters, motion)
         if not axis.counted:
             noises.append(start.of_axis(i))
             continue
@@ -73,7 +78,7 @@ class _AxisInnovations:
     e: tuple[Array, ...]
     runs: tuple[ObservedRun, ...]
     filters: tuple[AxisFilter, ...]
-    damping: float
+    motion: AxisMotion
 
     @property
     def counted(self) -> bool:
@@ -92,15 +97,20 @@ class _AxisInnovations:
 
     def cost(self, noise: Array) -> float:
         """Negative log likelihood of a noise (5,), up to a constant; infinite where it has none."""
-        i = self.axis
         found = sum(
-            negative_log_likelihood(
-                noise, run.reading_kinds[i], run.axis_periods[i], self.damping, old.poles,
-                old.forgets, e, run.rows, run.settled, run.shown[:, i],
-            )
+            self._of_run(noise, run, old, e)
             for e, run, old in zip(self.e, self.runs, self.filters, strict=True)
-        )  # fmt: skip
+        )
         return float(found) if np.isfinite(found) else np.inf
+
+    def _of_run(self, noise: Array, run: ObservedRun, old: AxisFilter, e: Array) -> float:
+        i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])
+        return float(
+            negative_log_likelihood(
+                noise, kind, h, self.motion.over(h, kind), old.poles, old.forgets, e, run.rows,
+                run.settled, run.shown[:, i],
+            )
+        )  # fmt: skip
 
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
