@@ -41,6 +41,7 @@ def list_not_observable(
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
     silent -= {term.id for term in selection.found.hypothesis.terms}
+    silent -= {rival.effect for rival in selection.named_rivals}  # tried in the place of a name
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
 
 
