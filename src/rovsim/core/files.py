@@ -81,12 +81,17 @@ def read_json(path: Path) -> Any:
 
 def write_yaml(path: Path, content: Any) -> None:
     """Write plain YAML atomically, keys in the order given."""
+    write_text(path, yaml_text(content))
+
+
+def yaml_text(content: Any, rows: bool = False) -> str:
+    """Plain YAML, keys in the order given; `rows`: what holds plain values alone is one line."""
     yaml, text = YAML(typ="safe", pure=True), io.StringIO()
     # with the quotes and numbers of YAML 1.1, readers of 1.1 and 1.2 agree on every value
-    yaml.version, yaml.width, yaml.default_flow_style = (1, 1), 100, False
+    yaml.version, yaml.width, yaml.default_flow_style = (1, 1), 100, None if rows else False
     yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
     yaml.dump(content, text)
-    write_text(path, text.getvalue().removeprefix("%YAML 1.1\n---\n"))
+    return text.getvalue().removeprefix("%YAML 1.1\n---\n")
 
 
 def read_yaml(path: Path) -> Any:

@@ -1,0 +1,116 @@
+"""What of a model another simulator holds, and what is left out, by name."""
+
+from dataclasses import dataclass, replace
+from typing import Callable, Iterator
+
+from numpy import ndarray as Array
+
+from rovsim.dynamics.effects.base import (
+    Autopilot,
+    Clock,
+    Effect,
+    Response,
+    Sensing,
+    Smoothing,
+    Stick,
+    Strength,
+    Wander,
+)
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.vehicle.file import HeldAxes
+from rovsim.dynamics.vehicle.thrusters import Thrusters
+
+# Constants of the equation of motion that every target has, and what a table of forces says.
+RIGID = ("rigid_body", "payload", "net_buoyancy", "buoyancy_center", "thrusters")
+DAMPING = ("linear_damping", "quadratic_damping", "coupled_damping")
+INERTIA = ("added_mass", "added_mass_coupling")
+STATIC = (
+    "thruster_order",
+    "thruster_deadband",
+    "force_curve",
+    "thruster_gain",
+    "thrust_asymmetry",
+)
+RESIDUAL = "learned residual"
+
+WHY: tuple[tuple[type[Effect], str], ...] = (
+    (Sensing, "what the motion capture reports; no force"),
+    (Smoothing, "what the motion capture reports; no force"),
+    (Wander, "a model has its mean, still water; no force"),
+    (Clock, "commands act when they are given"),
+    (Stick, "it takes forces or commands of thrusters, no demands"),
+    (Autopilot, "it takes forces or commands of thrusters, no demands"),
+    (Response, "thrusters push at once"),
+    (Strength, "thrust does not change with time"),
+)
+
+Hold = Callable[[Effect], tuple[Effect, str]]
+Missing = Callable[[Model, Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """Something that a target leaves out: the model before and after, and why.
+
+    `missing` (model, states (n, 13)) -> (n, 6): a force, N and N m, that is left out beside what
+    tells the two models apart.
+    """
+
+    name: str
+    why: str
+    before: Model
+    after: Model
+    missing: Missing | None = None
+
+
+def whole(effect: Effect) -> tuple[Effect, str]:
+    """Everything of an effect."""
+    return effect, ""
+
+
+def nothing(effect: Effect) -> tuple[Effect, str]:
+    """Nothing of an effect; why follows from its kind."""
+    gone = HeldAxes() if isinstance(effect, HeldAxes) else effect.neutral()
+    return gone, next((why for kind, why in WHY if isinstance(effect, kind)), "it has no such term")
+
+
+class Fixed(Thrusters):
+    """Thrusters that stay at the angle zero, whatever they are told."""
+
+    def resolved(self, force: Array, heading: Array | None) -> Array:
+        """All along the direction of the angle zero."""
+        return super().resolved(force, None)
+
+
+def fixed(thrusters: Thrusters) -> tuple[Effect, str]:
+    """Thrusters of a target in which none turns."""
+    if thrusters.turning.any():
+        return Fixed(thrusters.layout), "thrusters do not turn: they push along the angle zero"
+    return whole(thrusters)
+
+
+def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
+    """What a target leaves out of a model, one after the other; the last `after` is held whole.
+
+    Effects stay where they are, at values that change nothing, so that one engine serves all.
+    """
+    effects = list(model.effects)
+    for k, effect in enumerate(model.effects):
+        held, why = hold(effect)
+        if why and acts(effect):
+            before = replace(model, effects=tuple(effects))
+            effects[k] = held
+            yield Left(effect.id, why, before, replace(model, effects=tuple(effects)))
+    if model.residual is not None:
+        before = replace(model, effects=tuple(effects))
+        yield Left(
+            RESIDUAL,
+            "a trained residual is arrays, no term",
+            before,
+            replace(before, residual=None),
+        )
+
+
+def acts(effect: Effect) -> bool:
+    """Whether an effect is more than its defaults, which change nothing."""
+    return not effect.listed or bool(effect.given())

@@ -1,0 +1,111 @@
+"""How large a force is that a target leaves out: over the runs of a campaign, or a typical flight.
+
+The force is M (nu_dot - nu_dot'), with the accelerations of the model before and after at the same
+states and commands: what would have to push for the poorer model to accelerate alike.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Iterable, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.application.export.holding import Left
+from rovsim.core.rotations import HALF_TURN_X
+from rovsim.core.run import RunInfo, Site
+from rovsim.dynamics.effects.base import Sensing, Smoothing
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.vehicle import Vehicle
+from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.measured_states import accelerate_as_measured, as_true, drive_as_measured
+from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.synthetic_tank.settings import SUITABLE, Box, Log, TankSettings, Turbulence
+from rovsim.simulation.synthetic_tank.true_run import LeftTank, fly_run
+
+SEED = 20260101  # of the typical flight; any will do
+STRIDE = 10  # of its steps of 1 ms: samples at the 100 Hz of a motion capture
+ROOM = 30.0  # m each way, where the vehicle does not stay in the tank
+
+
+@dataclass(frozen=True)
+class Sized:
+    """What is left out, why, and the RMS (6,) of its force by axis, N and N m."""
+
+    name: str
+    why: str
+    rms: tuple[float, ...]
+
+    @property
+    def acts(self) -> bool:
+        """Whether it pushed at all."""
+        return any(self.rms)
+
+
+def size_all(left: Sequence[Left], motions: Sequence[Motion]) -> list[Sized]:
+    """Each of them with its size over some true motions."""
+    return [Sized(one.name, one.why, _rms(one, motions)) for one in left]
+
+
+def true_motions(model: Model, motions: Iterable[Motion]) -> list[Motion]:
+    """Measured motions as the model says they were."""
+    return [as_true(model, motion) for motion in motions]
+
+
+def typical_flight(model: Model, demands: bool) -> Motion:
+    """A minute in which a pilot flies a model about, in the default tank or in open water.
+
+    Its own effects act, its residual does not. `demands`: what is logged are demands per axis.
+    """
+    flown = replace(model, residual=None, effects=tuple(
+        e.neutral() if isinstance(e, Sensing | Smoothing) else e for e in model.effects
+    ))  # fmt: skip
+    settings = _calm(model.vehicle, demands)
+    try:
+        return _fly(flown, settings)
+    except LeftTank:
+        sides = {axis: (-ROOM, ROOM) for axis in "xyz"}
+        return _fly(flown, settings.model_copy(update={"tank": Box(**sides)}))
+
+
+def _calm(vehicle: Vehicle, demands: bool) -> TankSettings:
+    """A tank that suits a vehicle, in which nothing pushes that no model knows."""
+    suits = SUITABLE["surfaces"] if vehicle.surfaces else {}
+    suits = SUITABLE["waterplane"] if vehicle.floats else suits
+    box = Box(**suits["tank"]) if suits else Box()
+    none = Turbulence(force=0.0, moment=0.0)
+    return TankSettings(tank=box, turbulence=none, log=Log(kind="demand" if demands else "pwm"))
+
+
+def _fly(model: Model, settings: TankSettings) -> Motion:
+    walls = np.array([getattr(settings.tank, axis) for axis in "xyz"])
+    tank = np.sort(walls * HALF_TURN_X[:, None], axis=1)
+    found = fly_run(model, settings, "6dof", tank, np.random.default_rng(SEED))
+    state, time = found.state[::STRIDE], np.round(found.time[::STRIDE], 9)
+    site = Site(tank, HALF_TURN_X, float(tank[2, 0]))
+    return Motion(
+        RunInfo("flight", "6dof", "train"), site, time, state[:, :7], state[:, 7:],
+        np.gradient(state[:, 7:], time, axis=0), state[:, 7:], np.ones(len(time), bool),
+        found.commands, False, float(time[-1]),
+    )  # fmt: skip
+
+
+def _rms(left: Left, motions: Sequence[Motion]) -> tuple[float, ...]:
+    force = np.concatenate([_force(left, motion)[motion.usable] for motion in motions])
+    force = force[np.isfinite(force).all(axis=1)]
+    size = np.sqrt(np.mean(force**2, axis=0)) if len(force) else np.zeros(len(AXES))
+    return tuple(float(v) if v > 1e-12 else 0.0 for v in size)
+
+
+def _force(left: Left, motion: Motion) -> Array:
+    """The force (n, 6) that is left out, at the states of a motion."""
+    before, after = (_accelerate(model, motion) for model in (left.before, left.after))
+    force = (before - after) @ left.before.body.M.T
+    if left.missing is not None:
+        force = force + left.missing(left.before, motion.state)
+    return np.asarray(force)
+
+
+def _accelerate(model: Model, motion: Motion) -> Array:
+    drive = drive_as_measured(model, motion, ReplaySettings())
+    return accelerate_as_measured(model, motion, drive)

@@ -1,0 +1,219 @@
+"""Gazebo: a world in SDF with the plugins Hydrodynamics, Buoyancy and Thruster of gz-sim.
+
+The world is that of a motion capture with z up: x, y, z = north, -east, -down; the body's axes are
+x forward, y to port, z up. A force along or a moment about y or z changes its sign, and so does a
+coefficient that couples an axis that turns with one that does not.
+
+Added mass is `<fluid_added_mass>` of the link, which the physics engine (DART) puts into the
+inertia, so its Coriolis terms follow; the plugin's own `xDotU` … are left out, whose Coriolis terms
+have other signs in different versions.
+"""
+
+from collections import defaultdict
+from typing import Mapping, Sequence
+from xml.etree import ElementTree as ET
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.application.export.equation import Equation, RigidInertia
+from rovsim.application.export.holding import (
+    DAMPING,
+    INERTIA,
+    RIGID,
+    STATIC,
+    Left,
+    fixed,
+    nothing,
+    whole,
+)
+from rovsim.application.export.xml import comment, document, force_tables, number, numbers
+from rovsim.core.rotations import matrix
+from rovsim.dynamics.body import inertia_at
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.current import Current
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.vehicle.cross_flow import CrossFlow, parse_product
+from rovsim.dynamics.vehicle.thrusters import Thrusters
+
+TITLE = "Gazebo (gz-sim)"
+SUFFIX = ".sdf"
+SOURCE = (
+    "gz-sim, systems Hydrodynamics, Buoyancy and Thruster; SDFormat 1.11, fluid_added_mass: "
+    "Gazebo Harmonic and later, with DART"
+)
+TAKES = "Thrusters take newtons, on the topics /model/NAME/joint/THRUSTER/cmd_thrust."
+
+WHOLE = {*RIGID, *DAMPING, *INERTIA, *STATIC, "lift", "current"}
+TURN = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # FRD to FLU, NED to z up
+FORCES, SPEEDS = "xyzkmn", "UVWPQR"  # SNAME, as the plugin writes them
+LINKS = "xyzpqr"  # as SDFormat writes rows and columns of the added mass
+PROPELLER = 1e-4  # share of the mass in each propeller: a joint needs a link, and a link a mass
+RADIUS = 0.03  # m of gyration of that link: a propeller's size
+
+
+def hold(effect: Effect) -> tuple[Effect, str]:
+    """What Gazebo holds of an effect."""
+    if isinstance(effect, Thrusters):
+        return fixed(effect)
+    if isinstance(effect, CrossFlow):
+        return _split(effect)
+    return whole(effect) if effect.id in WHOLE else nothing(effect)
+
+
+def further(model: Model) -> Sequence[Left]:
+    """A current moves what the plugin computes, and not the added mass of the link."""
+    if not model.body.current.any():
+        return []
+    water = next(e for e in model.effects if isinstance(e, Current) and e.given())
+    why = "it acts on the damping; added mass moves as in still water"
+    return [Left(f"{water.id} on added mass", why, model, model, still_added_mass)]
+
+
+def still_added_mass(model: Model, state: Array) -> Array:
+    """Force (n, 6) on added mass in moving water less that in still water, states (n, 13)."""
+    R, nu = matrix(state[:, 3:7]), state[:, 7:]
+    current = np.einsum("nji,j->ni", R, model.body.current)
+    nu_r = nu - np.hstack([current, np.zeros_like(current)])
+    rate = np.hstack([np.cross(current, nu[:, 3:]), np.zeros_like(current)])
+    M_A = model.body.M_A
+    return rate @ M_A.T - (_coriolis(M_A, nu_r) - _coriolis(M_A, nu))
+
+
+def _coriolis(M: Array, nu: Array) -> Array:
+    """C(nu) nu (n, 6) of velocities (n, 6) (Fossen 2021, eq. 6.43)."""
+    h = nu @ M.T
+    force = np.cross(nu[:, 3:], h[:, :3])
+    moment = np.cross(nu[:, :3], h[:, :3]) + np.cross(nu[:, 3:], h[:, 3:])
+    return np.hstack([force, moment])
+
+
+def _split(flow: CrossFlow) -> tuple[Effect, str]:
+    """Products that the plugin has a name for."""
+    held = {name: c for name, c in flow.products.items() if _element(name) is not None}
+    lost = [name for name in flow.products if name not in held]
+    return CrossFlow(held), f"no name for {', '.join(lost)}" if lost else ""
+
+
+def _element(name: str) -> tuple[str, float] | None:
+    """The plugin's element for a product of velocities, and the sign of its turn; None: none."""
+    axis, *factors = parse_product(name)
+    factors = [f for f in factors if f >= 0]
+    if len(factors) != 2:
+        return None
+    first, second = sorted(factors)  # a size comes last
+    if first >= 6 and first != second:
+        return None
+    sizes = first < 6 <= second
+    i, j = first % 6, second % 6
+    # the size of a velocity does not turn; v |v| and the square of |v| turn as v does, and not
+    turned = TURN[axis] * TURN[i] * (1.0 if sizes else TURN[j])
+    return f"{FORCES[axis]}{SPEEDS[i]}{'abs' if sizes else ''}{SPEEDS[j]}", float(turned)
+
+
+def text(equation: Equation, notes: Sequence[str]) -> str:
+    """A world with the vehicle in it."""
+    sdf = ET.Element("sdf", version="1.11")
+    comment(sdf, [*notes, *force_tables(equation)])
+    world = ET.SubElement(sdf, "world", name="water")
+    _tree(world, {"gravity": numbers([0.0, 0.0, -equation.body.gravity])})
+    for system in ("Physics", "UserCommands", "SceneBroadcaster"):
+        _plugin(world, system)
+    density = number(equation.model.vehicle.density)
+    _plugin(world, "Buoyancy", {"uniform_fluid_density": density})
+    world.append(_vehicle(equation))
+    return document(sdf)
+
+
+def _vehicle(equation: Equation) -> ET.Element:
+    vehicle = ET.Element("model", name=equation.model.name)
+    inertia = np.array(equation.body.M_RB)
+    units = equation.model.vehicle.thrusters.units
+    share = PROPELLER * equation.rigid.mass
+    own = share * RADIUS**2 * np.eye(3)
+    for unit in units:
+        inertia -= inertia_at(share, np.array(unit.position), own)
+    base = ET.SubElement(vehicle, "link", name="base_link")
+    base.append(_inertial(RigidInertia.of(inertia), equation.body.M_A))
+    for kind in ("collision", "visual"):
+        shape = _displaced(equation, kind)
+        if shape is not None:
+            base.append(shape)
+    for unit in units:
+        link = ET.SubElement(vehicle, "link", name=f"{unit.name}_propeller")
+        _tree(link, {"pose": numbers([*_turned(unit.position), 0, 0, 0])})
+        link.append(_inertial(RigidInertia(share, np.zeros(3), own)))
+        joint = ET.SubElement(vehicle, "joint", name=unit.name, type="revolute")
+        _tree(joint, {"parent": "base_link", "child": f"{unit.name}_propeller"})
+        _tree(ET.SubElement(joint, "axis"), {"xyz": numbers(_turned(unit.direction))})
+    _plugin(vehicle, "Hydrodynamics", {"link_name": "base_link", **_water(equation)})
+    for unit, force in zip(units, equation.most, strict=True):
+        _plugin(vehicle, "Thruster", {
+            "namespace": equation.model.name, "joint_name": unit.name,
+            "propeller_diameter": number(unit.diameter or 2.0 * RADIUS),
+            "velocity_control": "true", "max_thrust_cmd": number(force),
+            "min_thrust_cmd": number(-force),
+        })  # fmt: skip
+    return vehicle
+
+
+def _inertial(rigid: RigidInertia, added: Array | None = None) -> ET.Element:
+    """Mass, its place and its inertia; products stand in it as in the matrix (SDFormat)."""
+    turn = TURN[:3]
+    moments = turn[:, None] * rigid.inertia * turn
+    part = ET.Element("inertial")
+    _tree(part, {"mass": number(rigid.mass), "pose": numbers([*_turned(rigid.center), 0, 0, 0])})
+    pairs = [(i, j) for i in range(3) for j in range(i, 3)]
+    names = {f"i{'xyz'[i]}{'xyz'[j]}": number(moments[i, j]) for i, j in pairs}
+    _tree(ET.SubElement(part, "inertia"), names)
+    if added is not None:
+        around = TURN[:, None] * added * TURN
+        rows = [(i, j) for i in range(6) for j in range(i, 6)]
+        water = {f"{LINKS[i]}{LINKS[j]}": number(around[i, j]) for i, j in rows}
+        _tree(ET.SubElement(part, "fluid_added_mass"), water)
+    return part
+
+
+def _displaced(equation: Equation, kind: str) -> ET.Element | None:
+    """A cube at the centre of buoyancy, as large as what is displaced; all the plugin reads."""
+    body, density = equation.body, equation.model.vehicle.density
+    volume = body.buoyancy / (density * body.gravity)
+    if volume <= 0.0:
+        return None
+    part = ET.Element(kind, name="displaced")
+    _tree(part, {"pose": numbers([*_turned(body.center_of_buoyancy), 0, 0, 0])})
+    box = ET.SubElement(ET.SubElement(part, "geometry"), "box")
+    _tree(box, {"size": numbers([np.cbrt(volume)] * 3)})
+    return part
+
+
+def _water(equation: Equation) -> dict[str, str]:
+    """Elements of the plugin Hydrodynamics; what brakes is negative there (SNAME)."""
+    found: defaultdict[str, float] = defaultdict(float)  # a product may be a damping term
+    for size, D in ((False, equation.linear), (True, equation.quadratic)):
+        for i, j in zip(*np.nonzero(D), strict=True):
+            name = f"{FORCES[i]}{SPEEDS[j]}" + (f"abs{SPEEDS[j]}" if size else "")
+            found[name] -= TURN[i] * TURN[j] * D[i, j]
+    for product, c in equation.products.items():
+        element = _element(product)
+        assert element is not None  # others are left out
+        found[element[0]] += element[1] * c
+    current = equation.body.current
+    moving = {"default_current": numbers(_turned(current))} if current.any() else {}
+    return {name: number(value) for name, value in found.items()} | moving
+
+
+def _plugin(parent: ET.Element, system: str, content: Mapping[str, str] | None = None) -> None:
+    words = "".join(f"-{c.lower()}" if c.isupper() else c for c in system).lstrip("-")
+    names = {"filename": f"gz-sim-{words}-system", "name": f"gz::sim::systems::{system}"}
+    _tree(ET.SubElement(parent, "plugin", names), content or {})
+
+
+def _tree(parent: ET.Element, content: Mapping[str, str]) -> None:
+    for name, value in content.items():
+        ET.SubElement(parent, name).text = value
+
+
+def _turned(place: Sequence[float] | Array) -> Array:
+    """A place or direction (3,) in the axes of Gazebo."""
+    return np.asarray(place, dtype=float) * TURN[:3]

@@ -1,0 +1,85 @@
+"""A model written for another simulator, with what that simulator cannot hold."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable, Sequence
+
+from rovsim import AXES
+from rovsim.application.export.equation import Equation
+from rovsim.application.export.holding import Left, leave_out
+from rovsim.application.export.sizes import Sized, size_all
+from rovsim.application.export.targets import Target
+from rovsim.core.errors import BadInput
+from rovsim.core.files import write_text
+from rovsim.dynamics.model import Model
+from rovsim.measurement.signals.motion import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class Export:
+    """A model as a target holds it: the file's text, and what is left out with its size."""
+
+    text: str
+    left: tuple[Sized, ...]
+
+
+def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
+    """What a target holds of a model, and all that it leaves out.
+
+    Raises:
+        BadInput: a model that does not move by forces, or that without held axes cannot exist.
+    """
+    if model.inert:
+        raise BadInput(
+            f"{model.name} keeps its velocity whatever pushes", where="model",
+            expected="a model that forces move", remedy="Name nominal, or a model file.",
+        )  # fmt: skip
+    left = list(leave_out(model, target.hold))
+    held = left[-1].after if left else model
+    if not held.possible:
+        raise BadInput(
+            f"{model.name} has axes that are held, and no inertia along them",
+            where="model",
+            expected=f"inertia about all axes, for {target.title} moves them all",
+            remedy="Give the vehicle file Ixx, Iyy and added mass of those axes, or write it for "
+            "a simulator that holds axes (to=mss).",
+        )
+    return held, [*left, *target.further(held)]
+
+
+def export_model(
+    model: Model, target: Target, flights: Callable[[], Sequence[Motion]], over: str, origin: str
+) -> Export:
+    """The file of a model, and what it leaves out.
+
+    Args:
+        model: what is written.
+        target: the simulator it is written for.
+        flights: true motions over which forces are sized; asked for where something is left out.
+        over: what they are, for the reader.
+        origin: what the model is made of.
+
+    Raises:
+        BadInput: the target cannot hold such a model at all.
+    """
+    held, left = represent(model, target)
+    sized = size_all(left, flights()) if left else []
+    notes = [f"{model.name}, written by rovsim for {target.title}.", f"Model: {origin}"]
+    notes += [f"Format: {target.source}.", target.takes, *_listed(sized, over)]
+    return Export(target.text(Equation(held), notes), tuple(sized))
+
+
+def write_export(export: Export, out: Path) -> None:
+    """Write the file, whole or not at all."""
+    write_text(out, export.text)
+
+
+def _listed(sized: Sequence[Sized], over: str) -> list[str]:
+    """What is left out, as lines of a comment."""
+    if not sized:
+        return ["Nothing of the model is left out."]
+    units = f"{', '.join(AXES[:3])} in N, {', '.join(AXES[3:])} in N m"
+    head = [f"LEFT OUT, with the RMS of its force over {over}", f"({units}):"]
+    return head + [
+        f"  {one.name}: {' '.join(f'{v:.3g}' for v in one.rms)}  ({one.why})" for one in sized
+    ]

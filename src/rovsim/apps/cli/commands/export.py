@@ -1,0 +1,113 @@
+"""Write a model for another simulator.
+
+rovsim export model=FILE to=gz|stonefish|mss|fossen out=FILE [campaign=DIR]
+
+gz: a world for Gazebo (SDF); stonefish: a scenario; mss: a MATLAB function like those of Fossen's
+MSS; fossen: matrices and coefficients as YAML. What the simulator cannot hold is listed in the file
+and here, with the size of its force over a typical flight, or over the runs of a campaign.
+docs/export.md says what each of them holds.
+"""
+
+from pathlib import Path
+from typing import Sequence
+
+from rovsim import AXES
+from rovsim.application.export.sizes import Sized, true_motions, typical_flight
+from rovsim.application.export.targets import Target, target, targets
+from rovsim.application.export.write import export_model, write_export
+from rovsim.application.pipeline.recordings import load_campaign_vehicle, measure, open_campaign
+from rovsim.application.settings import CampaignSettings
+from rovsim.apps.cli.output import say
+from rovsim.core.errors import BadInput
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.base import Autopilot, Stick
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import load_model
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
+from rovsim.measurement.signals.motion import Motion
+
+
+class Settings(CampaignSettings):
+    """What `rovsim export` takes."""
+
+    to: str
+
+
+def run(settings: Settings, catalogue: Catalogue) -> None:
+    """Write the file, and say what is left out."""
+    chosen = _target(settings)
+    model = _model(settings, catalogue)
+    out = Path(settings.out or f"{model.name}{chosen.suffix}")
+    campaign = settings.campaign is not None
+
+    def flights() -> Sequence[Motion]:
+        if not campaign:
+            demands = any(isinstance(e, Autopilot | Stick) for e in model.effects)
+            return [typical_flight(model, demands)]
+        data = measure(open_campaign(settings.campaign), settings.signals)
+        return true_motions(model, data.motions.values())
+
+    over = f"the runs of {settings.campaign}" if campaign else "a typical flight of a minute"
+    export = export_model(model, chosen, flights, over, _origin(model))
+    write_export(export, out)
+    say(settings, _told(out, chosen, export.left, over), _content(out, chosen, export.left))
+
+
+def _target(settings: Settings) -> Target:
+    if settings.to != "nominal":  # that is what `rovsim add` takes where nothing is given
+        return target(settings.to)
+    raise BadInput(
+        "no simulator was named",
+        where="to",
+        expected=f"one of {', '.join(targets())}",
+        remedy="For example to=gz.",
+    )
+
+
+def _model(settings: Settings, catalogue: Catalogue) -> Model:
+    if not isinstance(settings.model, str):
+        raise BadInput(
+            f"{len(settings.model)} models",
+            where="model",
+            expected="one model",
+            remedy="Export one after the other.",
+        )
+    if settings.campaign is None:
+        vehicle = load_vehicle(default_vehicle())
+    else:
+        vehicle = load_campaign_vehicle(open_campaign(settings.campaign))
+    return load_model(settings.model, vehicle, catalogue)
+
+
+def _origin(model: Model) -> str:
+    parts = [model.vehicle.name, *(repr(effect) for effect in model.added)]
+    return " + ".join(parts + (["a learned residual"] if model.residual else []))
+
+
+def _told(out: Path, chosen: Target, left: Sequence[Sized], over: str) -> str:
+    if not left:
+        return f"{out}\n{chosen.title} holds the whole model. {chosen.takes}"
+    lines = [f"  {one.name}: {_largest(one)}\n      {one.why}" for one in left]
+    head = f"Left out for {chosen.title}, with the RMS force over {over}:"
+    return "\n".join([str(out), head, *lines, chosen.takes])
+
+
+def _largest(one: Sized) -> str:
+    """The largest force and the largest moment."""
+    parts = []
+    for axes, unit in ((slice(0, 3), "N"), (slice(3, 6), "N m")):
+        value, axis = max(zip(one.rms[axes], AXES[axes], strict=True))
+        if value > 0.0:
+            parts.append(f"{value:.3g} {unit} ({axis})")
+    return ", ".join(parts) or "no force"
+
+
+def _content(out: Path, chosen: Target, left: Sequence[Sized]) -> dict[str, object]:
+    return {
+        "file": str(out),
+        "to": chosen.name,
+        "left_out": [
+            {"name": one.name, "why": one.why, "rms": dict(zip(AXES, one.rms, strict=True))}
+            for one in left
+        ],
+    }
