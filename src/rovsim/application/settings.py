@@ -9,6 +9,7 @@ from rovsim.application.sections import SimulationSettings, TimingSettings, Trai
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import S, Section, checked
 from rovsim.core.shipped import conf_folders, conf_names
+from rovsim.design.settings import DesignSettings
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.learned.residual import Control
 from rovsim.simulation.synthetic_tank.settings import TankSettings
@@ -112,6 +113,11 @@ class Settings(WorkbenchSettings):
     tank: TankSettings
     effects: list[str] | None = None
     to: str = "nominal"
+    between: list[str] | None = None
+    know: list[str] | None = None
+    seconds: float = 60.0
+    design: DesignSettings = DesignSettings()
+    fly: str | None = None
     files: list[str] = Field(default_factory=list)
     force: bool = False
     study: StudySettings

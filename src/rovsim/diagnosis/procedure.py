@@ -34,7 +34,7 @@ from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.gate import Gate, keep_apart
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit, judge
+from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, polish
 from rovsim.diagnosis.selection.held_out import drop_idle
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
@@ -59,7 +59,6 @@ Stages = Callable[[str], None]
 REFUSED = Structure(
     "all axes", "what only effects explain that make replays of held-out stretches worse", 1.0, 1.0
 )
-POLISHED = 2  # times: the noise of the first is already the right one
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,9 +217,4 @@ def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
 
 def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     """Fitted once more to all runs under its own noise, with filters that suit it."""
-    found = selection.found
-    reach = np.inf if selection.complete else REACH
-    for _ in range(POLISHED):
-        bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
-        found = fit(found.hypothesis, bank, found.noise, reach)
-    return found, bank
+    return polish(selection.found, runs, np.inf if selection.complete else REACH)

@@ -9,7 +9,7 @@ from typing import Sequence
 from rovsim.core.errors import BadInput, RovsimError, nearest
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
-PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to")
+PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")
 FILES = {"init": "files"}  # commands that take files by themselves, and the key they become
 FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
 COMMANDS = Path(__file__).with_name("commands")

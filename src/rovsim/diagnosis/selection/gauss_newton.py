@@ -1,7 +1,7 @@
 """Gauss-Newton on the innovations: the most likely parameters of a hypothesis, and their spread."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -11,6 +11,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
@@ -22,6 +23,7 @@ REACH = 10.0
 FORESEEN = 0.1
 # Damping of the steps (Levenberg-Marquardt).
 FIRST_TRUST, LEAST_TRUST, LARGEST_TRUST = 1e-4, 1e-8, 1e4
+POLISHED = 2  # times: the noise of the first is already the right one
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +58,16 @@ def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf
     A model that diverges in spite of the observer's corrections is infinitely unlikely.
     """
     return judge(descend(start, bank, noise, reach), bank, noise)
+
+
+def polish(
+    found: Fit, runs: Sequence[ObservedRun], reach: float = np.inf
+) -> tuple[Fit, FilterBank]:
+    """Fitted once more to these runs under its own noise, with filters that suit it."""
+    for _ in range(POLISHED):
+        bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
+        found = fit(found.hypothesis, bank, found.noise, reach)
+    return found, bank
 
 
 def judge(seen: Linearised, bank: FilterBank, noise: Noise) -> Fit:

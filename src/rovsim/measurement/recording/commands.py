@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.core.run import Logged
+from rovsim.core.run import Commands, Logged
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.readers import KIND, CommandExport, finite_rows
 
@@ -92,3 +92,13 @@ def _all_axes(value: Array, axes: list[int]) -> Array:
     full = np.zeros((len(value), len(AXES)))
     full[:, axes] = value
     return full
+
+
+def as_logged(commands: Commands, log: CommandLog) -> np.ndarray:
+    """Values (m, c) as that log would hold these commands: the inverse of `as_commands`."""
+    value = commands.value[:, log.axis_numbers] if log.per_axis else commands.value
+    signed = value * log.signs
+    if log.kind != "pwm":
+        return signed
+    pulses = np.round(PWM_CENTER + PWM_SPAN * signed)
+    return np.where(log.turned, signed, pulses)

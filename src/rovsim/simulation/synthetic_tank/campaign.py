@@ -19,6 +19,7 @@ from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.synthetic_tank.description import SEALED, describe, motion_file, seal
 from rovsim.simulation.synthetic_tank.exports import export_commands, export_poses
 from rovsim.simulation.synthetic_tank.sensors import export_channels
+from rovsim.simulation.synthetic_tank.sent_log import SentLog, read_sent_log
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 from rovsim.simulation.synthetic_tank.true_run import fly_run
 
@@ -104,7 +105,8 @@ def _record(
 ) -> None:
     box = np.array([getattr(settings.tank, axis) for axis in "xyz"])
     tank = np.sort(box * HALF_TURN_X[:, None], axis=1)
-    truth = fly_run(model, settings, run.control, tank, random, run.release)
+    sent = _read_sent(settings, run) if run.fly else None
+    truth = fly_run(model, settings, run.control, tank, random, run.release, sent)
     if settings.sensors:
         gravity = model.vehicle.fluid.gravity
         seen = export_channels(truth, settings.sensors, float(tank[2, 0]), gravity, random)
@@ -114,3 +116,10 @@ def _record(
     if not run.release:
         commands = export_commands(truth, settings.log, model.vehicle, random)
         write_text(folder / f"{run.id}_commands.csv", commands)
+
+
+def _read_sent(settings: TankSettings, run: TankRun) -> SentLog:
+    log = describe(settings).commands
+    assert run.fly is not None
+    assert log is not None
+    return read_sent_log(Path(run.fly), log, up=not settings.sensors)

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal, Mapping
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
+from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator, model_validator
 
 from rovsim.core.schema import Section
 from rovsim.dynamics.effects.base import Means
@@ -33,12 +33,19 @@ class Release(Section):
 
 
 class TankRun(Section):
-    """One run to record; flown by a pilot, or let go."""
+    """One run to record; flown by a pilot, let go, or as a log of commands says (`fly`, a csv)."""
 
     id: str
     control: Literal["3dof", "6dof"]
     split: Literal["train", "test"]
     release: Release | None = None
+    fly: str | None = None
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> "TankRun":
+        if self.fly and self.release:
+            raise ValueError("either 'release' or 'fly'")
+        return self
 
 
 class Box(Section):

@@ -19,6 +19,7 @@ from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.synthetic_tank.allocation import Allocation
 from rovsim.simulation.synthetic_tank.pilot import Helmsman, Pilot
+from rovsim.simulation.synthetic_tank.sent_log import SentLog
 from rovsim.simulation.synthetic_tank.settings import Release, TankSettings
 from rovsim.simulation.synthetic_tank.turbulence import draw_currents, draw_turbulence
 
@@ -36,7 +37,7 @@ class TrueRun:
 
 def fly_run(
     model: Model, settings: TankSettings, control: str, tank: Array, random: np.random.Generator,
-    release: Release | None = None,
+    release: Release | None = None, sent: SentLog | None = None,
 ) -> TrueRun:  # fmt: skip
     """Fly one run.
 
@@ -47,19 +48,22 @@ def fly_run(
         tank: walls (3, 2) in NED, m.
         random: generator of this run.
         release: how it is let go, in place of a pilot.
+        sent: commands that are sent in place of a pilot's.
 
     Raises:
         LeftTank: the hidden effects are stronger than the pilot.
     """
     h, tick = settings.step, 1.0 / settings.log.rate
-    ticks, per_tick = round(settings.duration / tick), round(tick / h)
-    vehicle = _TrueVehicle(model, tank, settings, tick)
+    duration = sent.seconds if sent else settings.duration
+    ticks, per_tick = round(duration / tick), round(tick / h)
+    vehicle = _TrueVehicle(model, tank, settings, tick, duration)
     pilot = vehicle.pilot(control, tank, ticks, tick, random)
     pushes = draw_turbulence(settings.turbulence, ticks * per_tick, h, random)
     pushes = np.ascontiguousarray(pushes @ model.constants.M_inv[0].T)
     currents = draw_currents(model, ticks, tick, random)
     states = np.empty((ticks * per_tick + 1, 13))
-    states[0] = pilot.choose_start(random) * vehicle.free
+    begin = sent.start(tank, random) if sent else pilot.choose_start(random)
+    states[0] = begin * vehicle.free
     if model.vehicle.floats:
         states[0, 2] = vehicle.site.level
         tank = tank - [[0.0, 0.0], [0.0, 0.0], [np.inf, 0.0]]  # its middle is at the surface
@@ -67,8 +71,10 @@ def fly_run(
         states[0] = _let_go(states[0], release) * vehicle.free
     for k in range(ticks):
         first = k * per_tick
-        demand = np.zeros(6) if release else pilot.steer(k, states[first])
-        command = vehicle.log(demand)
+        if sent:
+            command = sent.at(k * tick)
+        else:
+            command = vehicle.log(np.zeros(6) if release else pilot.steer(k, states[first]))
         rows = slice(first, first + per_tick)
         vehicle.carry(currents[k])
         states[first + 1 :][:per_tick] = vehicle.advance(k, command, states[first], pushes[rows])
@@ -88,8 +94,10 @@ def _let_go(rest: Array, release: Release) -> Array:
 class _TrueVehicle:
     """The true vehicle, tick by tick; remembers the commands and the thrusters' state."""
 
-    def __init__(self, model: Model, tank: Array, settings: TankSettings, tick: float) -> None:
-        self.model, self.duration, self.tick, self.h = model, settings.duration, tick, settings.step
+    def __init__(
+        self, model: Model, tank: Array, settings: TankSettings, tick: float, duration: float
+    ) -> None:
+        self.model, self.duration, self.tick, self.h = model, duration, tick, settings.step
         site = Site(tank, HALF_TURN_X, float(tank[2, 0]))  # what floats rests at the surface
         self.free = np.concatenate([np.ones(7), model.body.free])
         self.allocation = Allocation(model.vehicle)
@@ -97,7 +105,7 @@ class _TrueVehicle:
         self.kind: CommandKind = "demand" if settings.log.kind == "demand" else "thruster"
         model.check(site, self.kind)
         columns = model.thrust_path.columns(self.kind)
-        ticks = round(settings.duration / tick)
+        ticks = round(duration / tick)
         self.times, self.commands = np.empty(ticks), np.empty((ticks, columns))
         self.lag: list | None = None
         self.memory = np.zeros(6)

@@ -2,10 +2,15 @@
 
 rovsim tank out=DIR [tank=default|tiny] [tank.seed=1] [tank.name=NAME]
             [tank.effects='[{effect: thruster_lag, parameters: {time_constant: 0.2}}]']
+            [fly=OUT/experiment.csv]
+
+fly: commands that `rovsim design` planned, flown as one more train run, called designed. The other
+runs stay what they are without it.
 
 DIR gets campaign.yaml, a QTM export and a command log per run, and truth.yaml.
 """
 
+from itertools import count
 from pathlib import Path
 
 from rovsim.application.settings import CommandSettings
@@ -13,18 +18,28 @@ from rovsim.apps.cli.output import say
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
-from rovsim.simulation.synthetic_tank.settings import TankSettings
+from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 
 
 class Settings(CommandSettings):
     """What `rovsim tank` takes."""
 
     tank: TankSettings
+    fly: str | None
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Fly the runs and write the folder."""
     out = Path(settings.out or f"results/{settings.tank.name}/raw")
+    tank = _with_flight(settings.tank, settings.fly) if settings.fly else settings.tank
     with reported("flying") as progress:
-        make_campaign(settings.tank, out, catalogue, progress)
+        make_campaign(tank, out, catalogue, progress)
     say(settings, str(out), {"campaign": str(out)})
+
+
+def _with_flight(tank: TankSettings, fly: str) -> TankSettings:
+    """With one more run, which a log of commands prescribes."""
+    taken = [run.id for run in tank.runs]
+    name = next(n for k in count(1) if (n := f"designed-{k}" if k > 1 else "designed") not in taken)
+    run = TankRun(id=name, control="6dof", split="train", fly=fly)
+    return tank.model_copy(update={"runs": (*tank.runs, run)})

@@ -1,0 +1,78 @@
+"""The next flight: planned, and as it is reported."""
+
+from dataclasses import dataclass
+
+from rovsim.application.pipeline.recordings import Measured
+from rovsim.core.errors import BadInput
+from rovsim.core.progress import staged
+from rovsim.core.run import Commands
+from rovsim.design.plan import STAGES, Plan, plan
+from rovsim.design.report import report
+from rovsim.design.settings import Question
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import Model
+from rovsim.measurement.campaign_file import CommandLog
+from rovsim.measurement.recording.commands import as_logged
+from rovsim.measurement.recording.commands_csv import format_commands
+from rovsim.reporting.figures.planned_flight import PlannedFlight
+from rovsim.results.experiment import Experiment
+
+UNITS = {"pwm": "µs", "normalized": "1", "demand": "1", "wrench": "N, N m"}
+
+
+@dataclass(frozen=True, eq=False)
+class Designed:
+    """What is written: the result, the log, the picture."""
+
+    experiment: Experiment
+    log: str
+    picture: PlannedFlight
+
+
+def design(data: Measured, model: Model, question: Question, catalogue: Catalogue) -> Designed:
+    """Plan the next flight of a campaign.
+
+    Raises:
+        BadInput: a model that is not of physics, a question that makes no sense, or no flight.
+    """
+    _refuse(model, question)
+    log = data.campaign.commands
+    if log is None:
+        raise BadInput(
+            "no run has commands",
+            where=data.campaign.file,
+            expected="a campaign that logs commands: they are what a flight is made of",
+            remedy="Record a run with commands first, however short.",
+        )
+    with staged("designing", STAGES) as stage:
+        found = plan(
+            model, data.runs, question, log.axis_numbers if log.per_axis else None, catalogue, stage
+        )
+    site = next(iter(data.motions.values())).site
+    experiment = report(found, model.name, question, site)
+    commands = found.flight.commands
+    return Designed(experiment, format_commands(commands, log), _picture(found, commands, log))
+
+
+def _refuse(model: Model, question: Question) -> None:
+    if model.residual is not None or model.inert:
+        raise BadInput(
+            f"cannot design with {model.name}",
+            where="model",
+            expected="one model of physics, without a trained residual",
+            remedy="Give model=nominal, or one model file without a residual.",
+        )
+    if len(set(question.between)) not in (0, 2) or len(question.between) > 2:
+        raise BadInput(
+            f"between=[{','.join(question.between)}]",
+            where="command line",
+            expected="two different effects, as between=[input_delay,thruster_lag]",
+            remedy="Name the two that a diagnosis could not tell apart.",
+        )
+
+
+def _picture(found: Plan, commands: Commands, log: CommandLog) -> PlannedFlight:
+    return PlannedFlight(
+        found.paths[:, :, :3], found.site.tank, commands.time, as_logged(commands, log),
+        tuple(log.names), UNITS[log.kind],
+    )  # fmt: skip

@@ -1,0 +1,69 @@
+"""Plan the next flight: the commands that tell most about what is not yet known.
+
+rovsim design campaign=DIR model=FILE [between=[a,b]] [know=[effect.parameter,…]] [seconds=60]
+              out=OUT
+
+between: two effects that could not be told apart. know: values to be known better; without either,
+all that the model file says was fitted. Writes OUT/experiment.csv (a command log as this
+campaign's), OUT/experiment.json (what to expect, and what the usual manoeuvres would tell), a
+picture and OUT/instructions.txt. `rovsim tank … fly=OUT/experiment.csv` flies it.
+"""
+
+import textwrap
+from pathlib import Path
+
+from pydantic import Field
+
+from rovsim.application.pipeline.design import Designed, design
+from rovsim.application.pipeline.models import load_one_model
+from rovsim.application.pipeline.recordings import measure, open_campaign
+from rovsim.application.settings import CampaignSettings
+from rovsim.apps.cli.output import choose_folder, say
+from rovsim.core.files import write_text
+from rovsim.core.schema import checked
+from rovsim.design.settings import DesignSettings, Question
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.reporting.html.experiment import tell_experiment
+
+WIDTH = 96
+
+
+class Settings(CampaignSettings):
+    """What `rovsim design` takes."""
+
+    between: list[str] | None
+    know: list[str] | None
+    seconds: float
+    design: DesignSettings
+    seed: int = Field(ge=0)
+
+
+def run(settings: Settings, catalogue: Catalogue) -> None:
+    """Plan, write the files, and say what to expect."""
+    question = _ask(settings)
+    data = measure(open_campaign(settings.campaign), settings.signals)
+    model = load_one_model(settings.model, data.vehicle, catalogue)
+    out = choose_folder(settings, f"results/{data.campaign.name}/design")
+    found = design(data, model, question, catalogue)
+    _write(out, found)
+    text = tell_experiment(found.experiment)
+    say(settings, f"{text}\n\n{out / 'experiment.csv'}", found.experiment.to_json())
+
+
+def _ask(settings: Settings) -> Question:
+    """What is asked, checked."""
+    asked = settings.model_dump(include={"seconds", "design", "signals", "replay", "seed"})
+    names = {"between": settings.between or [], "know": settings.know or []}
+    return checked(Question, asked | names, "command line")
+
+
+def _write(out: Path, found: Designed) -> None:
+    from rovsim.reporting.figures.planned_flight import draw_flight
+    from rovsim.reporting.figures.style import save
+
+    drawn = draw_flight(found.picture)
+    write_text(out / "experiment.csv", found.log)
+    save(drawn, out, "experiment")
+    steps = (textwrap.fill(one, WIDTH) for one in found.experiment.instructions)
+    write_text(out / "instructions.txt", "\n\n".join(steps) + "\n")
+    found.experiment.write(out / "experiment.json")

@@ -1,0 +1,149 @@
+"""Commands to predicted paths over all that is not yet known, and the limits they keep to."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import exp, multiply, to_euler
+from rovsim.core.run import Commands
+from rovsim.design.settings import FlightLimits
+from rovsim.design.surroundings import Surroundings
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.dynamics.model import Model
+from rovsim.simulation.batch import Batch, Starts
+from rovsim.simulation.drive import Drives
+from rovsim.simulation.synthetic_tank.sent_log import PLACED, TURNED
+from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
+
+SURE = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 beyond one wall
+
+
+@dataclass(frozen=True, eq=False)
+class Chances:
+    """What could happen: models, pushes (s, k, 6) m/s2 that nobody foresees, starting errors.
+
+    The first is the likeliest model, undisturbed. `shift` (s, 3) m, `turn` (s,) rad.
+    """
+
+    models: Sequence[Model]
+    pushes: Array
+    shift: Array
+    turn: Array
+
+    def split(self, count: int) -> tuple["Chances", "Chances"]:
+        """The first ones, and all others."""
+        parts = (slice(0, count), slice(count, None))
+        first, rest = (
+            Chances(self.models[p], self.pushes[p], self.shift[p], self.turn[p]) for p in parts
+        )
+        return first, rest
+
+
+def draw_chances(
+    models: Sequence[Model], noise: Noise, steps: int, h: float, random: np.random.Generator
+) -> Chances:
+    """Disturbances as the recordings show them, of each model; the first is undisturbed.
+
+    Args:
+        models: that could be true.
+        noise: of the readings, and the disturbance.
+        steps: of a path.
+        h: s, each.
+        random: generator.
+    """
+    count, memory = len(models), float(np.median(noise.memory))
+    level = noise.level * models[0].body.free
+    pushes = np.array([draw_gauss_markov(steps, h / memory, random) for _ in models]) * level
+    shift, turn = PLACED * random.normal(size=(count, 3)), TURNED * random.normal(size=count)
+    pushes[0], shift[0], turn[0] = 0.0, 0.0, 0.0
+    return Chances(models, pushes, shift, turn)
+
+
+def predict(commands: Commands, start: Array, chances: Chances, around: Surroundings) -> Array:
+    """Paths (s, k+1, 13) of the chances under one log, from near a state (13,)."""
+    models = list(chances.models)
+    drives = Drives(commands, around.edges, around.replay.commands).of(models)
+    pushed = [
+        drive.pushed(push @ model.body.M.T)
+        for drive, push, model in zip(drives, chances.pushes, models, strict=True)
+    ]
+    states = np.tile(start, (len(models), 1, 1))
+    states[:, 0, :3] += chances.shift * np.where(np.arange(3) == 2, not models[0].vehicle.floats, 1)
+    turns = exp(chances.turn[:, None] * np.array([0.0, 0.0, 1.0]))
+    states[:, 0, 3:7] = multiply(turns, states[:, 0, 3:7])
+    batch = Batch(models, around.site, candidates=around.wrenches, learned=False)
+    steps = len(around.edges) - 1
+    starts = Starts(states, np.zeros(1, np.int64), np.array([steps]), np.zeros((len(models), 1, 6)))
+    return np.array([own[0] for own in batch.trajectories(pushed, starts, around.edges)])
+
+
+@dataclass(frozen=True, eq=False)
+class Envelope:
+    """Limits of a flight: `box` (3, 2) m NED in which CO stays, infinite where nothing is known."""
+
+    box: Array
+    limits: FlightLimits
+
+    @staticmethod
+    def around(surroundings: Surroundings, limits: FlightLimits, floats: bool) -> "Envelope":
+        """Walls, floor and surface less the clearance, and the depths that are wanted."""
+        tank = surroundings.site.tank
+        box = tank + limits.clearance * np.array([1.0, -1.0])
+        if limits.depth:
+            surface = tank[2, 0] if np.isfinite(tank[2, 0]) else 0.0
+            box[2] = surface + np.array(limits.depth)
+        if floats:
+            box[2] = np.nan
+        box[:, 0] = np.where(np.isfinite(box[:, 0]), box[:, 0], -np.inf)
+        box[:, 1] = np.where(np.isfinite(box[:, 1]), box[:, 1], np.inf)
+        return Envelope(box, limits)
+
+    @property
+    def middle(self) -> Array:
+        """The place (3,) farthest from all walls; 0 along an axis without."""
+        known = np.isfinite(self.box).all(axis=1)
+        return np.where(known, np.where(known[:, None], self.box, 0.0).mean(axis=1), 0.0)
+
+    @property
+    def longest(self) -> float:
+        """Heading in rad of the longer side of the tank."""
+        size = self.box[:2, 1] - self.box[:2, 0]
+        return 0.5 * np.pi if size[1] > size[0] else 0.0
+
+    def excess(self, paths: Array, still: bool = False) -> float:
+        """By how much paths (s, k, 13) leave the limits: 0 if none does.
+
+        Of the place by `SURE` standard deviations about the mean of the paths, in m; of speed,
+        turn rate and tilt by the largest, as a share of the limit. `still`: the paths are those of
+        rivals, and each counts alone.
+        """
+        if not np.isfinite(paths).all():
+            return np.inf
+        place = paths[:, :, :3]
+        low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
+        if not still:
+            mean, spread = place.mean(axis=0), SURE * place.std(axis=0, ddof=1)
+            low, high = (mean - spread).min(axis=0), (mean + spread).max(axis=0)
+        beyond = np.maximum(self.box[:, 0] - low, 0.0) + np.maximum(high - self.box[:, 1], 0.0)
+        ratios = [v / w - 1.0 for v, w in zip(reached(paths), self._most, strict=True)]
+        return float(beyond.sum() + sum(max(r, 0.0) for r in ratios))
+
+    @property
+    def _most(self) -> tuple[float, float, float]:
+        return self.limits.speed, self.limits.turn_rate, self.limits.tilt
+
+    def holds(self, paths: Array) -> bool:
+        """Whether each of these paths (s, k, 13) stays in the box, and within the limits."""
+        place = paths[:, :, :3]
+        inside = ((place > self.box[:, 0]) & (place < self.box[:, 1])).all()
+        return bool(inside and self.excess(paths) == 0.0)
+
+
+def reached(paths: Array) -> tuple[float, float, float]:
+    """Largest speed m/s, turn rate rad/s and tilt rad of paths (s, k, 13)."""
+    speed = np.linalg.norm(paths[..., 7:10], axis=-1).max()
+    rate = np.linalg.norm(paths[..., 10:13], axis=-1).max()
+    tilt = np.abs(to_euler(paths[..., 3:7])[..., :2]).max()
+    return float(speed), float(rate), float(tilt)

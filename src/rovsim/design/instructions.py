@@ -1,0 +1,74 @@
+"""A flight in plain words, for a pilot who would hold the sticks."""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.design.search import Tried
+from rovsim.design.settings import FlightLimits
+from rovsim.design.sticks import IDLE, NUMBERS, SWELL, Swing
+from rovsim.results.experiment import Start
+
+USUAL = {
+    "zigzag": "Ahead, and the helm over to the other side every 5 s",
+    "steps": "One axis after the other: ahead, rest, back, rest, each as long",
+    "multisine": "All axes at once, swings of 20 s to 2 s on top of one another",
+    "prbs": "All axes at once, each full over to a side that changes at random, every second",
+}
+SHARP = 0.5  # of `Swing.square`: beyond, the stick is rather held at its ends
+
+
+def instruct(flight: Tried, axes: Array, start: Start, limits: FlightLimits) -> list[str]:
+    """Sentences, in the order in which they are needed.
+
+    Args:
+        flight: to be flown.
+        axes: those (j,) that its numbers are of.
+        start: where it begins.
+        limits: what full sticks are.
+    """
+    found = [
+        f"Put the vehicle to x {start.x_m:.2f} m, y {start.y_m:.2f} m, z {start.z_m:.2f} m in the "
+        f"recordings' axes, yaw {np.degrees(start.yaw_rad):.0f} degrees: level, at rest, within "
+        "0.1 m and 5 degrees.",
+        "Start the recording, then send experiment.csv as it is, from a computer. No pilot and no "
+        "autopilot may act beside it: what keeps the vehicle level is in the commands.",
+        "By hand instead: let an autopilot hold attitude and depth, log what the thrusters are "
+        "told, keep away from the walls, and move the sticks so:",
+        *(_numbers(flight, axes) if len(flight.numbers) else _usual(flight)),
+        f"A full stick is what holds {limits.speed:g} m/s, {limits.turn_rate:g} rad/s or "
+        f"{np.degrees(limits.tilt):.0f} degrees of tilt, or full thrust where that is less.",
+    ]
+    return found
+
+
+def _numbers(flight: Tried, axes: Array) -> list[str]:
+    rows = flight.numbers[1:].reshape(len(axes), NUMBERS)
+    swings = [(AXES[axis], Swing.of(own)) for axis, own in zip(axes, rows, strict=True)]
+    moved = [_swing(axis, swing) for axis, swing in swings if swing.amplitude > IDLE]
+    still = [axis for axis, swing in swings if swing.amplitude <= IDLE]
+    return [*moved, f"Leave alone: {', '.join(still)}."] if still else moved
+
+
+def _swing(axis: str, swing: Swing) -> str:
+    how = "hold it over to one side, then to the other" if swing.square > SHARP else "swing it"
+    weaker = (
+        f", growing weaker down to {100 * swing.amplitude * (1.0 - swing.swell):.0f} % and strong "
+        f"again every {SWELL:g} s"
+        if swing.swell > 0.25
+        else ""
+    )
+    return (
+        f"{axis.capitalize()}: {how}, {100 * swing.amplitude:.0f} % of a full stick, there and "
+        f"back in {1.0 / swing.frequency:.1f} s{weaker}."
+    )
+
+
+def _usual(flight: Tried) -> Sequence[str]:
+    plane, other = flight.amplitude or (0.0, 0.0)
+    return [
+        f"{USUAL[flight.name]}; {100 * plane:.0f} % of a full stick in surge, sway and yaw, "
+        f"{100 * other:.0f} % in heave, roll and pitch."
+    ]

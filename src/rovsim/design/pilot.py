@@ -1,0 +1,146 @@
+"""Sticks flown on the model: a pilot who sees all keeps the vehicle upright and near its place.
+
+What comes out are the demands alone; they are flown without looking. So a flight needs neither the
+pilot nor the autopilot of the laboratory, and how far it strays without them is predicted.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.rotations import multiply, normalized, rotate, to_euler, unrotate
+from rovsim.core.run import Site
+from rovsim.design.authority import Authority
+from rovsim.design.settings import FlightLimits
+from rovsim.design.sticks import TICK
+from rovsim.simulation.batch import Batch
+from rovsim.simulation.drive import Drive
+
+# rad/s, as of a spring and a damper: a place is held so softly that swings of half a minute still
+# get through, an angle within a second, as an autopilot does
+HOLD_PLACE, HOLD_ANGLE, DAMPED = 0.3, 2.0, 0.7
+STEPS = 2  # a tick, of Heun's method
+SMALL = 0.05  # rad
+
+
+@dataclass(frozen=True, eq=False)
+class ModelPilot:
+    """Flies sticks on the model of an authority, from rest at `start` (3,) m NED.
+
+    Full sticks reach the `limits`, where the thrusters can.
+    """
+
+    authority: Authority
+    site: Site
+    start: Array
+    limits: FlightLimits
+    batch: Batch
+
+    def fly(self, sticks: Array, heading: Array) -> Array:
+        """What a log holds (m, n, c) of sticks (m, n, 6) from headings (m,) rad NED."""
+        state, thrust, found = self.starts(heading), None, []
+        wish = np.tile(self.rest, (len(state), 1))
+        step = self.limits.slew * TICK * np.maximum(self.full, 1e-9)
+        for k in range(sticks.shape[1]):
+            wish = np.clip(self._wish(sticks[:, k], state), wish - step, wish + step)
+            found.append(self.authority.values(wish))
+            drive, thrust = self.authority.respond(found[-1], TICK, thrust)
+            state = self._advance(drive, state)
+        return np.stack(found, axis=1)
+
+    def starts(self, heading: Array) -> Array:
+        """States (m, 13) at rest and level."""
+        state = np.zeros((len(heading), 13))
+        state[:, :3] = self.start
+        state[:, 3], state[:, 6] = np.cos(0.5 * heading), np.sin(0.5 * heading)
+        return state
+
+    @cached_property
+    def full(self) -> Array:
+        """Wrench (6,) of full sticks: what holds the greatest speed, turn rate and tilt."""
+        held = np.append(self._drag[[0, 1, 2, 5]], self._stiffness * self.limits.tilt)
+        return np.minimum(self.authority.full, held[[0, 1, 2, 4, 5, 3]])
+
+    @cached_property
+    def _drag(self) -> Array:
+        """Wrench (6,) that holds the greatest speed along, and turn rate about, each axis."""
+        most = np.repeat([self.limits.speed, self.limits.turn_rate], 3)
+        moving = self.starts(np.zeros(len(AXES)))
+        moving[:, 7:] = np.diag(most)
+        rest = self._drive_at_rest(len(AXES))
+        return -self._inertia * np.diag(self._accelerate(rest, moving))
+
+    @cached_property
+    def _inertia(self) -> Array:
+        return np.diag(self.authority.model.body.M)
+
+    @cached_property
+    def _stiffness(self) -> Array:
+        """Moment (2,) per rad of roll and pitch, held and righted."""
+        tilted = self.starts(np.zeros(2))
+        tilted[0, 4], tilted[1, 5] = 0.5 * SMALL, 0.5 * SMALL
+        rest = self._drive_at_rest(2)
+        push = self._accelerate(rest, tilted)
+        inertia = self._inertia[3:5]
+        righting = -inertia * np.array([push[0, 3], push[1, 4]]) / SMALL
+        return inertia * HOLD_ANGLE**2 + np.maximum(righting, 0.0)
+
+    @cached_property
+    def rest(self) -> Array:
+        """Wrench (6,) that keeps the vehicle where it is, level and still."""
+        idle = self.authority.drive(self.authority.values(np.zeros((1, len(AXES)))))
+        fall = self._accelerate(idle, self.starts(np.zeros(1)))
+        return -self._inertia * fall[0] * (self.authority.full > 0.0)
+
+    def _drive_at_rest(self, count: int) -> Drive:
+        return self.authority.drive(self.authority.values(np.tile(self.rest, (count, 1))))
+
+    def _wish(self, sticks: Array, state: Array) -> Array:
+        """Wrench (m, 6): the sticks, and what keeps it upright and near its place."""
+        away = unrotate(state[:, 3:7], state[:, :3] - self.start)
+        tilt = to_euler(state[:, 3:7])
+        tilt[:, 2] = 0.0
+        hold = HOLD_PLACE**2 * away + 2.0 * DAMPED * HOLD_PLACE * state[:, 7:10]
+        right = HOLD_ANGLE**2 * tilt + 2.0 * DAMPED * HOLD_ANGLE * state[:, 10:13]
+        right[:, 2] = 0.0  # any heading will do
+        back = np.concatenate([hold, right], axis=1) * self._held
+        return self.rest + self.full * sticks - self._inertia * back
+
+    @cached_property
+    def _held(self) -> Array:
+        """Which axes (6,) it holds: what floats keeps itself level and at the surface."""
+        afloat = np.isin(np.arange(6), (2, 3, 4)) & self.authority.model.vehicle.floats
+        return np.asarray(~afloat)
+
+    def _advance(self, drive: Drive, state: Array) -> Array:
+        h = TICK / STEPS
+        for _ in range(STEPS):
+            first = self._rates(drive, state)
+            second = self._rates(drive, _moved(state, first, h))
+            state = _moved(state, 0.5 * (first + second), h)
+        return state
+
+    def _rates(self, drive: Drive, state: Array) -> Array:
+        """d state / dt (m, 13)."""
+        turn = np.concatenate([np.zeros((len(state), 1)), state[:, 10:13]], axis=1)
+        return np.concatenate(
+            [
+                rotate(state[:, 3:7], state[:, 7:10]),
+                0.5 * multiply(state[:, 3:7], turn),
+                self._accelerate(drive, state),
+            ],
+            axis=1,
+        )
+
+    def _accelerate(self, drive: Drive, state: Array) -> Array:
+        memory = np.zeros((len(state), 6))
+        return self.batch.accelerations(drive, np.zeros(len(state)), state, memory)
+
+
+def _moved(state: Array, rates: Array, h: float) -> Array:
+    found = state + h * rates
+    found[:, 3:7] = normalized(found[:, 3:7])
+    return found

@@ -1,0 +1,196 @@
+"""A question about a campaign in, the flight that answers it best out."""
+
+from dataclasses import dataclass
+from itertools import islice
+from typing import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.run import Site
+from rovsim.design.authority import Authority
+from rovsim.design.flight import Chances, Envelope, draw_chances, predict
+from rovsim.design.knowledge import Knowledge, learn
+from rovsim.design.pilot import ModelPilot
+from rovsim.design.search import Range, Tried, search, try_usual
+from rovsim.design.settings import Question
+from rovsim.design.surroundings import Surroundings, surround
+from rovsim.design.worth import Worth, value
+from rovsim.diagnosis.observer.observed_run import prepare_runs
+from rovsim.diagnosis.observer.usable_runs import select_usable
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import Model
+from rovsim.measurement.runs import Runs
+from rovsim.simulation.batch import Batch
+
+LOOKED_AT, TAKEN_OVER, CHECKED = 8, 4, 40  # chances: while searching, of the worth, in the end
+FINALISTS = 4
+# Share of the time that is over when a stage begins: means over the development seeds.
+STAGES = {"learning": 0.0, "usual manoeuvres": 0.05, "searching": 0.2, "checking": 0.8}
+
+Stage = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The flight, what it tells over what is not yet known, and the usual manoeuvres likewise.
+
+    `axes` (j,) are those that sticks move.
+    `usual` is None where a manoeuvre stays within the limits at no amplitude. `paths` (s, k+1, 13)
+    what could happen, the likeliest first, every `step` s.
+    """
+
+    flight: Tried
+    worth: Worth
+    usual: Mapping[str, tuple[Tried, Worth] | None]
+    known: Knowledge
+    paths: Array
+    step: float
+    envelope: Envelope
+    start: Array
+    axes: Array
+    site: Site
+
+
+def plan(
+    model: Model, runs: Runs, question: Question, columns: Sequence[int] | None,
+    catalogue: Catalogue, stage: Stage,
+) -> Plan:  # fmt: skip
+    """Find the flight that tells most.
+
+    Args:
+        model: what is known so far.
+        runs: all usable runs of a campaign.
+        question: what is asked.
+        columns: axes of a log per axis; None: it is of thrusters.
+        catalogue: all effects.
+        stage: told what begins.
+
+    Raises:
+        BadInput: nothing that could be planned, or no flight stays within the limits.
+    """
+    stage("learning")
+    train = prepare_runs(runs, "train", question.replay, catalogue, model.body.free)
+    usable = select_usable(train)
+    if not usable.enough:
+        raise BadInput(
+            f"only {usable.seconds:.0f} s of the train runs can be used",
+            where="rovsim design",
+            expected="at least 10 s in which the vehicle moves: a design builds on them",
+            remedy="Record a train run of a minute in which the vehicle moves.",
+        )
+    around = surround(usable.runs, question.seconds, columns, question.replay, catalogue)
+    known = learn(model, usable.runs, question, catalogue)
+    random = np.random.default_rng(question.seed)
+    where = _open_range(known, around, question, random)
+    stage("usual manoeuvres")
+    usual = try_usual(where, question.seed)
+    stage("searching")
+    found = search(where, question.design, question.seed)
+    stage("checking")
+    return _choose(where, usual, found, random)
+
+
+def _open_range(
+    known: Knowledge, around: Surroundings, question: Question, random: np.random.Generator
+) -> Range:
+    limits, first = question.design.limits, known.rivals[0].hypothesis.model
+    envelope = Envelope.around(around, limits, first.vehicle.floats)
+    batch = Batch([first], around.site, candidates=around.wrenches, learned=False)
+    authority = Authority(first, around.kind, around.axes, around.largest)
+    if not {0, 1, 5} <= set(authority.axes):
+        raise BadInput(
+            f"{first.vehicle.name} cannot push sideways",
+            where="rovsim design",
+            expected="a vehicle that can stay near a place without looking",
+            remedy="Record what `diagnose` recommends under next_experiment.",
+        )
+    start = envelope.middle
+    if first.vehicle.floats:
+        start[2] = around.site.level
+    pilot = ModelPilot(authority, around.site, start, limits, batch)
+    if not pilot.full.any():
+        raise BadInput(
+            "no axis can be commanded",
+            where="rovsim design",
+            expected="commands that push the vehicle",
+            remedy="Check thrusters and mixer of the vehicle file.",
+        )
+    return Range(pilot, envelope, _draw(known, LOOKED_AT, around, random), known, around)
+
+
+def _draw(
+    known: Knowledge, count: int, around: Surroundings, random: np.random.Generator
+) -> Chances:
+    """What could happen: the likeliest of each rival first, undisturbed, then others."""
+    each = [rival.draw(max(2, count // len(known.rivals)), random) for rival in known.rivals]
+    models = [own[0] for own in each] + [one for own in each for one in own[1:]]
+    h = float(around.edges[1] - around.edges[0])
+    found = draw_chances(models, known.noise, len(around.edges) - 1, h, random)
+    for k in range(len(each)):
+        found.pushes[k], found.shift[k], found.turn[k] = 0.0, 0.0, 0.0
+    return found
+
+
+def _choose(
+    where: Range, usual: Mapping[str, list[Tried]], found: Sequence[Tried],
+    random: np.random.Generator,
+) -> Plan:  # fmt: skip
+    """The best over what is not yet known, of those that surely stay within the limits.
+
+    A usual manoeuvre is taken where none is better.
+    """
+    many = _draw(where.known, CHECKED, where.around, random)
+    some = [rival.draw(TAKEN_OVER, random) for rival in where.known.rivals]
+    best = {name: _first_safe(where, own, many) for name, own in usual.items()}
+    rated = {name: (one, _average(where, one, some)) for name, one in best.items() if one}
+    able = (one for one in found if one.worth and _paths(where, one, many) is not None)
+    safe = list(islice(able, FINALISTS))
+    tried = [(one, _average(where, one, some)) for one in safe]
+    everything = [*tried, *rated.values()]
+    if not everything:
+        raise BadInput(
+            "no flight stays within the limits",
+            where="rovsim design",
+            expected="room for a flight that nobody steers",
+            remedy="Give fewer seconds, or a smaller design.limits.clearance.",
+        )
+    flight, worth = max(everything, key=lambda one: one[1].told)
+    paths = _paths(where, flight, many)
+    assert paths is not None
+    step = float(where.around.edges[1] - where.around.edges[0])
+    return Plan(
+        flight, worth, {name: rated.get(name) for name in usual}, where.known, paths, step,
+        where.envelope, where.pilot.start, where.axes, where.around.site,
+    )  # fmt: skip
+
+
+def _first_safe(where: Range, tried: Sequence[Tried], many: Chances) -> Tried | None:
+    """The first that surely stays within the limits."""
+    able = (one for one in tried if one.worth)
+    return next((one for one in able if _paths(where, one, many) is not None), None)
+
+
+def _paths(where: Range, one: Tried, many: Chances) -> Array | None:
+    """What could happen (s, k+1, 13); None where it leaves the limits."""
+    start = where.pilot.starts(np.array([one.heading]))[0]
+    paths = predict(one.commands, start, many, where.around)
+    return paths if where.envelope.holds(paths) else None
+
+
+def _average(where: Range, one: Tried, some: Sequence[Sequence[Model]]) -> Worth:
+    """The worth over models that could be true: the middle of each number."""
+    start, found = where.pilot.starts(np.array([one.heading]))[0], []
+    for models in zip(*some, strict=True):
+        still = Chances(
+            models, np.zeros((len(models), len(where.around.edges) - 1, 6)),
+            np.zeros((len(models), 3)), np.zeros(len(models)),
+        )  # fmt: skip
+        paths = predict(one.commands, start, still, where.around)
+        found.append(value(paths, one.commands, where.known, where.around, exact=True))
+    return Worth(
+        tuple(np.median([w.surer[k] for w in found], axis=0) for k in range(len(some))),
+        tuple(np.median([w.std[k] for w in found], axis=0) for k in range(len(some))),
+        np.median([w.gain for w in found], axis=0),
+    )

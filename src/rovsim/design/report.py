@@ -1,0 +1,130 @@
+"""A plan as `experiment.json` holds it."""
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.run import Site
+from rovsim.design.flight import reached
+from rovsim.design.instructions import instruct
+from rovsim.design.knowledge import Knowledge, Known
+from rovsim.design.plan import Plan
+from rovsim.design.search import Tried
+from rovsim.design.settings import Question
+from rovsim.design.worth import Worth
+from rovsim.dynamics.effects.parameters import Parameter
+from rovsim.results.base import or_none
+from rovsim.results.experiment import (
+    Expected,
+    Experiment,
+    Keeps,
+    RivalOdds,
+    Start,
+    Surer,
+    UsualManoeuvre,
+)
+
+MOST = 700.0  # of a logarithm whose exponential is still a number
+
+
+def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment:
+    """What is written of a plan.
+
+    Args:
+        plan: the flight and what it tells.
+        model: what was known, by name.
+        question: what was asked.
+        site: whose axes the start is given in.
+    """
+    start = _start(plan.start, plan.flight.heading, site)
+    return Experiment(
+        seconds=question.seconds,
+        model=model,
+        between=question.between,
+        know=question.know,
+        start=start,
+        manoeuvre=plan.flight.name,
+        expects=_expect(plan.known, plan.worth),
+        baselines={
+            name: _compare(plan.known, plan.worth, found) for name, found in plan.usual.items()
+        },
+        keeps=_keep(plan, site),
+        instructions=tuple(instruct(plan.flight, plan.axes, start, question.design.limits)),
+    )
+
+
+def _start(place: Array, heading: float, site: Site) -> Start:
+    """In the recordings' axes; a yaw about an axis that points up turns the other way."""
+    x, y, z = (float(v) for v in np.round(place * site.axes, 4))
+    yaw = heading if np.array_equal(site.axes, np.ones(3)) else -heading
+    turn = float((yaw + np.pi) % (2.0 * np.pi) - np.pi)
+    return Start(x_m=x, y_m=y, z_m=z, yaw_rad=round(turn, 6))
+
+
+def _expect(known: Knowledge, worth: Worth) -> Expected:
+    std: dict[str, Surer] = {}
+    for rival, then, surer in zip(known.rivals, worth.std, worth.surer, strict=True):
+        std |= _list_std(rival, then, surer)
+    return Expected(odds=_list_odds(known, worth), std=std)
+
+
+def _list_std(rival: Known, then: Array, surer: Array) -> dict[str, Surer]:
+    parameters = [p for term in rival.hypothesis.terms for p in term.parameters]
+    return {
+        rival.names[k]: Surer(
+            now=or_none(_std(s * ratio, parameters[k])),
+            then=or_none(_std(s, parameters[k])),
+            unit=parameters[k].unit,
+            gained=or_none(_round(ratio**2 - 1.0)),
+        )
+        for k, s, ratio in zip(rival.wanted, then, surer, strict=True)
+    }
+
+
+def _std(scaled: float, parameter: Parameter) -> float:
+    """As a diagnosis says it: within its grain a value could be anywhere (uniform: / √12)."""
+    return _round(float(np.hypot(scaled * parameter.scale, parameter.grain / np.sqrt(12.0))))
+
+
+def _list_odds(known: Knowledge, worth: Worth) -> dict[str, RivalOdds]:
+    if not len(worth.gain):
+        return {}
+    found, sides = {}, (0.5 * known.deficit, -0.5 * known.deficit)
+    names = known.asked
+    for name, now, gain in zip(names, sides, worth.gain, strict=True):
+        then = now + gain
+        found[name] = RivalOdds(
+            now=_odds(now), then=_odds(then), log_odds_now=_round(now), log_odds_then=_round(then)
+        )
+    return found
+
+
+def _odds(log: float) -> float:
+    return _round(float(np.exp(np.clip(log, -MOST, MOST))))
+
+
+def _round(value: float) -> float:
+    return float(f"{value:.6g}")
+
+
+def _compare(
+    known: Knowledge, designed: Worth, found: tuple[Tried, Worth] | None
+) -> UsualManoeuvre:
+    if found is None:
+        return UsualManoeuvre(amplitude=None, designed_is_better=None)
+    tried, worth = found
+    expected = _expect(known, worth)
+    return UsualManoeuvre(
+        odds=expected.odds, std=expected.std, amplitude=tried.amplitude,
+        designed_is_better=or_none(_round(designed.told / max(worth.told, 1e-12))),
+    )  # fmt: skip
+
+
+def _keep(plan: Plan, site: Site) -> Keeps:
+    speed, rate, tilt = reached(plan.paths)
+    tank, place = site.tank, plan.paths[:, :, :3]
+    away = np.minimum(place - tank[:, 0], tank[:, 1] - place)
+    known = np.isfinite(away).any() and not np.isnan(away).all()
+    return Keeps(
+        nearest_wall_m=_round(float(np.nanmin(away))) if known else None,
+        speed_m_s=_round(speed), turn_rate_rad_s=_round(rate), tilt_rad=_round(tilt),
+    )  # fmt: skip

@@ -1,0 +1,183 @@
+"""The sticks that tell most: first one axis at a time, then all together (SciPy).
+
+Differential evolution (Storn & Price 1997) asks for no derivatives, which walls would spoil, and
+works on whole generations, which the engine flies side by side. A flight beyond the limits is worse
+than any within them, and the worse the farther beyond (Deb 2000).
+"""
+
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any, Sequence, cast
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.optimize import Bounds, differential_evolution
+
+from rovsim.core.run import Commands
+from rovsim.design.flight import Chances, Envelope, predict
+from rovsim.design.knowledge import Knowledge
+from rovsim.design.pilot import ModelPilot
+from rovsim.design.settings import DesignSettings
+from rovsim.design.sticks import FASTEST, NUMBERS, SLOWEST, USUAL, move_sticks, ticks
+from rovsim.design.surroundings import Surroundings
+from rovsim.design.worth import Worth, value
+
+# Where one axis at a time is tried: swings of 20 s to 2 s, soft and sharp.
+FREQUENCIES, SQUARES, AMPLITUDES = (0.05, 0.12, 0.25, 0.5), (0.0, 0.8), (0.3, 0.6, 1.0)
+# Of the usual manoeuvres: sticks in the plane, and out of it.
+IN_PLANE, OUT_OF_PLANE = (0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0), (0.05, 0.1, 0.2, 0.4, 0.8)
+VERTICAL = np.array([2, 3, 4])  # heave, roll, pitch
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A flight: `sticks` (n, 6) from a heading in rad, its log, its worth if it may be flown.
+
+    `excess` is how far it leaves the limits, `numbers` what it was made of, `name` and `amplitude`
+    those of a usual manoeuvre.
+    """
+
+    sticks: Array
+    heading: float
+    commands: Commands
+    excess: float
+    worth: Worth | None
+    numbers: Array = field(default_factory=lambda: np.empty(0))
+    name: str = "designed"
+    amplitude: tuple[float, float] | None = None
+
+    @property
+    def told(self) -> float:
+        """What it tells; negative beyond the limits."""
+        return self.worth.told if self.worth else -self.excess
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """Where flights are tried: pilot, limits, what could happen, what is known."""
+
+    pilot: ModelPilot
+    envelope: Envelope
+    chances: Chances
+    known: Knowledge
+    around: Surroundings
+
+    @property
+    def axes(self) -> Array:
+        """Axes (j,) that a stick moves."""
+        return np.flatnonzero(self.pilot.full)
+
+    def try_all(self, sticks: Sequence[Array], headings: Sequence[float]) -> list[Tried]:
+        """Each of the flights, side by side."""
+        demands = self.pilot.fly(np.array(sticks), np.array(headings))
+        starts = self.pilot.starts(np.array(headings))
+        each = zip(sticks, headings, demands, starts, strict=True)
+        return [self._try(*one) for one in each]
+
+    def _try(self, sticks: Array, heading: float, demand: Array, start: Array) -> Tried:
+        time = ticks(self.around.seconds)
+        commands = self.pilot.authority.commands(time, demand, self.around.lines)
+        likeliest, rest = self.chances.split(len(self.known.rivals))
+        paths = predict(commands, start, likeliest, self.around)
+        excess, worth = self.envelope.excess(paths, still=True), None
+        if excess == 0.0:
+            paths = np.concatenate([paths, predict(commands, start, rest, self.around)])
+            excess = self.envelope.excess(paths)
+        if excess == 0.0:
+            worth = value(paths[: len(self.known.rivals)], commands, self.known, self.around)
+        return Tried(sticks, heading, commands, excess, worth)
+
+    def try_numbers(self, x: Array) -> list[Tried]:
+        """Flights of numbers (m, 1 + 5 j) in [0, 1]: a heading, then five an axis."""
+        seconds = self.around.seconds
+        sticks = [move_sticks(own[1:], self.axes, seconds) for own in x]
+        tried = self.try_all(sticks, [self.envelope.longest + np.pi * own[0] for own in x])
+        return [_with_numbers(one, own) for one, own in zip(tried, x, strict=True)]
+
+
+def _with_numbers(one: Tried, x: Array) -> Tried:
+    return Tried(one.sticks, one.heading, one.commands, one.excess, one.worth, x)
+
+
+def try_usual(where: Range, seed: int) -> dict[str, list[Tried]]:
+    """The usual manoeuvres, each at all amplitudes, those that tell most first."""
+    found, t = {}, ticks(where.around.seconds)
+    levels = list(product(IN_PLANE, OUT_OF_PLANE))
+    for name, move in USUAL.items():
+        full = move(t, where.axes, np.random.default_rng(seed))
+        scales = [np.where(np.isin(np.arange(6), VERTICAL), b, a) for a, b in levels]
+        tried = where.try_all([full * s for s in scales], [where.envelope.longest] * len(levels))
+        named = [
+            Tried(o.sticks, o.heading, o.commands, o.excess, o.worth, name=name, amplitude=level)
+            for o, level in zip(tried, levels, strict=True)
+        ]
+        found[name] = sorted(named, key=lambda one: -one.told)
+    return found
+
+
+def search(where: Range, settings: DesignSettings, seed: int) -> list[Tried]:
+    """Flights in the order of what they tell."""
+    archive: list[Tried] = []
+
+    def rate(x: Array) -> Array:
+        found = where.try_numbers(np.clip(x.T, 0.0, 1.0))
+        archive.extend(found)
+        return np.array([-_ranked(one) for one in found])
+
+    single = _one_axis_each(where)
+    rate(single.T)
+    first = _begin(archive, single, where, settings.population, np.random.default_rng(seed))
+    differential_evolution(
+        cast(Any, rate),  # whole generations, which its types do not know
+        Bounds(np.zeros(first.shape[1]), np.ones(first.shape[1])),
+        init=first, maxiter=settings.rounds, tol=0.0, atol=0.0,
+        mutation=(0.3, 0.9), recombination=0.6, polish=False, updating="deferred",
+        vectorized=True, rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    return sorted(archive, key=lambda one: -one.told)
+
+
+def _ranked(one: Tried) -> float:
+    """To be as large as possible; any flight within the limits above all beyond them."""
+    return float(np.log(max(one.told, 1e-12))) if one.worth else -100.0 - min(one.excess, 1e6)
+
+
+def _one_axis_each(where: Range) -> Array:
+    """Numbers (m, 1 + 5 j) of swings of one axis alone."""
+    rows = []
+    for k, (f, square, a) in product(
+        range(len(where.axes)), product(FREQUENCIES, SQUARES, AMPLITUDES)
+    ):
+        own = np.zeros((len(where.axes), NUMBERS))
+        own[:, 1] = 0.5
+        own[k] = [a, np.log(f / SLOWEST) / np.log(FASTEST / SLOWEST), square, 0.0, 0.0]
+        # what goes aside does so along the longer side
+        heading = 0.5 if where.axes[k] == 1 else 0.0
+        rows.append(np.concatenate([[heading], own.ravel()]))
+    return np.array(rows)
+
+
+def _begin(
+    archive: Sequence[Tried], single: Array, where: Range, population: int,
+    random: np.random.Generator,
+) -> Array:  # fmt: skip
+    """The first generation: the best of each axis, alone and in pairs, and what chance adds."""
+    best = []
+    rows = np.array([one.numbers for one in archive])
+    told = np.array([_ranked(one) for one in archive])
+    for k in range(len(where.axes)):
+        own = np.flatnonzero(rows[:, 1 + NUMBERS * k] > 0.0)
+        best += [rows[i] for i in own[np.argsort(-told[own])][:2]]
+    found = list(best)
+    while len(found) < population:
+        pair = random.choice(len(best), 2, replace=False)
+        mixed = np.maximum(best[pair[0]], 0.0).copy()
+        axes, other = where.axes, best[pair[1]]
+        for k in range(len(axes)):
+            block = slice(1 + NUMBERS * k, 1 + NUMBERS * (k + 1))
+            if other[block][0] > mixed[block][0]:
+                mixed[block] = other[block]
+        mixed[1:] += 0.05 * random.normal(size=len(mixed) - 1) * (mixed[1:] > 0.0)
+        mixed[1 + NUMBERS - 2 :: NUMBERS] = random.random(len(axes))  # phases
+        found.append(np.clip(mixed, 0.0, 1.0))
+    return np.array(found[:population])

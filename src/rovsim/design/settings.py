@@ -1,0 +1,50 @@
+"""What a design may be asked, and limits that a flight keeps to."""
+
+from typing import Annotated
+
+from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
+
+from rovsim.core.schema import Section
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.simulation.settings import ReplaySettings
+
+
+class FlightLimits(Section):
+    """What a flight keeps to, in whatever the posterior holds for possible.
+
+    `clearance` m of CO from walls, floor and surface: the vehicle's own half length, and a hand's
+    breadth. `speed` m/s and `turn_rate` rad/s are what small vehicles reach; `tilt` rad is as far
+    as cameras on the walls see all markers. `slew` shares of the full stick per second: a thumb
+    moves a stick from end to end in 0.4 s. `depth` m below the surface, where less than the
+    tank allows is wanted.
+    """
+
+    clearance: NonNegativeFloat = 0.4
+    speed: PositiveFloat = 1.0
+    turn_rate: PositiveFloat = 1.5
+    tilt: PositiveFloat = 0.5
+    slew: PositiveFloat = 5.0
+    depth: tuple[float, float] | None = None
+
+
+class DesignSettings(Section):
+    """How a flight is looked for: `population` flights in each of `rounds` rounds."""
+
+    limits: FlightLimits = FlightLimits()
+    population: Annotated[int, Field(ge=8)] = 32
+    rounds: PositiveInt = 8
+
+
+class Question(Section):
+    """What is asked, on which settings of signals and replays it depends, and the seed.
+
+    `between` two effects; `know` parameters, as `effect.parameter`.
+    """
+
+    between: tuple[str, ...] = ()
+    know: tuple[str, ...] = ()
+    seconds: Annotated[float, Field(ge=10.0)] = 60.0
+    design: DesignSettings = DesignSettings()
+    signals: SignalSettings = SignalSettings()
+    replay: ReplaySettings = ReplaySettings()
+    seed: int = Field(0, ge=0)

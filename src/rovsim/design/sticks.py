@@ -1,0 +1,119 @@
+"""Movements of the sticks: a few numbers an axis, and the manoeuvres that are usual.
+
+A stick is a share (ticks, 6) in [-1, 1]: full sticks hold the greatest speed, turn rate and tilt
+that the limits allow, or are the full thrust where that is less.
+"""
+
+from typing import Callable, Mapping, NamedTuple
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+
+TICK = 0.1  # s between two positions of a stick: a hand does not move it faster than 5 Hz
+SLOWEST, FASTEST = 0.02, 1.0  # Hz: once in most of a minute; half of what a hand can do
+SQUARE = 6.0  # a sine sharpened so far stands at its ends for two thirds of the time
+SWELL = 30.0  # s from strong to weak and back
+IDLE = 0.08  # of a stick: moved less, it rests
+
+
+class Swing(NamedTuple):
+    """One axis: `amplitude`, `frequency` Hz, `square` in [0, 1], `phase` in turns, `swell`.
+
+    `swell` in [0, 1] is the share of the amplitude that comes and goes.
+    """
+
+    amplitude: float
+    frequency: float
+    square: float
+    phase: float
+    swell: float
+
+    @staticmethod
+    def of(x: Array) -> "Swing":
+        """Of five numbers in [0, 1]."""
+        amplitude = 0.0 if x[0] < IDLE else float(x[0])
+        frequency = SLOWEST * (FASTEST / SLOWEST) ** float(x[1])
+        return Swing(amplitude, frequency, float(x[2]), float(x[3]), float(x[4]))
+
+    def move(self, t: Array) -> Array:
+        """The stick (n,) at times (n,) s."""
+        wave = np.sin(2.0 * np.pi * (self.frequency * t + self.phase))
+        sharp = SQUARE * self.square
+        if sharp > 0.0:
+            wave = np.tanh(sharp * wave) / np.tanh(sharp)
+        weak = 0.5 * self.swell * (1.0 - np.cos(2.0 * np.pi * t / SWELL))
+        return self.amplitude * (1.0 - weak) * wave
+
+
+NUMBERS = len(Swing._fields)  # an axis
+
+
+def ticks(seconds: float) -> Array:
+    """Times (n,) s at which sticks are set."""
+    return TICK * np.arange(round(seconds / TICK) + 1)
+
+
+def move_sticks(x: Array, axes: Array, seconds: float) -> Array:
+    """Sticks (n, 6) of five numbers (5 j,) in [0, 1] for each of the axes (j,)."""
+    t = ticks(seconds)
+    found = np.zeros((len(t), len(AXES)))
+    for axis, own in zip(axes, x.reshape(len(axes), NUMBERS), strict=True):
+        found[:, axis] = Swing.of(own).move(t)
+    return found
+
+
+Manoeuvre = Callable[[Array, Array, np.random.Generator], Array]  # times, axes -> sticks
+
+
+def _zigzag(t: Array, axes: Array, random: np.random.Generator) -> Array:
+    """Ahead, turning to and fro: the helm over every 5 s (ships turn it at 10 or 20 degrees)."""
+    found = np.zeros((len(t), len(AXES)))
+    found[:, 0] = 1.0
+    found[:, 5] = np.where(np.floor(t / 5.0 + 0.5) % 2 < 1, 1.0, -1.0)
+    return found * np.isin(np.arange(len(AXES)), axes)
+
+
+def _steps(t: Array, axes: Array, random: np.random.Generator) -> Array:
+    """One axis after the other: ahead, rest, back, rest."""
+    found = np.zeros((len(t), len(AXES)))
+    share = len(axes) * t / (t[-1] + TICK)
+    turn, quarter = share.astype(int), (4.0 * (share % 1.0)).astype(int)
+    found[np.arange(len(t)), axes[turn]] = np.array([1.0, 0.0, -1.0, 0.0])[quarter]
+    return found
+
+
+TONES = 5  # of each axis
+
+
+def _multisine(t: Array, axes: Array, random: np.random.Generator) -> Array:
+    """Several tones on all axes at once, no two on the same, with the phases of Schroeder (1970).
+
+    From one swing in 20 s up to one in 2 s, which is where vehicles of this size answer.
+    """
+    found = np.zeros((len(t), len(AXES)))
+    tones = np.geomspace(0.05, 0.5, TONES * len(axes))
+    for j, axis in enumerate(axes):
+        own = tones[j :: len(axes)]
+        phase = -np.pi * np.arange(TONES) * (np.arange(TONES) + 1) / TONES
+        wave = np.sin(2.0 * np.pi * own * t[:, None] + phase).sum(axis=1)
+        found[:, axis] = wave / np.max(np.abs(wave))
+    return found
+
+
+def _prbs(t: Array, axes: Array, random: np.random.Generator) -> Array:
+    """All axes full over, to a side drawn every second (a pseudo-random binary sequence)."""
+    found = np.zeros((len(t), len(AXES)))
+    for axis in axes:
+        sides = random.choice([-1.0, 1.0], size=int(t[-1]) + 1)
+        found[:, axis] = sides[t.astype(int)]
+    return found
+
+
+USUAL: Mapping[str, Manoeuvre] = {
+    "zigzag": _zigzag,
+    "steps": _steps,
+    "multisine": _multisine,
+    "prbs": _prbs,
+}

@@ -1,0 +1,115 @@
+"""Where, when and with what a flight would be recorded: as the campaign's train runs were."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.run import CommandKind, Site
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.base import Wrench
+from rovsim.measurement.signals.measured import Measured
+from rovsim.simulation.settings import ReplaySettings
+
+FINE = 0.05  # s, the longest step of a predicted path: one step of the observer (observed_run.py)
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """What flights have in common.
+
+    `like` the train run whose clock, channels and log they would have; `seconds` each; `axes` (6,)
+    that a log holds demands of, `largest` (6,) N, N m a log of wrenches went up to.
+    """
+
+    like: ObservedRun
+    seconds: float
+    axes: Array
+    largest: Array
+    replay: ReplaySettings
+    catalogue: Catalogue
+
+    @cached_property
+    def coarser(self) -> "Surroundings":
+        """The same, thrust steady over each step of the observer: half the work."""
+        return replace(self, replay=self.replay.model_copy(update={"step": FINE}))
+
+    @property
+    def site(self) -> Site:
+        """Walls, and signs of the axes."""
+        return self.like.motion.site
+
+    @property
+    def kind(self) -> CommandKind:
+        """Of the commands."""
+        return self.like.motion.commands.kind
+
+    @cached_property
+    def wrenches(self) -> tuple[type[Wrench], ...]:
+        """Effects of the engine, so that one serves the whole design."""
+        return self.like.wrenches
+
+    @cached_property
+    def lines(self) -> Array:
+        """When the log has lines (n,), s: as often as that run's."""
+        step = float(np.median(np.diff(self.like.motion.commands.time)))
+        return np.round(step * np.arange(int(self.seconds / step - 1e-9) + 1), 4)
+
+    @cached_property
+    def parts(self) -> int:
+        """Steps of a predicted path from one reading to the next."""
+        return max(1, int(np.ceil(self.like.period / FINE - 1e-9)))
+
+    @cached_property
+    def edges(self) -> Array:
+        """Ends (k+1,) s of the steps; readings are `parts` of them apart."""
+        count = int(self.seconds / self.like.period)
+        return self.like.period / self.parts * np.arange(count * self.parts + 1)
+
+    @cached_property
+    def measured(self) -> Measured | None:
+        """What readings show, each as often as that run's; None: everything."""
+        own = self.like.motion.measured
+        if own is None:
+            return None
+        seen = self.like.seen
+        count = len(self.edges[:: self.parts])
+        when = seen[np.arange(count) % len(seen)]
+        return Measured(own.coordinates, own.heading, own.axes, own.summed, when, own.cutoff)
+
+
+def surround(
+    runs: Sequence[ObservedRun], seconds: float, axes: Sequence[int] | None,
+    replay: ReplaySettings, catalogue: Catalogue,
+) -> Surroundings:  # fmt: skip
+    """What flights have in common with the commanded run of most readings.
+
+    Args:
+        runs: the train runs.
+        seconds: how long flights last.
+        axes: of the columns of a log per axis; None: the log is of thrusters.
+        replay: how commands are held.
+        catalogue: all effects.
+
+    Raises:
+        BadInput: nothing was ever commanded.
+    """
+    commanded = [one for one in runs if len(one.motion.commands.time) > 1]
+    if not commanded:
+        raise BadInput(
+            "no train run has commands",
+            where="rovsim design",
+            expected="a campaign that logs commands: they are what a flight is made of",
+            remedy="Record a run with commands first, however short.",
+        )
+    like = max(commanded, key=lambda one: len(one.ends))
+    held = np.ones(6, bool) if axes is None else np.isin(np.arange(6), axes)
+    largest = np.zeros(6)
+    for one in commanded:
+        if one.motion.commands.kind == "wrench":
+            largest = np.maximum(largest, np.max(np.abs(one.motion.commands.value), axis=0))
+    return Surroundings(like, seconds, held & like.free, largest, replay, catalogue)

@@ -1,0 +1,125 @@
+"""What a flight would tell, beside the train runs: smaller intervals, longer odds.
+
+With H the information of the train runs about a hypothesis' parameters and J the derivatives of the
+flight's white innovations, H + J J^T is that of both. Where the first rival is true, the second one
+foresees the flight worse by what none of its parameters can take up:
+
+    min over x of |e + J^T x|^2 + x^T H x,
+
+e being its innovations there and x how far its parameters move from where the train runs left
+them. Half of that is what the logarithm of the odds is expected to gain.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.run import Commands
+from rovsim.design.knowledge import Knowledge, Known
+from rovsim.design.record import record
+from rovsim.design.surroundings import Surroundings
+from rovsim.diagnosis.observer.evidence import Linearised
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.innovations import estimate_motions
+from rovsim.diagnosis.observer.kalman import AxisMotion
+from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.noise import tune
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+
+THINNED = 4  # of so many readings one is asked how errors go on: 0.2 s apart
+
+
+@dataclass(frozen=True, eq=False)
+class Worth:
+    """Of one flight.
+
+    `surer` (j,) for each rival: standard deviation now over then of what is asked for; `std`
+    likewise then, scaled. `gain` (r,): what the logarithm of the odds of each rival, were it true,
+    is expected to gain; empty without rivals.
+    """
+
+    surer: tuple[Array, ...]
+    std: tuple[Array, ...]
+    gain: Array
+
+    @property
+    def told(self) -> float:
+        """What is to be as large as possible: the least of the gains, else the information.
+
+        Information in units of what the train runs hold, the geometric mean over what is asked for.
+        """
+        if len(self.gain):
+            return float(np.min(self.gain))
+        gained = np.maximum(self.surer[0] ** 2 - 1.0, 1e-12)
+        return float(np.exp(np.mean(np.log(gained))))
+
+
+def value(
+    paths: Array, commands: Commands, known: Knowledge, around: Surroundings, exact: bool = False
+) -> Worth:
+    """The worth of a flight whose path under each rival is (r, k+1, 13).
+
+    `exact`: the train runs are observed anew, with filters that suit them and the flight together,
+    as a diagnosis of all would. Else as they were seen without it, thrust is steady over each step
+    of the observer, and where rivals are told apart nothing is asked of their parameters.
+    """
+    if not exact:
+        around = around.coarser
+    runs = [
+        record(path, commands, rival.hypothesis.model, around)
+        for path, rival in zip(paths, known.rivals, strict=True)
+    ]
+    told, gains, motions = [], [], None
+    for k, (run, rival) in enumerate(zip(runs, known.rivals, strict=True)):
+        if exact or motions is None:
+            motions = _mix_motions(run, rival, known)
+        bank = _observe(run, known, motions, exact)
+        own = bank.linearise(rival.hypothesis if exact or len(runs) == 1 else rival.as_it_is)
+        told.append(_told(bank, own, rival, known, exact))
+        if len(runs) > 1:
+            gains.append(_gain(bank, own, known.rivals[1 - k], known, exact))
+    then = [one.std(of) for one, of in zip(known.rivals, told, strict=True)]
+    now = [one.std() for one in known.rivals]
+    surer = tuple(a / b for a, b in zip(now, then, strict=True))
+    return Worth(surer, tuple(then), np.array(gains))
+
+
+def _mix_motions(run: ObservedRun, rival: Known, known: Knowledge) -> tuple[AxisMotion, ...]:
+    """How errors go on in the train runs and a flight, each as long as it lasts."""
+    some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
+    own = np.array(estimate_motions(rival.hypothesis.model, [some]))
+    before, lasts = known.seconds, float(run.instants[-1])
+    both = (before * np.array(known.motions) + lasts * own) / (before + lasts)
+    return tuple(AxisMotion(float(d), float(k)) for d, k in both)
+
+
+def _observe(
+    run: ObservedRun, known: Knowledge, motions: tuple[AxisMotion, ...], exact: bool
+) -> FilterBank:
+    """Filters for the flight, which is the last run, and where exact for the train runs."""
+    runs = (*known.runs, run) if exact else (run,)
+    return FilterBank(runs, motions, tuple(tune(known.noise.white, motions, w) for w in runs))
+
+
+def _told(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge, exact: bool) -> Array:
+    """Information (k, k) beyond what the train runs held without the flight."""
+    if not len(own.at.x):
+        return np.zeros_like(rival.information)
+    found = inner_products(bank.flatten(own.J, known.noise))
+    return found - rival.information if exact else found
+
+
+def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, exact: bool) -> float:
+    """What the log odds against a rival gain where another one is true."""
+    seen = bank.linearise(other.hypothesis)
+    if not seen.finite:
+        return np.inf
+    beside = [a - b for a, b in zip(seen.e, true.e, strict=True)]
+    beside = [*(0.0 * one for one in beside[:-1]), beside[-1]]  # what is known is judged already
+    e = bank.flatten([one[None] for one in beside], known.noise)[0]
+    J = bank.flatten(seen.J, known.noise)
+    H, slope = inner_products(J), J @ e
+    if not exact:
+        H = H + other.information
+    return 0.5 * float(max(e @ e - slope @ solve(H, slope), 0.0))

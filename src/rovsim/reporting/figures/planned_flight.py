@@ -1,0 +1,69 @@
+"""A designed flight: where it leads in the tank, and its commands. No figure of the study."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import HALF_TURN_X
+from rovsim.reporting.figures.style import sheet, styled
+
+PATH, CHANCE = "#D55E00", "#999999"
+ROOM = 0.3  # m shown around the paths where no wall is known
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedFlight:
+    """`paths` (s, k, 3) m NED, the likeliest first; `tank` (3, 2) m NED, NaN where unknown.
+
+    `values` (m, c) of the commands at `time` (m,) s, by `names`, in `unit`.
+    """
+
+    paths: Array
+    tank: Array
+    time: Array
+    values: Array
+    names: tuple[str, ...]
+    unit: str
+
+
+@styled()
+def draw_flight(planned_flight: PlannedFlight) -> Figure:
+    """Draw a flight from above and from the side, where else it may lead, and its commands."""
+    figure = sheet(120)
+    grid: Any = figure.add_gridspec(2, 2, height_ratios=(1.0, 1.1))
+    paths, tank = planned_flight.paths * HALF_TURN_X, planned_flight.tank * HALF_TURN_X[:, None]
+    _view(figure.add_subplot(grid[0, 0]), paths, tank, (0, 1), ("north (m)", "west (m)"))
+    _view(figure.add_subplot(grid[0, 1]), paths, tank, (0, 2), ("north (m)", "up (m)"))
+    axes = figure.add_subplot(grid[1, :])
+    steps = max(1, len(planned_flight.time) // 2000)  # more points than the paper shows
+    for name, column in zip(planned_flight.names, planned_flight.values.T, strict=True):
+        axes.plot(planned_flight.time[::steps], column[::steps], label=name, linewidth=0.7)
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel(f"command ({planned_flight.unit})")
+    axes.margins(x=0.0)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=1.2)
+    return figure
+
+
+def _view(
+    axes: Axes, paths: Array, tank: Array, seen: tuple[int, int], labels: tuple[str, str]
+) -> None:
+    a, b = seen
+    for path in paths[:0:-1]:
+        axes.plot(path[:, a], path[:, b], color=CHANCE, linewidth=0.3, alpha=0.5)
+    axes.plot(paths[0, :, a], paths[0, :, b], color=PATH, linewidth=0.9)
+    axes.plot(*paths[0, :1, [a, b]], "o", color=PATH, markersize=4, markeredgecolor="white")
+    low, high = np.sort(tank[[a, b]], axis=1).T
+    if np.isfinite([low, high]).all():
+        axes.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor="#444444"))
+    reached = paths[:, :, [a, b]].reshape(-1, 2)
+    least, most = reached.min(axis=0) - ROOM, reached.max(axis=0) + ROOM
+    least, most = np.fmin(low, least), np.fmax(high, most)
+    axes.set(xlim=(least[0], most[0]), ylim=(least[1], most[1]), aspect="equal")
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])

@@ -1,0 +1,49 @@
+"""What `design` says on the terminal."""
+
+from rovsim.reporting.wording import significant
+from rovsim.results.base import or_nan
+from rovsim.results.experiment import Experiment, RivalOdds, Surer
+
+SURE = 1e6
+
+
+def tell_experiment(found: Experiment) -> str:
+    """What the flight is expected to tell, what usual manoeuvres would, and what it keeps to."""
+    lines = ["", f"A flight of {found.seconds:g} s ({found.manoeuvre}) is expected to give", ""]
+    lines += [_odds(name, one) for name, one in found.expects.odds.items()]
+    lines += [_std(name, one) for name, one in found.expects.std.items()]
+    lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
+    for name, one in found.baselines.items():
+        better = one.designed_is_better
+        told = (
+            "leaves the limits at any amplitude"
+            if better is None
+            else f"tells {significant(1.0 / better)} of it"
+        )
+        lines.append(f"  {name:<11}{told}")
+    return "\n".join([*lines, "", _keeps(found)])
+
+
+def _odds(name: str, one: RivalOdds) -> str:
+    return f"  {name}, if true: odds {_size(one.now)} now, {_size(one.then)} then"
+
+
+def _size(odds: float) -> str:
+    if odds > SURE:
+        return "over a million"
+    return significant(odds) if odds > 1.0 / SURE else "under one in a million"
+
+
+def _std(name: str, one: Surer) -> str:
+    unit = "" if one.unit in (None, "1") else f" {one.unit}"
+    now, then = (significant(or_nan(x), 2) for x in (one.now, one.then))
+    return f"  {name}: ± {then}{unit} (now ± {now}{unit})"
+
+
+def _keeps(found: Experiment) -> str:
+    kept = found.keeps
+    wall = "" if kept.nearest_wall_m is None else f"{kept.nearest_wall_m:.2f} m from any wall, "
+    return (
+        f"It stays {wall}below {kept.speed_m_s:.2f} m/s, {kept.turn_rate_rad_s:.2f} rad/s and "
+        f"{kept.tilt_rad:.2f} rad of tilt."
+    )

@@ -1,0 +1,165 @@
+"""A designed flight is what the contract says, keeps to its limits, and tells what it promised."""
+
+import json
+
+import numpy as np
+import pytest
+
+from rovsim.application.pipeline.recordings import measure, open_campaign
+from rovsim.application.settings import compose
+from rovsim.apps.cli.main import main
+from rovsim.core.files import read_json, read_yaml
+from rovsim.core.run import Commands
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.least_squares import inner_products
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.observer.observed_run import prepare_runs
+from rovsim.diagnosis.selection.gauss_newton import fit, polish
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.damping import QuadraticDamping
+from rovsim.dynamics.model import nominal
+from rovsim.measurement.campaign_file import CommandLog
+from rovsim.measurement.recording.commands import as_commands, as_logged
+from rovsim.results.experiment import Experiment
+from rovsim.simulation.synthetic_tank.sent_log import PLACED, read_sent_log
+
+TANK = ("tank", "tank=tiny", "tank.effects=[{effect: quadratic_damping, parameters: {sway: 90}}]")
+KNOWN = "quadratic_damping.sway"
+SHORT = ("seconds=15", "design.population=8", "design.rounds=1")
+FEWER = {"FREQUENCIES": (0.12, 0.5), "SQUARES": (0.8,), "AMPLITUDES": (0.6, 1.0),
+         "IN_PLANE": (0.1, 0.45), "OUT_OF_PLANE": (0.05, 0.2)}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def designed(tmp_path_factory):
+    """A campaign, a flight designed on it, and the same campaign with the flight flown."""
+    out = tmp_path_factory.mktemp("design") / "a flight, (of é)"
+    main([*TANK, f"out={out / 'raw'}", "--quiet"])
+    given = [f"campaign={out / 'raw'}", "model=nominal", f"know=[{KNOWN}]", f"out={out / 'plan'}"]
+    with pytest.MonkeyPatch.context() as patch:
+        for name, few in FEWER.items():
+            patch.setattr(f"rovsim.design.search.{name}", few)
+        main(["design", *given, *SHORT, "--quiet"])
+    main([*TANK, f"out={out / 'flown'}", f"fly={out / 'plan' / 'experiment.csv'}", "--quiet"])
+    return out
+
+
+def observed(folder):
+    """The vehicle's model, and the train runs as a diagnosis sees them."""
+    settings = compose([])
+    data = measure(open_campaign(str(folder)), settings.signals)
+    base = nominal(data.vehicle)
+    runs = prepare_runs(data.runs, "train", settings.replay, built_in(), base.body.free)
+    return base, {run.motion.run.id: run for run in runs}
+
+
+def test_it_writes_the_contract(designed):
+    plan = designed / "plan"
+    found = read_json(plan / "experiment.json")
+    assert found["schema"] == "rovsim.experiment/1"
+    assert found["seconds"] == 15.0
+    assert set(found["expects"]) == {"odds", "std"}
+    assert set(found["expects"]["std"]) == {KNOWN}
+    assert set(found["baselines"]) == {"zigzag", "steps", "multisine", "prbs"}
+    assert found["expects"]["std"][KNOWN]["then"] < found["expects"]["std"][KNOWN]["now"]
+    names = {"experiment.csv", "experiment.json", "experiment.png", "experiment.pdf"}
+    assert {path.name for path in plan.iterdir()} == names | {"instructions.txt"}
+    assert Experiment.read(plan / "experiment.json").to_json() == json.loads(json.dumps(found))
+
+
+def test_its_log_is_flown_as_it_is_and_stays_within_the_limits(designed):
+    base, runs = observed(designed / "flown")
+    assert set(runs) == {"3dof-1", "6dof-1", "designed"}
+    motion = runs["designed"].motion
+    sent = np.loadtxt(designed / "plan" / "experiment.csv", delimiter=",", skiprows=1)
+    logged = np.searchsorted(sent[:, 0], motion.commands.time + 1e-6) - 1
+    np.testing.assert_allclose(motion.commands.value, (sent[logged, 1:] - 1500.0) / 400.0)
+    assert np.max(np.abs(motion.commands.value)) <= base.vehicle.thrusters.command_limit
+    limits = compose([]).design.limits
+    place, walls = motion.eta[motion.usable, :3], motion.site.tank
+    assert np.all(place > walls[:, 0] + limits.clearance)
+    assert np.all(place < walls[:, 1] - limits.clearance)
+    assert np.max(np.abs(motion.nu[:, :3])) < limits.speed
+
+
+def test_without_the_flight_the_other_runs_are_the_same(designed):
+    raw, flown = designed / "raw", designed / "flown"
+    for path in raw.glob("*dof*"):
+        assert path.read_bytes() == (flown / path.name).read_bytes()
+    (own,) = [run for run in read_yaml(flown / "campaign.yaml")["runs"] if run["id"] == "designed"]
+    assert own["split"] == "train"
+
+
+def test_the_information_that_was_promised_is_found_in_the_flight(designed):
+    """Less noise and chance: the derivatives along the path that was flown, not the one planned."""
+    base, runs = observed(designed / "flown")
+    start = Hypothesis(base, (Term(QuadraticDamping(), ("sway",)),))
+    train = [runs["3dof-1"], runs["6dof-1"]]
+    bank = FilterBank.design(train, start.model, FIRST_NOISE)
+    found, _ = polish(fit(start, bank, FIRST_NOISE), train)
+
+    def held(some):
+        bank = FilterBank.design(some, found.hypothesis.model, found.noise)
+        rows = bank.flatten(bank.linearise(found.hypothesis).J, found.noise)
+        return float(inner_products(rows)[0, 0])
+
+    before = held(train)
+    promised = read_json(designed / "plan" / "experiment.json")["expects"]["std"][KNOWN]
+    gained = held([*train, runs["designed"]]) / before - 1.0
+    assert gained == pytest.approx(promised["gained"], rel=0.3)
+    scale = start.terms[0].parameters[0].scale
+    assert promised["now"] == pytest.approx(scale / np.sqrt(before), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ((), "nothing is asked"),
+        (("between=[thruster_lag]",), "two different effects"),
+        (("between=[thruster_lag,input_delai]",), "Did you mean 'input_delay'"),
+        (("know=[thruster_lag.time]",), "Known: time_constant"),
+        (("know=[onboard_control.gain_yaw]",), "cannot show"),
+        (("seconds=1", "know=[thruster_lag.time_constant]"), "seconds"),
+        (("model=zero_acceleration", "know=[thruster_lag.time_constant]"), "cannot design"),
+    ],
+)
+def test_questions_that_make_no_sense_are_explained(designed, tmp_path, capsys, asked, message):
+    with pytest.raises(SystemExit) as ended:
+        main(["design", f"campaign={designed / 'raw'}", f"out={tmp_path / 'o'}", *asked])
+    assert ended.value.code == 2
+    text = capsys.readouterr().err
+    assert message in text
+    assert not (tmp_path / "o").exists()
+
+
+LOGS = [
+    {"kind": "pwm", "columns": ["a", "-b", "c"], "angles": ["c"]},
+    {"kind": "normalized", "columns": ["a", "-b"]},
+    {"kind": "demand", "columns": ["yaw", "-surge"]},
+    {"kind": "wrench", "columns": ["-heave", "sway"]},
+]
+
+
+@pytest.mark.parametrize("log", LOGS, ids=lambda log: log["kind"])
+def test_what_a_log_would_hold_is_read_back(log):
+    log = CommandLog(format="csv", **log)
+    shape = (5, 6) if log.per_axis else (5, len(log.columns))
+    value = np.round(400.0 * np.random.default_rng(0).uniform(-1, 1, shape)) / 400.0
+    if log.per_axis:
+        value[:, [k for k in range(6) if k not in log.axis_numbers]] = 0.0
+    kind = as_commands(np.arange(5.0), as_logged(Commands(np.arange(5.0), value, "thruster"), log),
+                       log, lambda line, column: "")  # fmt: skip
+    np.testing.assert_allclose(kind.value, value)
+
+
+def test_a_flight_without_a_file_beside_it_starts_in_the_middle(designed, tmp_path):
+    log = CommandLog(format="csv", kind="pwm", columns=[f"t{k}" for k in range(1, 9)])
+    plan, alone = designed / "plan" / "experiment.csv", tmp_path / "mine.csv"
+    alone.write_text(plan.read_text())
+    walls, draws = np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]]), np.random.default_rng
+    start = read_json(designed / "plan" / "experiment.json")["start"]
+    placed = np.array([start["x_m"], -start["y_m"], -start["z_m"]])
+    for path, expected in ((plan, placed), (alone, walls.mean(axis=1))):
+        begin = read_sent_log(path, log, up=True).start(walls, draws(0))
+        np.testing.assert_allclose(begin[:3], expected, atol=4 * PLACED)
