@@ -16,7 +16,7 @@ help:
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
-	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full|recordings"
+	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full|recordings|equations"
 	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
 	@echo "make setup   the environment alone"
 

@@ -6,6 +6,8 @@ import pytest
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import SEEDS, Case, Unlisted, seed_of
 from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.law_score import is_right, rate_laws, way
+from rovsim.benchmarks.blind.laws import LAWS
 from rovsim.benchmarks.blind.methods import Method
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
@@ -27,7 +29,8 @@ from rovsim.dynamics.model_file import EffectEntry, build_effect
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.reporting.html.marked import BEGIN, END, replace_tables
 from rovsim.results.blind_benchmark import BlindSummary
-from rovsim.results.diagnosis import Answer
+from rovsim.results.diagnosis import Answer, Diagnosis, DiagnosisErrors, Proposal
+from synthetic_study import diagnosis as written_diagnosis
 
 SHORT = {
     "duration": 2.0,
@@ -83,6 +86,59 @@ def test_recordings_of_others_hide_what_they_show_and_what_they_cannot():
         assert one.partial
     assert {len(c.silent) for c in cases} == {0, 1}
     assert [c for c in cases if not c.hidden]
+
+
+def test_laws_lie_outside_the_catalogue():
+    cases = suite("equations", "development")
+    assert len({c.id for c in cases}) == len(cases) == 55
+    laws = [c for c in cases if c.kind == "law"]
+    assert {c.outside[0].name for c in laws} == set(LAWS)
+    assert not set(LAWS) & set(built_in())
+    for one in laws:
+        law = one.outside[0].build()
+        assert law.given()
+        assert not law.listed
+        assert one.weaker().outside[0].build().values[0] == pytest.approx(0.8 * law.values[0], 1e-3)
+
+
+def law(*terms, reached=0.05):
+    """A diagnosis that proposes a law of these terms, (on, quantities, size)."""
+    found = Diagnosis.model_validate(written_diagnosis(
+        {"schema": "rovsim.ladder/1", "steps": [{"model": "+proposed_effect", "windows_2s": reached}]}
+    ))  # fmt: skip
+    made = [{"on": on, "quantities": q.split(), "size": size} for on, q, size in terms]
+    proposal = {
+        "axis": "sway", "equation": "", "file": "proposed_effect.py", "parameters": {},
+        "error_reduction": 0.5, "effect": "proposed_effect", "meaning": "", "terms": made,
+    }  # fmt: skip
+    left = found.unexplained.model_copy(update={"proposal": Proposal.model_validate(proposal)})
+    error = DiagnosisErrors(nominal=0.3, with_effects=0.2, noise_floor=0.04)
+    return found.model_copy(update={"unexplained": left, "error": error})
+
+
+def test_an_equation_is_right_by_its_quantities_and_worth_what_it_takes_away():
+    truth = LAWS["coupled_cubic"]
+    for terms, right in (
+        ([("sway", "u v", 2.0)], True),
+        ([("sway", "u v", 2.0), ("roll", "w", 0.1)], True),
+        ([("sway", "v", 2.0)], False),
+        ([("sway", "u v", 2.0), ("sway", "r", 0.1)], False),
+        ([("yaw", "u v", 2.0), ("sway", "u v", 0.1)], False),
+    ):
+        assert is_right(law(*terms).unexplained.proposal, truth) is right
+    assert way(law(("sway", "u v", 2.0), reached=0.04)) == pytest.approx(1.0)
+    assert way(law(("sway", "u v", 2.0), reached=0.12)) == pytest.approx(0.5)
+    case = next(
+        c for c in suite("equations", "development") if c.outside[0].name == "coupled_cubic"
+    )
+    good, bad = law(("sway", "u v", 2.0), reached=0.1), law(("sway", "v", 2.0), reached=0.19)
+    answers = [
+        KeptAnswer(digest="", method="d", case=case, redrawn=False, seconds=1.0, diagnosis=d)
+        for d in (good, bad)
+    ]
+    rates = rate_laws(answers)["coupled_cubic"]
+    assert (rates.proposed, rates.right, rates.half) == (1.0, 0.5, 0.5)
+    assert rates == rate_laws(answers)["all laws"]
 
 
 def test_seeds_of_the_two_ranges_are_disjoint_and_cases_repeatable():

@@ -10,7 +10,10 @@ import pytest
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
+from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import load_catalogue
+from rovsim.results.diagnosis import Diagnosis, Proposal
+from synthetic_study import diagnosis
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")
 
@@ -55,6 +58,28 @@ def errors(folder, axis):
         name: models[name]["runs"]["6dof-2"]["windows"]["2"]["velocity_rmse"][axis]
         for name in models
     }
+
+
+def test_a_proposed_law_is_added_where_its_file_is_named():
+    write_files()
+    found = Diagnosis.model_validate(diagnosis({"schema": "rovsim.ladder/1", "steps": []}))
+    own = {
+        "strength": {"value": 3.0, "std": 0.1, "unit": "N"},
+        "height": {"value": 0.7, "unit": "m"},
+    }
+    proposal = Proposal(
+        axis="heave", equation="", file="floor_cushion.py", parameters=own, error_reduction=0.5,
+        effect="floor_cushion", meaning="", terms=(), beside=found.selected[1:],
+    )  # fmt: skip
+    left = found.unexplained.model_copy(update={"proposal": proposal})
+    found = found.model_copy(update={"unexplained": left})
+    source, named = Path("diagnosis.json"), load_catalogue([Path("floor_cushion.py")])
+    plain, with_law = (
+        add_effects(found, source, "nominal", None, known) for known in (load_catalogue(), named)
+    )
+    assert plain[1] == ["thruster_lag", "quadratic_damping"]
+    assert with_law[1] == ["quadratic_damping", "floor_cushion"]
+    assert with_law[0].added[-1].given() == {"strength": 3.0, "height": 0.7}
 
 
 def test_a_file_counts_only_where_it_is_named():

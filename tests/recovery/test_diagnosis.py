@@ -39,6 +39,16 @@ def test_independent_exports_give_up_what_they_hide(name):
     assert found.error.with_effects == pytest.approx(found.error.noise_floor, rel=0.15)
 
 
+def check_law(found, law):
+    """A hull that sucks itself down: Z = c (u² + v²), all of it, and nothing else."""
+    assert law.axis == "heave"
+    assert {term.on for term in law.terms} == {"heave"}
+    assert {q for term in law.terms for q in term.quantities} == {"u", "v"}
+    assert not law.beside
+    before, after = found.error.with_effects, found.ladder.models[-1].windows_2s
+    assert after - found.error.noise_floor < 0.1 * (before - found.error.noise_floor)
+
+
 SHORT = {"duration": 30.0}  # s a run
 
 
@@ -63,6 +73,10 @@ def test_the_tank_gives_up_what_it_hides(case, tmp_path):
             answer = named(found)[hidden.effect][parameter]
             near = max(0.05 * abs(value.value), 3.0 * answer.std)
             assert answer.value == pytest.approx(value.value, abs=near)
+    law = found.unexplained.proposal
+    assert (law is not None) == bool(flown.outside)
+    if law is not None:
+        check_law(found, law)
     found.write(tmp_path / "diagnosis.json")
     assert Diagnosis.read(tmp_path / "diagnosis.json") == found
 

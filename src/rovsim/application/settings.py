@@ -59,7 +59,7 @@ class BlindSettings(Section):
     """The blind benchmark: which cases, who flies and who answers, on how many cores."""
 
     simulator: Literal["tank", "independent"] = "tank"
-    suite: Literal["quick", "standard", "full", "recordings"] = "quick"
+    suite: Literal["quick", "standard", "full", "recordings", "equations"] = "quick"
     seeds: Literal["development", "reporting"] = "reporting"
     methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")
     cores: PositiveInt = 2

@@ -11,6 +11,7 @@ PACKAGES = {
     "workbench": ("nicegui",),
     "recordings": ("rosbags", "pymavlink"),
     "fmi": ("pythonfmu",),
+    "equations": ("pysindy",),
     "benchmark": ("pykdtree", "pysindy", "threadpoolctl"),
 }
 

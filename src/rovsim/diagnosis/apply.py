@@ -10,7 +10,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import EffectEntry, build_effect, build_model, load_model
-from rovsim.results.diagnosis import Diagnosis, FittedEffect
+from rovsim.results.diagnosis import Diagnosis, FittedEffect, Proposal
 
 
 def add_effects(
@@ -22,11 +22,16 @@ def add_effects(
 ) -> tuple[Model, list[str]]:
     """The base model and the effects named, or selected, with their fitted values.
 
+    Where the catalogue has the effect that the diagnosis proposes, it and what is beside it.
+
     Raises:
         BadInput: an effect the diagnosis has no values for, or values no model can have.
     """
-    fitted = diagnosis.fitted
-    names = [one.effect for one in diagnosis.selected] if effects is None else list(effects)
+    law = diagnosis.unexplained.proposal
+    with_law = law is not None and law.effect in (catalogue if effects is None else effects)
+    chosen = (*law.beside, _as_effect(law)) if law and with_law else diagnosis.selected
+    fitted = diagnosis.fitted | {one.effect: one for one in chosen}
+    names = [one.effect for one in chosen] if effects is None else list(effects)
     for name in names:
         if name not in fitted:
             raise BadInput(
@@ -40,6 +45,10 @@ def add_effects(
     entries = list_entries([fitted[name] for name in names], source)
     known = catalogue.on(vehicle)
     return extend(base, [build_effect(entry, known) for entry in entries]), names
+
+
+def _as_effect(law: Proposal) -> FittedEffect:
+    return FittedEffect(effect=law.effect, parameters=law.parameters)
 
 
 def list_entries(fitted: Sequence[FittedEffect], source: Path) -> list[EffectEntry]:

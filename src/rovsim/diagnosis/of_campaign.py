@@ -29,10 +29,14 @@ STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88
 
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
-    """A diagnosis, and the conditions under which the model that was diagnosed fails."""
+    """A diagnosis, and the conditions under which the model that was diagnosed fails.
+
+    `effect_file`: source of the effect that it proposes, if it does.
+    """
 
     diagnosis: Diagnosis
     where: ErrorConditions
+    effect_file: str | None = None
 
 
 def diagnose_campaign(
@@ -59,20 +63,28 @@ def diagnose_campaign(
     where = [finding.share() for one in searched for finding in one.explanation.findings]
     ladder = _climb(found, test, settings)
     return Diagnosed(
-        report(found, where, ladder, describe_model(base), catalogue), list_conditions(searched)
-    )
+        report(found, where, ladder, describe_model(base), catalogue), list_conditions(searched),
+        found.proposed.source if found.proposed else None,
+    )  # fmt: skip
 
 
 def _climb(found: TrainDiagnosis, test: list[ObservedRun], settings: DiagnosisSettings) -> Ladder:
-    """The base, the effects one after the other, and the noise floor, on the test runs."""
+    """The base, the effects one after the other, and the noise floor, on the test runs.
+
+    Where a law is proposed, it and what is beside it come last, before the noise floor.
+    """
     motions = [w.motion for w in test]
     horizons = settings.replay.model_copy(update={"horizons": (2.0,)})
     steps = [
         score_step(one.name, motions, [replay(one, m, settings.signals, horizons) for m in motions])
-        for one in found.models()
+        for one in _list_models(found)
     ]
     floor = Step(model=NOISE_FLOOR, windows_2s=_floor(found, test, settings, steps[-1].windows_2s))
     return Ladder(steps=(*steps, floor))
+
+
+def _list_models(found: TrainDiagnosis) -> list[Model]:
+    return [*found.models(), *([found.proposed.model] if found.proposed else [])]
 
 
 def _floor(
@@ -87,9 +99,10 @@ def _floor(
     """
     if found.fit is None or reached is None:
         return None
+    fit = found.proposed.fit if found.proposed else found.fit
     floor = simulate_noise_floor(
-        found.models()[-1], test, found.fit.noise, settings.signals, settings.seed,
-    )  # fmt: skip
+        _list_models(found)[-1], test, fit.noise, settings.signals, settings.seed
+    )
     # what was reached is itself drawn by chance: a root mean square of w windows
     chance = 1.0 / np.sqrt(2.0 * sum(len(Windows(run).spans) for run in test))
     if floor is None or floor > (1.0 + chance) * reached:

@@ -10,6 +10,7 @@ structure       what is left, and no candidate explains
 common scale    does a factor of all forces stay open?
 joint fit       where there is some: all that could be wrong together, pruned; it competes
 replay fit      where there is some: values that replay best, rather than foresee the next reading
+equation        where there is some: a law for it, if one holds
 test runs       opened once, for the errors that are reported
 """
 
@@ -25,6 +26,7 @@ from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
+from rovsim.diagnosis.equations.proposal import ProposedLaw, propose_law
 from rovsim.diagnosis.observer.camera import find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
@@ -67,7 +69,7 @@ class TrainDiagnosis:
 
     `usable` runs; `fit` of the base and all selected effects, None where there was too little to
     judge; `scale` of all forces, where it is unknown; `not_observable` effects that the runs could
-    not show.
+    not show; `proposed`: a law for what is left, where one holds.
     """
 
     base: Model
@@ -79,6 +81,7 @@ class TrainDiagnosis:
     structures: Sequence[Structure] = ()
     scale: CommonScale | None = None
     not_observable: Sequence[str] = ()
+    proposed: ProposedLaw | None = None
 
     @property
     def enough(self) -> bool:
@@ -146,6 +149,7 @@ def _diagnose(
         found = found if better or (better is None and found.score >= joint.score) else joint
     if found.structures and len(found.fit.hypothesis.x):
         found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
+    proposed = _propose(found, base, gate, usable) if found.structures else None
     rivals = found.selection.named_rivals
     wider, scale = include_rest(found.fit, usable.runs)
     selected = rank_selected(base, wider, rivals, usable.runs)
@@ -156,6 +160,7 @@ def _diagnose(
         ranking=rank_alone(workspace, nothing, found.fit),
         rivals=rivals, structures=found.structures, scale=scale,
         not_observable=list_not_observable(found.selection, catalogue, base.vehicle),
+        proposed=proposed,
     )  # fmt: skip
 
 
@@ -213,6 +218,16 @@ def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
         fewer = bank.linearise(again.hypothesis.without(doubtful))
         again = fit_to_replays(judge(fewer, bank, found.noise), bank)
     return again
+
+
+def _propose(found: _Settled, base: Model, gate: Gate, usable: UsableRuns) -> ProposedLaw | None:
+    """An equation for what is left, where one holds."""
+
+    def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
+        return _polish(replace(found.selection, found=with_law), usable.runs)
+
+    catalogued = found.fit.hypothesis.model
+    return propose_law(found.selection, catalogued, base, gate, usable.runs, polish)
 
 
 def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:

@@ -9,6 +9,13 @@ from scipy.sparse.csgraph import connected_components
 from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
+from rovsim.diagnosis.equations.proposal import (
+    FILE,
+    ID,
+    ProposedLaw,
+    list_quantities,
+    name_target,
+)
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
 from rovsim.diagnosis.selection.rivals import SURE, Rival
@@ -19,7 +26,10 @@ from rovsim.results.diagnosis import (
     FittedEffect,
     FittedNoise,
     FittedValue,
+    Proposal,
+    ProposedTerm,
     RivalEffect,
+    RivalLaw,
     ScaleOfForces,
     Unexplained,
 )
@@ -57,7 +67,7 @@ def report(
         where=tuple(where),
         unexplained=describe_structures(found),
         next_experiment=advise(found, alike, joint, catalogue),
-        error=_errors(ladder),
+        error=_errors(ladder, len(found.selected)),
         not_excited=found.usable.still,
         not_measured=found.usable.unmeasured,
         not_observable=tuple(found.not_observable),
@@ -86,11 +96,11 @@ def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
     return ScaleOfForces(std=_rounded(scale.std), parameters=scale.parameters)
 
 
-def _errors(ladder: Ladder) -> DiagnosisErrors:
+def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
     """Errors of contract section 3; None where there is nothing to score."""
     errors = [_rounded(step.windows_2s) for step in ladder.models]
     return DiagnosisErrors(
-        nominal=errors[0], with_effects=errors[-1], noise_floor=_rounded(ladder.noise_floor)
+        nominal=errors[0], with_effects=errors[selected], noise_floor=_rounded(ladder.noise_floor)
     )
 
 
@@ -150,7 +160,39 @@ def describe_structures(found: TrainDiagnosis) -> Unexplained:
     if also:
         axes = ", ".join(dict.fromkeys(s.axis for s in also))
         hint += f" Also {axes}: {also[0].what}."
-    return Unexplained(fraction=_rounded(first.share), significant=True, hint=hint)
+    return Unexplained(
+        fraction=_rounded(first.share), significant=True, hint=hint,
+        proposal=_describe_proposal(found.proposed) if found.proposed else None,
+    )  # fmt: skip
+
+
+def _describe_proposal(law: ProposedLaw) -> Proposal:
+    h, scales = law.fit.hypothesis, law.fit.std
+    beside = [
+        FittedEffect(
+            effect=term.id,
+            parameters=_parameters(
+                term,
+                {p.name: float(scales[k] * p.scale)
+                 for p, k in zip(term.parameters, h.columns[i], strict=True)},
+            ),
+        )
+        for i, term in law.beside
+    ]  # fmt: skip
+    return Proposal(
+        axis=law.axis, equation=law.equation, file=FILE, effect=ID, meaning=law.meaning,
+        parameters={
+            n.name: FittedValue(value=_rounded(n.value), std=_rounded(n.std), unit=n.unit)
+            for n in law.numbers
+        },
+        error_reduction=_rounded(law.error_reduction),
+        terms=tuple(
+            ProposedTerm(on=name_target(t), quantities=list_quantities(t), size=_rounded(size))
+            for t, size in zip(law.terms, law.sizes, strict=True)
+        ),
+        beside=tuple(beside),
+        rivals=tuple(RivalLaw(equation=e, deficit=_rounded(d)) for e, d in law.rivals),
+    )  # fmt: skip
 
 
 def _noise(found: TrainDiagnosis) -> FittedNoise:

@@ -84,8 +84,23 @@ class Calibration(Section):
     without_probability: Claims
 
 
+class LawRates(Section):
+    """Equations for one law: shares of `cases` that end `unexplained`, and have a proposal.
+
+    `right`: its largest term acts where the law does, and its terms there are made of the law's
+    quantities, no more, no fewer; `half`: it takes the error on test runs at least half of the way
+    from the selected effects to the floor.
+    """
+
+    cases: int
+    unexplained: float
+    proposed: float
+    right: float
+    half: float
+
+
 class MethodSummary(Section):
-    """One method: by kind of case, by effect, and by physics outside the catalogue."""
+    """One method: by kind of case, by effect, by physics outside the catalogue, by law."""
 
     cases: int
     failed: tuple[str, ...]
@@ -93,6 +108,7 @@ class MethodSummary(Section):
     effects: dict[str, EffectRates]
     outside: dict[str, Rates]
     calibration: Calibration
+    laws: dict[str, LawRates] = Field(default_factory=dict)
 
 
 class BlindSummary(Result):

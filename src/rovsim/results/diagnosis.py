@@ -29,12 +29,50 @@ class FittedEffect(Section):
     probability: float | None = None
 
 
+class ProposedTerm(Section):
+    """A term of a law: what it acts `on`, the quantities it varies with, its RMS in N or N m."""
+
+    on: str
+    quantities: tuple[str, ...]
+    size: float | None
+
+
+class RivalLaw(Section):
+    """The same law with another last term; `deficit` in -2 log likelihood, prices paid."""
+
+    equation: str
+    deficit: float | None
+
+
+class Proposal(Section):
+    """A law for what no effect of the catalogue explains: the effect in `file`, and its values.
+
+    `axis` on which it acts most; `error_reduction` of the base's error, on top of the effects
+    `beside` it, which have the values that they have with it.
+    """
+
+    axis: str
+    equation: str
+    file: str
+    parameters: dict[str, FittedValue]
+    error_reduction: float | None
+    effect: str
+    meaning: str
+    terms: tuple[ProposedTerm, ...]
+    beside: tuple[FittedEffect, ...] = ()
+    rivals: tuple[RivalLaw, ...] = ()
+
+
 class Unexplained(Section):
-    """Structure that no effect of the catalogue explains: its share of the innovations."""
+    """Structure that no effect of the catalogue explains: its share of the innovations.
+
+    `proposal`: an equation for it, where one holds.
+    """
 
     fraction: float | None
     significant: bool
     hint: str
+    proposal: Proposal | None = None
 
 
 class DiagnosisErrors(Section):

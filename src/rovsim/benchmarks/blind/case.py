@@ -6,7 +6,7 @@ from typing import Any, Literal, Mapping
 import numpy as np
 from pydantic import Field
 
-from rovsim.benchmarks.blind.outside import OUTSIDE
+from rovsim.benchmarks.blind.laws import find_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import built_in
@@ -23,14 +23,14 @@ WEAKER = 0.8  # of the size, each time the vehicle leaves the tank
 
 
 class Unlisted(Section):
-    """Physics outside the catalogue, by its name in `outside`."""
+    """Physics outside the catalogue, by its name in `outside` or `laws`."""
 
     name: str
     parameters: dict[str, float] = Field(default_factory=dict)
 
     def build(self) -> Effect:
         """The effect with these values."""
-        return OUTSIDE[self.name](**self.parameters)
+        return find_outside(self.name)(**self.parameters)
 
 
 class Case(Section):
@@ -100,7 +100,7 @@ def _shrunk(entry: EffectEntry) -> EffectEntry:
 
 
 def _shrunk_outside(one: Unlisted) -> Unlisted:
-    first = OUTSIDE[one.name].parameters[0]
+    first = find_outside(one.name).parameters[0]
     smaller = {first.name: _closer(one.parameters[first.name], first)}
     return Unlisted(name=one.name, parameters=one.parameters | smaller)
 

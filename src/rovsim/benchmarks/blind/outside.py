@@ -226,7 +226,12 @@ SIZES = (0.7, 1.5)  # at strength 1, in scales of the first parameter
 
 def drawn_outside(name: str, strength: float, random: np.random.Generator) -> Effect:
     """Physics outside the catalogue, of a size drawn about the scale of its first parameter."""
-    first, *others = OUTSIDE[name].parameters
+    return drawn(OUTSIDE[name], strength, random)
+
+
+def drawn(cls: type[Effect], strength: float, random: np.random.Generator) -> Effect:
+    """An effect of a size drawn about the scale of its first parameter, the others about theirs."""
+    first, *others = cls.parameters
     values = {first.name: float(random.uniform(*SIZES)) * strength * first.scale}
     values |= {p.name: p.default + float(random.uniform(-1, 1)) * p.scale for p in others}
-    return OUTSIDE[name](**{k: float(f"{v:.4g}") for k, v in values.items()})
+    return cls(**{k: float(f"{v:.4g}") for k, v in values.items()})

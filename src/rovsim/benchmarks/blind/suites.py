@@ -11,6 +11,7 @@ camera     cameras that err slowly, or whose software smooths
 deviation  every coefficient of damping and inertia a few per cent off
 none       nothing hidden
 outside    physics that no entry describes, alone or beside an effect
+law        a smooth law outside the catalogue, for which an equation should be found
 """
 
 from typing import Any, Iterator, Mapping, Sequence
@@ -20,6 +21,7 @@ import numpy as np
 from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
 from rovsim.benchmarks.blind.field import CAMERAS, camera, workshops
+from rovsim.benchmarks.blind.laws import LAWS, drawn_law
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
 from rovsim.benchmarks.blind.recordings import recordings
@@ -194,4 +196,29 @@ def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
     )  # fmt: skip
 
 
-SUITES = {"quick": quick, "standard": standard, "full": full, "recordings": recordings}
+LAWLESS = ("tone", "kicks", "square_wave", "shedding", "ingress", "loose_ballast")
+EACH = 3  # cases of each law
+
+
+def equations(seeds: Range) -> Iterator[Case]:
+    """Laws outside the catalogue; what follows no law of the state; nothing."""
+    for k in range(EACH):
+        yield from (law(name, k, seeds) for name in LAWS)
+    yield from (outside(name, 0, seeds) for name in LAWLESS)
+    yield from (nothing(k, seeds) for k in range(4))
+
+
+def law(name: str, k: int, seeds: Range) -> Case:
+    """A smooth law outside the catalogue."""
+    case_id = f"law/{name}/{k}"
+    found = drawn_law(name, random_of(case_id, seeds))
+    return Case(
+        id=case_id, kind="law", seed=seed_of(case_id, seeds),
+        outside=(Unlisted(name=name, parameters=found.given()),),
+    )  # fmt: skip
+
+
+SUITES = {
+    "quick": quick, "standard": standard, "full": full, "recordings": recordings,
+    "equations": equations,
+}  # fmt: skip

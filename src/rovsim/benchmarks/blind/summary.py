@@ -9,6 +9,7 @@ from scipy.optimize import isotonic_regression
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.calibration import calibrate
 from rovsim.benchmarks.blind.case import Case
+from rovsim.benchmarks.blind.law_score import rate_laws
 from rovsim.benchmarks.blind.score import Score, score
 from rovsim.results.blind_benchmark import EffectRates, MethodSummary, Rates
 from rovsim.results.diagnosis import Answer, Diagnosis
@@ -73,6 +74,7 @@ def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
         effects={name: _rate_effect(rows) for name, rows in _by_effect(found)},
         outside={n: rate(rows) for n, rows in _grouped(outside, lambda j: j.case.outside[0].name)},
         calibration=calibrate(answers),
+        laws=rate_laws(answers),
     )
 
 

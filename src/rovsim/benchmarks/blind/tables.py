@@ -5,7 +5,14 @@ from typing import Mapping, Sequence
 from rovsim.benchmarks.blind.case import SEEDS
 from rovsim.benchmarks.blind.pictures import RANKS, RELIABILITY
 from rovsim.reporting.html import marked
-from rovsim.results.blind_benchmark import BlindSummary, Calibration, Claims, Ranks, Rates
+from rovsim.results.blind_benchmark import (
+    BlindSummary,
+    Calibration,
+    Claims,
+    LawRates,
+    Ranks,
+    Rates,
+)
 
 KIND_COLUMNS = {
     "cases": "cases", "verdict": "verdict right", "first": "first name right",
@@ -20,8 +27,13 @@ EFFECT_COLUMNS = {
     "limit": "half are named at", "error_median": "parameter error", "coverage": "intervals hold",
     "instead": "said instead",
 }  # fmt: skip
+LAW_COLUMNS = {
+    "cases": "cases", "unexplained": "flagged", "proposed": "an equation", "right": "right terms",
+    "half": "half way to the floor",
+}  # fmt: skip
 OUTSIDE_COLUMNS = {"cases": "cases", "verdict": "flagged", "false_names": "a false name"}
 PERCENT = {"verdict", "first", "exact_strict", "exact", "unseen", "false_names",
+           "unexplained", "proposed", "right", "half",
            "error_median", "error_95", "coverage", "worse", "covered", "p_value"}  # fmt: skip
 RANK_COLUMNS = {
     "values": "values", "covered": "inside 95 %", "stretch": "times too narrow",
@@ -48,6 +60,7 @@ def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
         parts += [f"### {name}", table(found.kinds, "cases of", KIND_COLUMNS)]
         parts += [table(found.effects, "effect", EFFECT_COLUMNS)]
         parts += [table(found.outside, "outside the catalogue", OUTSIDE_COLUMNS)]
+        parts += [table(found.laws, "law hidden", LAW_COLUMNS)]
         parts += _calibration(found.calibration, pictures if name == "diagnosis" else ())
         parts += [f"Crashed: {', '.join(found.failed)}."] if found.failed else []
     return "\n\n".join(part for part in parts if part)
@@ -94,7 +107,9 @@ def _share_right(claims: Claims) -> list[str]:
     return ["–" if claims.claimed is None else f"{claims.claimed:.4f}", str(claims.names), right]
 
 
-def table(rows: Mapping[str, Rates], head: str, columns: Mapping[str, str]) -> str:
+def table(
+    rows: Mapping[str, Rates] | Mapping[str, LawRates], head: str, columns: Mapping[str, str]
+) -> str:
     """One Markdown table; empty without rows."""
     if not rows:
         return ""

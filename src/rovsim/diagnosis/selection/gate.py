@@ -72,6 +72,16 @@ class Gate:
             found = selection.workspace.fit(base)
         return replace(selection, found=found), found is selection.found
 
+    def favours(self, more: Model, less: Model, share: float) -> bool:
+        """Whether one model errs less than another by that share: on each part, surely on all runs.
+
+        What was kept apart holds few windows: there it need not be sure as well.
+        """
+        everywhere = replace(self, runs=self.whole)._errors([more, less])
+        parts = [everywhere, *([self._errors([more, less])] if self.runs else [])]
+        enough = all(_ratio(one, other) < 1.0 - share for one, other in parts)
+        return enough and _is_surely_less(*everywhere)
+
     def prefers(self, one: Selection, other: Selection) -> bool | None:
         """Whether the first replays better; None where nothing was kept apart."""
         if not self.runs:

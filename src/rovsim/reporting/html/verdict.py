@@ -161,7 +161,24 @@ def _runner_up(rival: RivalEffect) -> str:
 def unexplained_sentences(found: Diagnosis) -> list[str]:
     """What no effect of the catalogue explains."""
     left = found.unexplained
-    return [f"Unexplained: {left.hint}"] if left.significant else []
+    return [f"Unexplained: {left.hint}", *_law_sentences(found)] if left.significant else []
+
+
+def _law_sentences(found: Diagnosis) -> list[str]:
+    """The law that is proposed for it: what it is worth, and how to use it."""
+    law = found.unexplained.proposal
+    if law is None:
+        return []
+    values = ", ".join(f"{name} {interval(v)}" for name, v in law.parameters.items())
+    worth = f"It removes {percent(law.error_reduction)} of the error on the train runs"
+    step = next((s for s in found.ladder.models if s.model == f"+{law.effect}"), None)
+    if step is not None and step.windows_2s is not None:
+        worth += f"; with it the error on the test runs is {significant(step.windows_2s)}"
+    return [
+        f"A law for it: {law.meaning} {law.equation} with {values}. {worth}.",
+        f"It is written as {law.file}: read it, change it, and add it with "
+        f"`rovsim add diagnosis=… effects_file={law.file} model=NEW.yaml`.",
+    ]
 
 
 def still_sentences(axes: Sequence[str]) -> list[str]:

@@ -2,10 +2,10 @@
 
 rovsim diagnose campaign=DIR out=OUT [model=nominal|FILE] [search.false_alarm=0.01]
 
-Writes OUT/diagnosis.json, figures, OUT/report.html, and an MLflow run where rovsim[tracking] is
-installed. Only train runs are used to decide; the test runs are opened once, for the errors that
-are reported. The model with the effects is then written by `rovsim add
-diagnosis=OUT/diagnosis.json model=NEW.yaml`.
+Writes OUT/diagnosis.json, figures, OUT/report.html, OUT/proposed_effect.py where a law is found for
+what no effect explains, and an MLflow run where rovsim[tracking] is installed. Only train runs are
+used to decide; the test runs are opened once, for the errors that are reported. The model with the
+effects is then written by `rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 """
 
 from pathlib import Path
@@ -20,7 +20,9 @@ from rovsim.application.settings import CampaignSettings, TrackingSettings, sele
 from rovsim.application.tracking import track_diagnosis
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import installed
+from rovsim.core.files import write_text
 from rovsim.core.progress import reported
+from rovsim.diagnosis.equations.proposal import FILE as PROPOSAL
 from rovsim.diagnosis.of_campaign import Diagnosed
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
@@ -46,6 +48,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     how = select(settings, DiagnosisSettings)
     found = diagnose(data.runs, base, how, catalogue)
     shown = _present(out, data, found, settings, catalogue)
+    if found.effect_file is not None:
+        write_text(out / PROPOSAL, found.effect_file)
     found.diagnosis.write(out / "diagnosis.json")
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
     text = terminal.tell_diagnosis(found.diagnosis, catalogue)

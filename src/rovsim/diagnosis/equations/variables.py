@@ -1,0 +1,126 @@
+"""What a law may be made of: factors, and what a term acts on, with units and mirror symmetry.
+
+Numbers are those of the kernel (`law.py`). Under a mirror of port and starboard, the symmetry of
+nearly every vehicle, sway, roll, yaw and what goes with them change sign.
+"""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.rotations import matrix
+from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
+
+NU = ("u", "v", "w", "p", "q", "r")
+IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # `p` are the parameters there
+ODD = (1, 3, 5)  # axes whose sign a mirror of port and starboard turns
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A factor of a term: its symbol, LaTeX, code in a file, powers of its unit, and meaning.
+
+    `odd`: it changes sign under the mirror; None: it is of the world, which has no such symmetry.
+    """
+
+    symbol: str
+    latex: str
+    code: str
+    meters: int
+    seconds: int
+    radians: int
+    odd: bool | None
+    meaning: str
+
+
+def _velocities() -> list[Variable]:
+    signs = (r"\tanh({}/" + f"{SMOOTH:g})", "tanh({} / " + f"{SMOOTH:g})")
+    kinds = (
+        ("{}", "{}", "{}", "{} velocity"),
+        ("|{}|", "|{}|", "abs({})", "{} speed"),
+        ("sign({})", *signs, "the direction of {} motion"),
+    )
+    return [
+        Variable(
+            kind.format(NU[i]), latex.format(NU[i]), code.format(IN_CODE[i]),
+            *_unit_of_velocity(i, kind), i in ODD and kind != "|{}|", what.format(axis),
+        )
+        for kind, latex, code, what in kinds
+        for i, axis in enumerate(AXES)
+    ]  # fmt: skip
+
+
+def _unit_of_velocity(i: int, kind: str) -> tuple[int, int, int]:
+    """Powers of m, s, rad; the sign of a velocity has none."""
+    if kind.startswith("sign"):
+        return 0, 0, 0
+    return (0, -1, 1) if i >= 3 else (1, -1, 0)
+
+
+def _attitudes() -> list[Variable]:
+    signs = (r"\tanh(d_{}/" + f"{TILT:g})", "tanh(d{} / " + f"{TILT:g})")
+    kinds = (("d_{}", "d_{}", "d{}"), ("sign(d_{})", *signs))
+    return [
+        Variable(symbol.format(x), latex.format(x), code.format(x), 0, 0, 0, x == "y", what)
+        for symbol, latex, code in kinds
+        for x, what in (("x", "pitch"), ("y", "roll"), ("z", "uprightness"))
+    ]
+
+
+VARIABLES: tuple[Variable, ...] = (
+    *_velocities(),
+    *_attitudes(),
+    Variable("U", "U", "U", 1, -1, 0, False, "speed"),
+    Variable("1/U", r"U^{-1}", f"(1.0 / sqrt(U * U + {STILL**2:g}))", -1, 1, 0, False, "speed"),
+    Variable("n", "(n - n_0)", "north", 1, 0, 0, None, "place along north"),
+    Variable("e", "(e - e_0)", "east", 1, 0, 0, None, "place along east"),
+    Variable("d", "(d - d_0)", "deep", 1, 0, 0, None, "depth"),
+    Variable("near", r"e^{-((n-n_0)^2+(e-e_0)^2)/2s^2}", "near", 0, 0, 0, None, "one place"),
+)  # fmt: skip
+SPEED, DIRECTION, NORTH, EAST, DEEP, NEAR = range(24, 30)
+# What a term acts on: a body axis, a force along the world's axes, or the water's velocity.
+ON = (*AXES, "north", "east", "down", "water north", "water east", "swirl")
+WORLD, WATER, SWIRL = 6, 9, 11
+
+
+def tabulate(state: Array, place: Array) -> Array:
+    """Values (30, n) of all variables at states (n, 13).
+
+    Args:
+        state: pose NED and body velocity.
+        place: north, east, down (3,) m and width m of what depends on place.
+    """
+    nu, R = state[:, 7:].T, matrix(state[:, 3:7])
+    down, U = R[:, 2].T, np.sqrt(np.sum(state[:, 7:10] ** 2, axis=1))
+    n, e, d = state[:, :3].T - place[:3, None]
+    near = np.exp(-(n**2 + e**2) / (2.0 * place[3] ** 2))
+    rest = [U, 1.0 / np.sqrt(U**2 + STILL**2), n, e, d, near]
+    return np.vstack([nu, np.abs(nu), np.tanh(nu / SMOOTH), down, np.tanh(down / TILT), *rest])
+
+
+def unit_of(on: int, factors: Sequence[int]) -> str:
+    """SI unit of a coefficient, so that the term is N, N m, m/s or, of a swirl, 1/s."""
+    used = [VARIABLES[k] for k in factors]
+    m, s = sum(v.meters for v in used), sum(v.seconds for v in used)
+    rad = sum(v.radians for v in used)
+    if on < WATER:
+        head = "N m" if 3 <= on < WORLD else "N"
+        return _written(head, -m, -s, -rad)
+    return _written("", (1 if on < SWIRL else 0) - m, -1 - s, -rad)
+
+
+def _written(head: str, m: int, s: int, rad: int) -> str:
+    """A unit as catalogues write it: N s2/m2, N m s/rad, 1/s."""
+    powers = {"m": m, "s": s, "rad": rad}
+    above = [_power(name, k) for name, k in powers.items() if k > 0]
+    below = [_power(name, -k) for name, k in powers.items() if k < 0]
+    over = " ".join(([head] if head else []) + above) or "1"
+    under = " ".join(below)
+    return over + (f"/({under})" if len(below) > 1 else f"/{under}" if below else "")
+
+
+def _power(name: str, k: int) -> str:
+    return name if k == 1 else f"{name}{k}"

@@ -1,0 +1,141 @@
+"""Any law of up to three terms as one effect: its terms are data, so that nothing is compiled anew.
+
+A term is a coefficient, what it acts on, and up to three factors. Both are numbers in the effect's
+parameters: rows of `rovsim.diagnosis.equations.variables`. A test holds the kernel against the file
+written of a law.
+"""
+
+from math import exp, sqrt, tanh
+
+from rovsim.dynamics.effects.base import Parameter, Wrench
+from rovsim.dynamics.engine.compiled import inlined, internal
+from rovsim.dynamics.engine.vectors import into_body
+
+TERMS, FACTORS = 3, 3
+STRIDE = 3 + FACTORS  # parameters of a term
+SMOOTH = 0.02  # m/s, rad/s: a sign that turns over within the noise of the velocity
+TILT = 0.05  # of the world's down in body axes, 3 degrees: likewise of the attitude
+STILL = 0.02  # m/s: below, a direction of motion fades
+
+
+@inlined
+def speed(v):
+    """Of translation."""
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+
+
+@inlined
+def away(at, x, y):
+    """Metres north and east of a place in MoCap coordinates."""
+    return at.position[0] - x * at.axes[0], at.position[1] - y * at.axes[1]
+
+
+@inlined
+def of_velocity(k, v):
+    """Velocities, their sizes and directions; the speed, and what is along the motion."""
+    if k < 6:
+        return v[k]
+    if k < 12:
+        return abs(v[k - 6])
+    if k < 18:
+        return tanh(v[k - 12] / SMOOTH)
+    U = speed(v)
+    return U if k == 24 else 1.0 / sqrt(U * U + STILL * STILL)
+
+
+@inlined
+def of_place(k, at, x, y, z, s):
+    """Metres from a place, and how near it is."""
+    north, east = away(at, x, y)
+    if k == 26:
+        return north
+    if k == 27:
+        return east
+    if k == 28:
+        return at.position[2] - z * at.axes[2]
+    return exp(-(north * north + east * east) / (2.0 * s * s))
+
+
+@inlined
+def factor(code, at, p):
+    """One factor of a term; 1 where there is none."""
+    k = int(code)
+    if k < 0:
+        return 1.0
+    if k < 18 or k in (24, 25):
+        return of_velocity(k, at.nu_r)
+    if k < 21:
+        return at.R[2][k - 18]
+    if k < 24:
+        return tanh(at.R[2][k - 21] / TILT)
+    return of_place(k, at, p.x, p.y, p.z, p.width)
+
+
+@internal
+def term(at, p, k):
+    """A term: its coefficient, size and factors. Called: inlined, engines take twice as long."""
+    value = p[STRIDE * k] * p[STRIDE * k + 1]
+    if value != 0.0:
+        for j in range(FACTORS):
+            value *= factor(p[STRIDE * k + 3 + j], at, p)
+    return value
+
+
+@inlined
+def total(p, on, values):
+    """Sum of the terms that act there."""
+    found = 0.0
+    for k in range(TERMS):
+        if int(p[STRIDE * k + 2]) == on:
+            found += values[k]
+    return found
+
+
+@inlined
+def drag_change(linear, quadratic, v, water):
+    """What moving water adds to the drag of one axis."""
+    w = v - water
+    return (linear + quadratic * abs(v)) * v - (linear + quadratic * abs(w)) * w
+
+
+def _term(k: int) -> tuple[Parameter, ...]:
+    """The numbers of one term: free coefficient, its size, what it acts on, its factors."""
+    fixed = (f"size{k}", f"on{k}", *(f"factor{k}{j}" for j in range(1, FACTORS + 1)))
+    return (
+        Parameter(f"c{k}", "1", f"c_{k}", scale=1.0),
+        *(Parameter(name, "1", name, default=-1.0, scale=1.0, fitted=False) for name in fixed),
+    )
+
+
+class Law(Wrench):
+    """Up to three terms of products of velocities, attitude and place."""
+
+    id = "law"
+    listed = False
+    equation = r"\tau = \sum_k c_k\,e_k \prod_j f_{kj}"
+    neglects = "what is not a product of its factors"
+    source = "definition"
+    parameters = (
+        *_term(1), *_term(2), *_term(3),
+        Parameter("x", "m", "x_0", scale=0.5), Parameter("y", "m", "y_0", scale=0.5),
+        Parameter("z", "m", "z_0", scale=0.5),
+        Parameter("width", "m", "s", low=0.15, high=5.0, default=0.5, scale=0.2),
+        *(Parameter(f"linear{i}", "N s/m", "d", scale=1.0, fitted=False) for i in range(3)),
+        *(Parameter(f"quadratic{i}", "N s2/m2", "d", scale=1.0, fitted=False) for i in range(3)),
+    )  # fmt: skip
+
+    @staticmethod
+    def wrench(at, p):
+        """Forces along the body's axes and the world's, and what water that moves adds to drag."""
+        t = (term(at, p, 0), term(at, p, 1), term(at, p, 2))
+        f = into_body(at.R, (total(p, 6, t), total(p, 7, t), total(p, 8, t)))
+        X, Y, Z = total(p, 0, t) + f[0], total(p, 1, t) + f[1], total(p, 2, t) + f[2]
+        north, east = away(at, p.x, p.y)
+        vn, ve, turns = total(p, 9, t), total(p, 10, t), total(p, 11, t)
+        vn, ve = vn - turns * east, ve + turns * north
+        if vn != 0.0 or ve != 0.0:
+            v = into_body(at.R, (vn, ve, 0.0))
+            X += drag_change(p.linear0, p.quadratic0, at.nu_r[0], v[0])
+            Y += drag_change(p.linear1, p.quadratic1, at.nu_r[1], v[1])
+            Z += drag_change(p.linear2, p.quadratic2, at.nu_r[2], v[2])
+        return X, Y, Z, total(p, 3, t), total(p, 4, t), total(p, 5, t)

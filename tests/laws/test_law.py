@@ -1,0 +1,144 @@
+"""A proposed law: one force, as the engine knows it, as a file says it, and as it was searched."""
+
+import numpy as np
+import pytest
+
+from rovsim.core.rotations import from_euler, matrix
+from rovsim.core.run import Site
+from rovsim.diagnosis.equations.as_effect import drop_term, list_moved, split_law
+from rovsim.diagnosis.equations.effect_file import list_numbers, write_equation, write_file
+from rovsim.diagnosis.equations.library import Columns, LawTerm, _along_body, push_at
+from rovsim.diagnosis.equations.search import propose
+from rovsim.diagnosis.equations.variables import ODD, VARIABLES, tabulate, unit_of
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.law import Law
+from rovsim.dynamics.effects.user_files import read_effects
+from rovsim.dynamics.engine.types import EXAMPLE
+from rovsim.simulation.batch import Batch
+from rovsim.simulation.drive import Drive
+from worlds import model, tank
+
+PLACE = np.array([4.0, -2.0, 1.0, 0.8])  # north, east, down m; width m
+SIGNS = np.array([1.0, -1.0, -1.0])  # of a MoCap world whose z is up
+LAWS = [  # every factor, and everything that terms act on
+    [LawTerm(1, (0, 0, 1)), LawTerm(5, (7, 5)), LawTerm(0, (12,))],
+    [LawTerm(2, (24, 2)), LawTerm(3, (25, 1)), LawTerm(4, (18, 20))],
+    [LawTerm(4, (21,)), LawTerm(3, (22, 23)), LawTerm(5, (13, 10))],
+    [LawTerm(6, (26, 27)), LawTerm(7, (29,)), LawTerm(8, (28,))],
+    [LawTerm(11, (29,)), LawTerm(9, (26,)), LawTerm(10, (27, 27))],
+    [LawTerm(11, ()), LawTerm(0, (29, 0)), LawTerm(8, ())],
+]
+
+
+def states(count=5):
+    rng = np.random.default_rng(3)
+    poses = [
+        (*rng.uniform(-3, 5, 3), *from_euler(*rng.uniform(-0.6, 0.6, 3))) for _ in range(count)
+    ]
+    return np.hstack([poses, rng.uniform(-0.5, 0.5, (count, 6))])
+
+
+def law_of(terms, c=(2.0, -3.0, 0.5)):
+    """The law of these terms, with a model's own drag."""
+    body = model().body
+    values = {f"linear{i}": body.linear[i] for i in range(3)}
+    values |= {f"quadratic{i}": body.quadratic[i] for i in range(3)}
+    values |= dict(zip(("x", "y", "z"), PLACE[:3] * SIGNS, strict=True)) | {"width": PLACE[3]}
+    for k, term in enumerate(terms, start=1):
+        values |= {f"c{k}": c[k - 1], f"size{k}": 0.7, f"on{k}": float(term.on)}
+        values |= {f"factor{k}{j}": float(f) for j, f in enumerate(term.factors, start=1)}
+    free = (*(f"c{k}" for k in range(1, len(terms) + 1)), *list_moved(terms))
+    return Term(Law(**values), free)
+
+
+def at(state):
+    R = tuple(map(tuple, matrix(state[None, 3:7])[0]))
+    nu = tuple(state[7:])
+    return EXAMPLE._replace(position=tuple(state[:3]), R=R, nu=nu, nu_r=nu, axes=tuple(SIGNS))
+
+
+def written_wrenches(effect):
+    """What a written effect pushes (n, 6): its kernel is plain Python."""
+    p = effect.named_parameters()(*effect.values)
+    return np.array([effect.wrench(at(state), p) for state in states()])
+
+
+def wrenches(law):
+    """What the law pushes (n, 6) in the engine."""
+    base, known = model(), states()
+    count = len(known)
+    idle = Drive(np.zeros((count, 6)), np.zeros((count, 8)), np.zeros((count, 6)), 60.0)
+    site = Site(tank().tank, SIGNS)
+    with_law, without = (
+        Batch([m], site).accelerations(idle, np.zeros(count), known, np.empty((0, 6)))
+        for m in (base + law.effect, base)
+    )
+    return (with_law - without) @ base.body.M.T
+
+
+@pytest.mark.parametrize("terms", LAWS, ids=write_equation)
+def test_the_file_pushes_as_the_law_does(terms, tmp_path):
+    law = law_of(terms)
+    numbers = list_numbers(terms, law, [0.1] * len(law.free))
+    path = tmp_path / "proposed_effect.py"
+    path.write_text(write_file("proposed_effect", terms, law, numbers, "A test."), "utf-8")
+    cls = read_effects(path, built_in())["proposed_effect"]
+    written = cls(**{n.name: n.value for n in numbers})
+    np.testing.assert_allclose(written_wrenches(written), wrenches(law), rtol=1e-5, atol=1e-9)
+    assert not written_wrenches(cls()).any()  # without values it does nothing
+
+
+@pytest.mark.parametrize("terms", LAWS, ids=write_equation)
+def test_the_search_sees_what_the_law_does(terms):
+    """To first order in the velocity of water that moves."""
+    small = 1e-6
+    for term in terms:
+        law = law_of([term], (small,))
+        sought = push_at([LawTerm(term.on, term.factors)], states(), model(), PLACE)[0]
+        np.testing.assert_allclose(wrenches(law), 0.7 * small * sought, rtol=1e-4, atol=1e-11)
+
+
+def test_terms_along_the_body_turn_with_the_mirror():
+    """Port and starboard exchanged: sway, roll and yaw change sign, and so does the push."""
+    turned = np.where(np.isin(np.arange(6), ODD), -1.0, 1.0)
+    state = states()
+    mirrored = state.copy()
+    mirrored[:, 7:] *= turned
+    mirrored[:, 3:7] *= [1.0, -1.0, 1.0, -1.0]
+    mirrored[:, 1] *= -1.0
+    for i in range(6):
+        terms = list(_along_body(i, np.arange(6)))
+        one, other = (push_at(terms, s, model(), PLACE * 0.0 + 1.0) for s in (state, mirrored))
+        np.testing.assert_allclose(other, one * turned, atol=1e-12)
+
+
+def test_units_make_newtons():
+    assert unit_of(1, (0, 0, 1)) == "N s3/m3"
+    assert unit_of(5, (7, 5)) == "N m s2/(m rad)"
+    assert unit_of(11, ()) == "1/s"
+    assert unit_of(9, (26,)) == "1/s"
+    assert unit_of(10, (29,)) == "m/s"
+    assert unit_of(0, (12,)) == "N"
+    assert len(VARIABLES) == len(tabulate(states(), PLACE))
+
+
+def test_a_term_is_dropped_and_the_others_stay():
+    terms = LAWS[3]
+    rest = drop_term(Hypothesis(model(), (law_of(terms),)), terms, 1)
+    law = split_law(rest)[1]
+    assert law is not None
+    assert law.free == ("c1", "c2", "x", "y", "z")
+    both = [wrenches(law_of([t], (c,))) for t, c in ((terms[0], 2.0), (terms[2], 0.5))]
+    np.testing.assert_allclose(wrenches(law), sum(both), atol=1e-9)
+
+
+def test_the_regression_finds_the_terms_that_made_the_data():
+    rng = np.random.default_rng(0)
+    X = rng.normal(size=(3, 400, 8))
+    X[..., 5] += 0.9 * X[..., 2]  # a term that resembles one of the true ones
+    y = 2.0 * X[..., 2] - 1.0 * X[..., 6] + rng.normal(size=(3, 400))
+    rows = np.concatenate([y[..., None], X], axis=2)
+    terms = tuple(LawTerm(0, (k, k)) for k in range(8))
+    columns = Columns(terms, np.ones(8), tuple(part.T @ part for part in rows))
+    assert set(propose(columns, 2)[:2]) == {terms[2], terms[6]}
