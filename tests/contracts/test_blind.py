@@ -103,9 +103,9 @@ def test_laws_lie_outside_the_catalogue():
 
 def law(*terms, reached=0.05):
     """A diagnosis that proposes a law of these terms, (on, quantities, size)."""
-    found = Diagnosis.model_validate(written_diagnosis(
-        {"schema": "rovsim.ladder/1", "steps": [{"model": "+proposed_effect", "windows_2s": reached}]}
-    ))  # fmt: skip
+    step = {"model": "+proposed_effect", "windows_2s": reached}
+    ladder = {"schema": "rovsim.ladder/1", "steps": [step]}
+    found = Diagnosis.model_validate(written_diagnosis(ladder))
     made = [{"on": on, "quantities": q.split(), "size": size} for on, q, size in terms]
     proposal = {
         "axis": "sway", "equation": "", "file": "proposed_effect.py", "parameters": {},
