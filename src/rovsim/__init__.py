@@ -1,5 +1,20 @@
-"""rovsim: find the physics your underwater-vehicle simulator is missing."""
+"""rovsim: find the physics your underwater-vehicle simulator is missing.
+
+import rovsim
+campaign = rovsim.open("my_campaign")     # a notebook's way in: docs/notebooks.md
+"""
+
+from importlib import import_module
+from typing import Any
 
 __version__ = "0.1.0"
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+NOTEBOOK = ("open", "tank")
+
+
+def __getattr__(name: str) -> Any:
+    """What notebooks use; loaded when asked for, so that `import rovsim` costs nothing."""
+    if name in NOTEBOOK:
+        return getattr(import_module("rovsim.apps.notebook"), name)
+    raise AttributeError(f"module 'rovsim' has no attribute '{name}'")

@@ -147,7 +147,7 @@ def test_what_is_left_out_is_as_large_as_its_force():
     known = built_in()
     world = model(known["constant_wrench"](surge=3.0, yaw=-0.5), known["marker_offset"](x=0.1))
     left = list(leave_out(world, target("gz").hold))
-    sized = {one.name: one.rms for one in size_all(left, [typical_flight(world, False)])}
+    sized = {one.name: one.rms for one in size_all(left, [typical_flight(world)])}
     np.testing.assert_allclose(sized["constant_wrench"], [3.0, 0, 0, 0, 0, 0.5], atol=1e-9)
     assert not any(sized["marker_offset"])
 

@@ -14,7 +14,7 @@ from rovsim import AXES
 from rovsim.application.export.holding import Left
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import RunInfo, Site
-from rovsim.dynamics.effects.base import Sensing, Smoothing
+from rovsim.dynamics.effects.base import Autopilot, Sensing, Smoothing, Stick
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.signals.motion import Motion
@@ -47,16 +47,20 @@ def size_all(left: Sequence[Left], motions: Sequence[Motion]) -> list[Sized]:
     return [Sized(one.name, one.why, _rms(one, motions)) for one in left]
 
 
-def true_motions(model: Model, motions: Iterable[Motion]) -> list[Motion]:
-    """Measured motions as the model says they were."""
+def flights(model: Model, motions: Iterable[Motion] | None) -> list[Motion]:
+    """True motions behind measured ones, as the model says they were; without any, a flight."""
+    if motions is None:
+        return [typical_flight(model)]
     return [as_true(model, motion) for motion in motions]
 
 
-def typical_flight(model: Model, demands: bool) -> Motion:
+def typical_flight(model: Model) -> Motion:
     """A minute in which a pilot flies a model about, in the default tank or in open water.
 
-    Its own effects act, its residual does not. `demands`: what is logged are demands per axis.
+    Its own effects act, its residual does not. What is logged are commands of the thrusters, or
+    demands per axis where an effect acts on these.
     """
+    demands = any(isinstance(effect, Autopilot | Stick) for effect in model.effects)
     flown = replace(model, residual=None, effects=tuple(
         e.neutral() if isinstance(e, Sensing | Smoothing) else e for e in model.effects
     ))  # fmt: skip

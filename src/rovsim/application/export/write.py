@@ -14,6 +14,8 @@ from rovsim.core.files import write_text
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion
 
+TYPICAL = "a typical flight of a minute"
+
 
 @dataclass(frozen=True, eq=False)
 class Export:
@@ -67,6 +69,12 @@ def export_model(
     notes = [f"{model.name}, written by rovsim for {target.title}.", f"Model: {origin}"]
     notes += [f"Format: {target.source}.", target.takes, *_listed(sized, over)]
     return Export(target.text(Equation(held), notes), tuple(sized))
+
+
+def model_parts(model: Model) -> str:
+    """What a model is made of, in a line."""
+    parts = [model.vehicle.name, *(repr(effect) for effect in model.added)]
+    return " + ".join(parts + (["a learned residual"] if model.residual else []))
 
 
 def write_export(export: Export, out: Path) -> None:

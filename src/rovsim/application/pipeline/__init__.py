@@ -6,6 +6,7 @@ replays           models x motions -> replays -> scores, growth of errors, steps
 error_conditions  under which conditions a model fails
 forces            who pushes how much
 diagnosis         which effects a model lacks
+kept              diagnoses that are found again where nothing changed
 refit             the nominal model's own parameters, fitted
 training          a learned residual on top of a model; how long its predictions take
 comparison        replays, scores, conditions and forces of some models, together

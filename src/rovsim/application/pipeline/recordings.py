@@ -97,12 +97,24 @@ def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = 
             motions[run.id] = derive_motion(
                 filtered(stages[run.id], settings), quality[run.id], settings
             )
-    if not motions and not even_unusable:
-        reasons = "; ".join(f"{run}: {q.unusable}" for run, q in quality.items())
-        raise BadInput(
-            f"no run can be used ({reasons})",
-            where=campaign.file,
-            expected="at least one run that moves and is long enough",
-            remedy="Record longer runs in which the vehicle moves.",
-        )
-    return Measured(campaign, load_campaign_vehicle(campaign), motions, quality, stages)
+    found = Measured(campaign, load_campaign_vehicle(campaign), motions, quality, stages)
+    if not even_unusable:
+        refuse_unusable(found)
+    return found
+
+
+def refuse_unusable(data: Measured) -> None:
+    """Refuse a campaign without a run that can be used.
+
+    Raises:
+        BadInput: says why each of them cannot.
+    """
+    if data.motions:
+        return
+    reasons = "; ".join(f"{run}: {q.unusable}" for run, q in data.quality.items())
+    raise BadInput(
+        f"no run can be used ({reasons})",
+        where=data.campaign.file,
+        expected="at least one run that moves and is long enough",
+        remedy="Record longer runs in which the vehicle moves.",
+    )

@@ -1,15 +1,14 @@
 """An open campaign and what was computed of it: the same functions as the commands call."""
 
-import hashlib
-import json
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from rovsim.application.pipeline.kept import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
-from rovsim.application.provenance import describe_origin, digest
+from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import WorkbenchSettings, compose, select
 from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.draft import Draft
@@ -18,7 +17,7 @@ from rovsim.core.errors import BadInput, RovsimError
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
-from rovsim.dynamics.model_file import describe_model, read_model, write_model
+from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_conditions
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scores import subtract, summarize
@@ -76,25 +75,13 @@ class Workbench:
     @property
     def out(self) -> Path:
         """Where the workbench keeps what it computes."""
-        return Path(self.settings.out or f"results/{self.data.campaign.name}/ui")
+        return kept_folder(self.settings.out, self.data.campaign)
 
     @cached_property
     def diagnosis_path(self) -> Path:
         """Of these recordings, settings, base and code: an outdated one is never shown."""
-        content = hashlib.sha256()
-        campaign = self.data.campaign
-        files = {campaign.file} | {
-            path for run in campaign.runs for path in campaign.raw_files(run)
-        }
-        for path in sorted(p for p in files if p.is_file()):
-            content.update(path.read_bytes())
         how = select(self.settings, DiagnosisSettings)
-        content.update(how.model_dump_json().encode())
-        content.update(json.dumps(describe_model(self.base), sort_keys=True).encode())
-        content.update(
-            digest("rovsim.diagnosis.of_campaign", effects=self.catalogue.files).encode()
-        )
-        return self.out / content.hexdigest()[:12] / "diagnosis.json"
+        return kept_diagnosis(self.out, self.data.campaign, how, self.base, self.catalogue)
 
     @cached_property
     def baseline(self) -> Model:

@@ -8,19 +8,19 @@ and here, with the size of its force over a typical flight, or over the runs of 
 docs/export.md says what each of them holds.
 """
 
+from functools import partial
 from pathlib import Path
 from typing import Sequence
 
 from rovsim import AXES
-from rovsim.application.export.sizes import Sized, true_motions, typical_flight
+from rovsim.application.export.sizes import Sized, flights
 from rovsim.application.export.targets import Target, target, targets
-from rovsim.application.export.write import export_model, write_export
+from rovsim.application.export.write import TYPICAL, export_model, model_parts, write_export
 from rovsim.application.pipeline.recordings import load_campaign_vehicle, measure, open_campaign
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Autopilot, Stick
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
@@ -38,17 +38,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     chosen = _target(settings)
     model = _model(settings, catalogue)
     out = Path(settings.out or f"{model.name}{chosen.suffix}")
-    campaign = settings.campaign is not None
-
-    def flights() -> Sequence[Motion]:
-        if not campaign:
-            demands = any(isinstance(e, Autopilot | Stick) for e in model.effects)
-            return [typical_flight(model, demands)]
-        data = measure(open_campaign(settings.campaign), settings.signals)
-        return true_motions(model, data.motions.values())
-
-    over = f"the runs of {settings.campaign}" if campaign else "a typical flight of a minute"
-    export = export_model(model, chosen, flights, over, _origin(model))
+    over = f"the runs of {settings.campaign}" if settings.campaign else TYPICAL
+    export = export_model(model, chosen, partial(_flown, settings, model), over, model_parts(model))
     write_export(export, out)
     say(settings, _told(out, chosen, export.left, over), _content(out, chosen, export.left))
 
@@ -79,9 +70,12 @@ def _model(settings: Settings, catalogue: Catalogue) -> Model:
     return load_model(settings.model, vehicle, catalogue)
 
 
-def _origin(model: Model) -> str:
-    parts = [model.vehicle.name, *(repr(effect) for effect in model.added)]
-    return " + ".join(parts + (["a learned residual"] if model.residual else []))
+def _flown(settings: Settings, model: Model) -> list[Motion]:
+    """What forces are sized over; a campaign is measured only where something is left out."""
+    if settings.campaign is None:
+        return flights(model, None)
+    data = measure(open_campaign(settings.campaign), settings.signals)
+    return flights(model, data.motions.values())
 
 
 def _told(out: Path, chosen: Target, left: Sequence[Sized], over: str) -> str:

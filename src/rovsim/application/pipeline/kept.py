@@ -1,0 +1,31 @@
+"""Diagnoses that are kept: found again where nothing changed that they depend on."""
+
+import hashlib
+import json
+from pathlib import Path
+
+from rovsim.application.provenance import digest
+from rovsim.diagnosis.settings import DiagnosisSettings
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import Model
+from rovsim.dynamics.model_file import describe_model
+from rovsim.measurement.campaign import Campaign
+
+
+def kept_folder(out: str | None, campaign: Campaign) -> Path:
+    """Where the workbench and notebooks keep what they compute of a campaign."""
+    return Path(out or f"results/{campaign.name}/ui")
+
+
+def kept_diagnosis(
+    folder: Path, campaign: Campaign, settings: DiagnosisSettings, base: Model, catalogue: Catalogue
+) -> Path:
+    """Of these recordings, settings, base and code: an outdated one is never found."""
+    content = hashlib.sha256()
+    files = {campaign.file} | {path for run in campaign.runs for path in campaign.raw_files(run)}
+    for path in sorted(p for p in files if p.is_file()):
+        content.update(path.read_bytes())
+    content.update(settings.model_dump_json().encode())
+    content.update(json.dumps(describe_model(base), sort_keys=True).encode())
+    content.update(digest("rovsim.diagnosis.of_campaign", effects=catalogue.files).encode())
+    return folder / content.hexdigest()[:12] / "diagnosis.json"

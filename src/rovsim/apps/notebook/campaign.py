@@ -1,0 +1,222 @@
+"""An open campaign in a notebook: the functions that the commands call, with their settings."""
+
+import hashlib
+from dataclasses import dataclass, field
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Sequence
+
+from pandas import DataFrame
+
+from rovsim.application.export.sizes import flights
+from rovsim.application.export.targets import target
+from rovsim.application.export.write import export_model, model_parts, write_export
+from rovsim.application.pipeline.comparison import compare
+from rovsim.application.pipeline.diagnosis import diagnose
+from rovsim.application.pipeline.kept import kept_diagnosis, kept_folder
+from rovsim.application.pipeline.models import add_effects, load_models, load_one_model
+from rovsim.application.pipeline.recordings import (
+    Measured,
+    measure,
+    open_campaign,
+    refuse_unusable,
+)
+from rovsim.application.pipeline.training import train
+from rovsim.application.provenance import describe_origin, provenance
+from rovsim.application.sections import TrainingSettings
+from rovsim.application.settings import Settings, compose, select
+from rovsim.apps.notebook import html
+from rovsim.apps.notebook.progress import in_a_cell
+from rovsim.apps.notebook.shown import ShownComparison, ShownDiagnosis, ShownExport, ShownModel
+from rovsim.core.extras import require
+from rovsim.core.progress import reported
+from rovsim.diagnosis.settings import DiagnosisSettings
+from rovsim.dynamics.catalogue import Catalogue, load_catalogue
+from rovsim.dynamics.model_file import read_model
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.simulation.synthetic_tank.campaign import make_campaign
+
+Spec = str | PathLike[str]
+
+
+@dataclass(eq=False)
+class Campaign:
+    """Recordings that were read and cleaned; models are names or files, as for the commands.
+
+    What was computed before is not computed again: comparisons while the notebook runs, diagnoses
+    ever after, in the folder of the workbench, as long as recordings, settings and code are the
+    same.
+    """
+
+    settings: Settings
+    catalogue: Catalogue
+    data: Measured
+    _compared: dict[tuple[str, ...], ShownComparison] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """As campaign.yaml says."""
+        return self.data.campaign.name
+
+    @property
+    def runs(self) -> DataFrame:
+        """The runs: split, control, length, and what is the matter with those that are not used."""
+        used = self.data.motions
+        rows = {
+            run.id: (
+                run.split, run.control,
+                float(used[run.id].time[-1] - used[run.id].time[0]) if run.id in used else None,
+                self.data.quality[run.id].unusable or "",
+            )
+            for run in self.data.campaign.runs
+        }  # fmt: skip
+        columns = ["split", "control", "seconds", "unusable"]
+        return DataFrame.from_dict(rows, orient="index", columns=columns)
+
+    def compare(self, *models: Spec) -> ShownComparison:
+        """Replay every run with every model: errors, where they come from, figures.
+
+        Raises:
+            BadInput: a model cannot be loaded, or no run can be used.
+        """
+        refuse_unusable(self.data)
+        specs = [fspath(model) for model in models or ("nominal",)]
+        key = tuple(map(_content, specs))
+        if key not in self._compared:
+            loaded = load_models(specs, self.data.vehicle, self.catalogue)
+            with in_a_cell():
+                self._compared[key] = ShownComparison(compare(self.data, loaded, self.settings))
+        return self._compared[key]
+
+    def diagnose(self, model: Spec = "nominal") -> ShownDiagnosis:
+        """Which effects a model lacks; a diagnosis that was made before is read.
+
+        Raises:
+            BadInput: the model cannot be loaded, or cannot be diagnosed.
+        """
+        base = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
+        how, folder = select(self.settings, DiagnosisSettings), self._folder
+        path = kept_diagnosis(folder, self.data.campaign, how, base, self._known)
+        if not path.exists():
+            with in_a_cell():
+                diagnose(self.data.runs, base, how, self.catalogue).diagnosis.write(path)
+        return ShownDiagnosis(Diagnosis.read(path), path, self._known)
+
+    def add(
+        self, diagnosis: ShownDiagnosis, path: Spec,
+        effects: Sequence[str] | None = None, to: Spec = "nominal",
+    ) -> ShownModel:  # fmt: skip
+        """Write a model with the effects that a diagnosis selected, or with those named.
+
+        Raises:
+            BadInput: an effect that the diagnosis does not have, or a place that cannot be written.
+        """
+        story = {"diagnosis": str(diagnosis.path), **describe_origin(self.catalogue)}
+        out = Path(path)
+        add_effects(diagnosis.path, fspath(to), effects, self.catalogue, out, story)
+        return self.model(out)
+
+    def train(
+        self, residual: str = "knn", model: Spec = "nominal", control: str = "6dof",
+        path: Spec | None = None, **keys: object,
+    ) -> ShownModel:  # fmt: skip
+        """Train a residual on top of a model; `keys` are those of its section: k=5 for knn.
+
+        Raises:
+            BadInput: no such learner or key, or no run of that control to learn from.
+        """
+        require("learn", by="campaign.train")
+        words = [f"residual={residual}", f"control={control}"]
+        chosen = compose([*words, *(f"residual.{key}={value}" for key, value in keys.items())])
+        mine = {"residual": chosen.residual, "control": chosen.control}
+        how = select(self.settings.model_copy(update=mine), TrainingSettings)
+        base = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
+        named = f"{residual}_{control}"
+        out = Path(path or self._folder / "trained" / named / f"{named}.yaml")
+        motions = list(self.data.motions.values())
+        with in_a_cell():
+            train(motions, base, how, self.catalogue, out, provenance(how, self.catalogue))
+        return self.model(out)
+
+    def export(self, model: Spec, to: str, path: Spec | None = None) -> ShownExport:
+        """Write a model for another simulator; what is left out is sized over these runs.
+
+        Raises:
+            BadInput: no such simulator, or it cannot hold such a model.
+        """
+        chosen = target(to)
+        loaded = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
+        out = Path(path or f"{loaded.name}{chosen.suffix}")
+        over, parts = f"the runs of {self.name}", model_parts(loaded)
+        export = export_model(
+            loaded, chosen, lambda: flights(loaded, self.data.motions.values()), over, parts
+        )
+        write_export(export, out)
+        return ShownExport(out, chosen.title, export.left)
+
+    def model(self, path: Spec) -> ShownModel:
+        """A model file.
+
+        Raises:
+            BadInput: it is missing, or does not describe a model.
+        """
+        return ShownModel(read_model(Path(path), self.catalogue), Path(path))
+
+    @property
+    def _folder(self) -> Path:
+        return kept_folder(self.settings.out, self.data.campaign)
+
+    @property
+    def _known(self) -> Catalogue:
+        return self.catalogue.on(self.data.vehicle)
+
+    def _repr_html_(self) -> str:
+        vehicle = f"Vehicle: {self.data.vehicle.name}"
+        parts = [html.heading(self.name), html.sentences([vehicle]), html.table(self.runs)]
+        return "".join(parts)
+
+
+def _content(spec: str) -> str:
+    """A model's name, or its file with a digest: what was written anew is read anew."""
+    path = Path(spec)
+    return f"{spec} {hashlib.sha256(path.read_bytes()).hexdigest()}" if path.is_file() else spec
+
+
+def open(
+    folder: Spec, *overrides: str, effects_file: Spec | Sequence[Spec] = (), out: Spec | None = None
+) -> Campaign:
+    """Open a campaign: read, check and clean its runs.
+
+    Args:
+        folder: it holds campaign.yaml.
+        overrides: settings as on the command line, "filter=savgol".
+        effects_file: files with effects of one's own.
+        out: where things are kept; results/NAME/ui unless given.
+
+    Raises:
+        BadInput: an override, the campaign or a file cannot be used.
+    """
+    files = [effects_file] if isinstance(effects_file, str | PathLike) else effects_file
+    given = {
+        "campaign": fspath(folder),
+        "effects_file": [fspath(one) for one in files] or None,
+        "out": None if out is None else fspath(out),
+    }
+    settings = compose(overrides).model_copy(update=given)
+    catalogue = load_catalogue(settings.effect_files)
+    with in_a_cell():
+        data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
+    return Campaign(settings, catalogue, data)
+
+
+def tank(folder: Spec, *overrides: str, effects_file: Spec | Sequence[Spec] = ()) -> Path:
+    """Make a synthetic campaign, as `rovsim tank` does; returns its folder.
+
+    Raises:
+        BadInput: an override that cannot be used, or a folder that holds something else.
+    """
+    files = [effects_file] if isinstance(effects_file, str | PathLike) else effects_file
+    catalogue = load_catalogue([Path(one) for one in files])
+    with in_a_cell(), reported("flying") as progress:
+        make_campaign(compose(overrides).tank, Path(folder), catalogue, progress)
+    return Path(folder)

@@ -1,0 +1,30 @@
+"""How far long work is: one line of a notebook's cell; a terminal shows its own bar."""
+
+import sys
+from contextlib import contextmanager
+from typing import Iterator
+
+from rovsim.core.progress import heard_by
+
+STEPS = 20  # lines are written so often, at most: a notebook keeps what a cell wrote
+
+
+@contextmanager
+def in_a_cell() -> Iterator[None]:
+    """Tell progress in the cell that runs, where there is one."""
+    if "ipykernel" not in sys.modules:
+        yield
+        return
+    shown = ""
+
+    def tell(what: str, share: float | None) -> None:
+        nonlocal shown
+        done = "" if share is None else f" {round(STEPS * share) * 100 // STEPS} %"
+        line = f"{what}{done}"
+        if line != shown:
+            print(f"\r{line:<78}", end="", flush=True)
+            shown = line
+
+    with heard_by(tell):
+        yield
+    print(f"\r{'':<78}\r", end="", flush=True)

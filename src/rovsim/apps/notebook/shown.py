@@ -1,0 +1,242 @@
+"""What notebooks are given: typed results of the pipeline, with tables, figures and HTML."""
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Mapping, Sequence
+
+from matplotlib.figure import Figure
+from pandas import DataFrame, Series
+
+from rovsim import AXES
+from rovsim.application.export.sizes import Sized
+from rovsim.application.pipeline.replays import climb
+from rovsim.apps.notebook import html
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model
+from rovsim.reporting.figures import kind
+from rovsim.reporting.figures.style import save
+from rovsim.reporting.html.verdict import explain
+from rovsim.reporting.report_data import ONCE, PER_RUN, ReportData, select_arguments
+from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
+from rovsim.results.base import or_nan
+from rovsim.results.comparison import Comparison
+from rovsim.results.diagnosis import Diagnosis, FittedEffect
+from rovsim.results.ladder import Ladder
+
+FITTED = ("value", "std", "unit")
+
+
+class Figures:
+    """Results that can be drawn."""
+
+    data: ReportData
+
+    @property
+    def figures(self) -> list[str]:
+        """Names of the figures there are; those of one run take `run` as well."""
+        known = [name for name, of in ONCE.items() if getattr(self.data, of)]
+        return known + (list(PER_RUN) if self.data.replays else [])
+
+    def figure(self, name: str, run: str = "") -> Figure:
+        """A figure, in the thesis style: 150 mm wide, 9 pt.
+
+        Args:
+            name: one of `figures`.
+            run: of a figure of one run; the first unless given.
+
+        Raises:
+            BadInput: there is no such figure.
+        """
+        drawn = kind(name)
+        if name in PER_RUN:
+            run = run or next(iter(self.data.motions))
+        arguments = select_arguments(name, self.data, run, list(self.data.replays))
+        return html.displayed(drawn.draw(**arguments))
+
+    def save(self, name: str, folder: str | Path, run: str = "") -> list[Path]:
+        """Write a figure as PDF and PNG; the same figure, the same bytes.
+
+        Raises:
+            BadInput: there is no such figure, or the folder cannot be written into.
+        """
+        return save(self.figure(name, run), Path(folder), f"{name}-{run}" if run else name)
+
+    def _picture(self, name: str) -> str:
+        return html.picture(self.figure(name), kind(name).caption)
+
+
+@dataclass(frozen=True, eq=False)
+class ShownComparison(Figures):
+    """Errors of models: `data` holds motions, replays and all results, by name."""
+
+    data: ReportData
+
+    @property
+    def result(self) -> Comparison:
+        """What `comparison.json` holds."""
+        assert self.data.comparison is not None
+        return self.data.comparison
+
+    @cached_property
+    def ladder(self) -> Ladder:
+        """A step for each model, on the test runs."""
+        return Ladder(steps=tuple(climb(list(self.data.motions.values()), self.data.replays)))
+
+    @property
+    def errors(self) -> Series:
+        """The error by model: velocity in 2 s windows on the test runs, in units of its spread."""
+        values = {step.model: or_nan(step.windows_2s) for step in self.ladder.steps}
+        return Series(values, name="error", dtype=float)
+
+    def table(
+        self, quantity: str = "velocity_rmse", horizon: str = "2", split: str = "test"
+    ) -> DataFrame:
+        """Errors by model and axis, runs pooled.
+
+        Args:
+            quantity: velocity_rmse, velocity_mae or acceleration_rmse.
+            horizon: s of the windows ("0.5", "2", "5"), or open_loop.
+            split: train or test.
+        """
+        return _named(self.printed(quantity, horizon, split))
+
+    def printed(
+        self, quantity: str = "velocity_rmse", horizon: str = "2", split: str = "test"
+    ) -> Table:
+        """The same for paper: `.latex()`, `.csv()`, `.write(folder, name)`."""
+        return tabulate_errors(self.result, horizon, split, quantity)
+
+    @property
+    def sentences(self) -> dict[str, list[str]]:
+        """Under which conditions each model fails, in words."""
+        where = self.data.where
+        return {name: list(m.sentences) for name, m in where.models.items()} if where else {}
+
+    def _repr_html_(self) -> str:
+        parts = [html.heading("Error on the test runs"), html.table(self.errors.to_frame())]
+        parts += [html.heading("Velocity RMSE of 2 s windows"), html.table(self.table())]
+        for name, lines in self.sentences.items():
+            parts += [html.heading(f"Where {name} fails"), html.sentences(lines)]
+        return "".join([*parts, self._picture("error_by_axis")])
+
+
+@dataclass(frozen=True, eq=False)
+class ShownDiagnosis(Figures):
+    """What a model lacks: the result, its file, and the catalogue that explains it."""
+
+    result: Diagnosis
+    path: Path
+    catalogue: Mapping[str, type[Effect]]
+
+    @property
+    def data(self) -> ReportData:  # type: ignore[override]
+        """What there is to draw."""
+        return ReportData(diagnosis=self.result, ladder=self.result.ladder)
+
+    @property
+    def verdict(self) -> str:
+        """missing_effects, adequate, unexplained or insufficient_data."""
+        return self.result.verdict
+
+    @property
+    def selected(self) -> DataFrame:
+        """The effects that are missing, one parameter a row; `std` is one standard deviation."""
+        return _effects(self.result.selected)
+
+    @property
+    def ranking(self) -> DataFrame:
+        """Every effect that was tried by itself, the best first."""
+        rows = {r.effect: (or_nan(r.error_reduction), r.probability) for r in self.result.ranking}
+        columns = ["error_reduction", "probability"]
+        return DataFrame.from_dict(rows, orient="index", columns=columns)
+
+    @property
+    def ladder(self) -> DataFrame:
+        """The error falling on the test runs, effect by effect, down to the noise floor."""
+        return _named(tabulate_ladder(self.result.ladder))
+
+    def _repr_html_(self) -> str:
+        said = explain(self.result, self.catalogue)
+        parts = [html.heading(said.sentence)]
+        if self.result.selected:
+            parts.append(html.table(self.selected))
+        parts.append(html.sentences([*said.remarks, *([said.next] if said.next else [])]))
+        return "".join([*parts, self._picture("ladder")])
+
+
+@dataclass(frozen=True, eq=False)
+class ShownModel(os.PathLike):
+    """A model that was written: goes wherever a model is asked for."""
+
+    model: Model
+    path: Path
+
+    def __fspath__(self) -> str:
+        return str(self.path)
+
+    @property
+    def effects(self) -> DataFrame:
+        """What was added to the vehicle, one parameter a row; `std` is one standard deviation."""
+        rows = {
+            (effect.id, p.name): (effect[p.name], effect.std.get(p.name), p.unit)
+            for effect in self.model.added
+            for p in effect.parameters
+            if p.name in effect.given() or p.name in effect.std
+        }
+        return _rows(rows, FITTED)
+
+    def _repr_html_(self) -> str:
+        residual = self.model.residual
+        learned = ["A trained residual on top."] if residual is not None else []
+        parts = [html.heading(f"{self.model.name}: {self.model.vehicle.name}")]
+        parts += [html.table(self.effects)] if len(self.effects) else []
+        return "".join([*parts, html.sentences([*learned, f"File: {self.path}"])])
+
+
+@dataclass(frozen=True, eq=False)
+class ShownExport:
+    """A model for another simulator: its file, and what is left out with its size."""
+
+    path: Path
+    simulator: str
+    left: tuple[Sized, ...]
+
+    @property
+    def left_out(self) -> DataFrame:
+        """RMS force of what is left out, N and N m, and why."""
+        rows = {one.name: [*one.rms, one.why] for one in self.left}
+        return DataFrame.from_dict(rows, orient="index", columns=[*AXES, "why"])
+
+    def _repr_html_(self) -> str:
+        parts = [html.heading(f"{self.path} for {self.simulator}")]
+        if not self.left:
+            return "".join([*parts, html.sentences(["It holds the whole model."])])
+        return "".join(
+            [*parts, html.sentences(["Left out, N and N m:"]), html.table(self.left_out)]
+        )
+
+
+def _named(table: Table) -> DataFrame:
+    """With units in the columns' names."""
+    names = [f"{column.name} [{column.unit}]" for column in table.columns]
+    return table.frame.set_axis(names, axis=1)
+
+
+def _effects(found: Sequence[FittedEffect]) -> DataFrame:
+    rows = {
+        (one.effect, name): (
+            or_nan(v.value), v.std, v.unit, or_nan(one.error_reduction), one.probability
+        )
+        for one in found
+        for name, v in one.parameters.items()
+    }  # fmt: skip
+    return _rows(rows, (*FITTED, "error_reduction", "probability"))
+
+
+def _rows(rows: Mapping[tuple[str, str], Sequence[object]], columns: Sequence[str]) -> DataFrame:
+    frame = DataFrame(list(rows.values()), columns=list(columns))
+    frame.insert(0, "effect", [effect for effect, _ in rows])
+    frame.insert(1, "parameter", [name for _, name in rows])
+    return frame.set_index(["effect", "parameter"])
