@@ -93,7 +93,7 @@ def driven(seconds: float, error: np.ndarray, seed: int = 0) -> Blocks:
     values = dict(zip(kinds, columns.T, strict=True))
     time = np.tile(BLOCK * (np.arange(count) + 0.5), 2)
     run = np.repeat([0, 1], count)
-    return Blocks(error, rng.standard_normal((2 * count, 6)), values, time, run)
+    return Blocks(error, rng.standard_normal((2 * count, 6)), values, time, run, np.ones(6, bool))
 
 
 def where(models: tuple[str, ...], seconds: float, seed: int) -> ErrorConditions:

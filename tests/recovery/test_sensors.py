@@ -125,9 +125,15 @@ def test_a_weight_is_named_by_depth_and_attitude_alone(tmp_path):
     data = measure(open_campaign(settings.campaign), settings.signals)
     base = load_one_model("nominal", data.vehicle, built_in())
     asked = select(settings, DiagnosisSettings)
-    found = diagnose_campaign(data.runs, base, asked, built_in(), lambda stage: None).diagnosis
+    answer = diagnose_campaign(data.runs, base, asked, built_in(), lambda stage: None)
+    found, where = answer.diagnosis, answer.where.models["nominal"]
     assert [one.effect for one in found.selected] == ["net_buoyancy"]
     value = found.selected[0].parameters["force"]
     assert abs(value.value - 3.0) < 4.0 * value.std
     assert found.not_measured == ("surge", "sway")
     assert found.ladder.steps[0].acceleration_rmse.surge is None
+    assert where.error["surge"].rms is None
+    assert not where.axes["surge"]
+    searched = set(where.axes["heave"])
+    assert {"heave speed", "pitch angle"} <= searched
+    assert not searched & {"surge speed", "absolute sway speed", "MoCap x", "MoCap y"}

@@ -19,7 +19,8 @@ class Budget:
     """Forces of one model at the measured states of one run, FRD at CO, N and N m.
 
     `time` (n,) s; `parts` (n, 6) by name, which add up to M nu_dot of the model; `missing` (n, 6)
-    is M a_res: what would have to push for the model to move as measured (NaN where not usable).
+    is M a_res: what would have to push for the model to move as measured (NaN where not usable, and
+    on axes that nobody measured).
     """
 
     model: str
@@ -30,7 +31,7 @@ class Budget:
 
     def rms(self) -> dict[str, ByAxis]:
         """Root mean square of every part and of what is missing, by axis, at usable instants."""
-        known = np.isfinite(self.missing).all(axis=1)
+        known = np.isfinite(self.missing).any(axis=1)
         forces = {**self.parts, MISSING: self.missing}
         if not known.any():
             return {name: ByAxis() for name in forces}

@@ -19,6 +19,7 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.budget import Budget
 from rovsim.learning.pairs import Samples
+from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.measured_states import (
@@ -54,7 +55,7 @@ def balance_forces(
         parts[name] = parts.get(name, 0.0) + force - before
         before = force
     missing = np.full((len(motion.time), 6), np.nan)
-    missing[found.index] = found.a_res @ model.body.M.T
+    missing[found.index] = blank(motion.measured, found.a_res @ model.body.M.T, np.nan)
     return Budget(model.name, motion.run.id, motion.time, parts, missing)
 
 

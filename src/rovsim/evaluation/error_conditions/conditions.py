@@ -17,6 +17,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.rotations import to_euler
 from rovsim.learning.pairs import Samples
+from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.error_conditions import BLOCK
 
@@ -47,7 +48,8 @@ class Blocks:
     """Means over blocks of `BLOCK` s, n of them.
 
     `error` (n, 6) of the acceleration, m/s2 and rad/s2; `measured` (n, 6) acceleration; `values`
-    (n,) by condition; `time` (n,) s and `run` (n,) to which run a block belongs.
+    (n,) by condition; `time` (n,) s and `run` (n,) to which run a block belongs; `axes` (6,) in
+    which motion was measured: elsewhere errors mean nothing.
     """
 
     error: Array
@@ -55,6 +57,7 @@ class Blocks:
     values: dict[Condition, Array]
     time: Array
     run: Array
+    axes: Array
 
 
 def average_blocks(motion: Motion, samples: Samples) -> Blocks:
@@ -76,7 +79,8 @@ def average_blocks(motion: Motion, samples: Samples) -> Blocks:
     }
     measured = motion.nu_dot[samples.index]
     run = np.zeros(int(kept.sum()), int)
-    return Blocks(mean(samples.a_res), mean(measured), values, mean(time), run)
+    axes = find_measured(motion.measured)
+    return Blocks(mean(samples.a_res), mean(measured), values, mean(time), run, axes)
 
 
 def join_blocks(parts: Sequence[Blocks]) -> Blocks:
@@ -88,19 +92,21 @@ def join_blocks(parts: Sequence[Blocks]) -> Blocks:
     def join(name: str) -> Array:
         return np.concatenate([getattr(p, name) for p in parts])
 
-    return Blocks(join("error"), join("measured"), joined, join("time"), run)
+    axes = np.all([p.axes for p in parts], axis=0)
+    return Blocks(join("error"), join("measured"), joined, join("time"), run, axes)
 
 
 def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Array]:
-    """Every condition at the samples."""
+    """Every condition at the samples, but those that nobody measured."""
+    moves = find_measured(motion.measured)
     found = {Condition(THROUGHOUT, "", THROUGHOUT): np.zeros(len(time))}
     rate = np.gradient(samples.wrench, time, axis=0) if len(time) > 1 else 0 * samples.wrench
-    for k, axis in enumerate(AXES):
-        turning = int(k >= 3)
-        found[Condition(SPEEDS[k], UNITS["speed"][turning], "speed", axis)] = samples.nu[:, k]
-    for k, axis in enumerate(AXES):
+    for k in np.flatnonzero(moves).tolist():
+        unit = UNITS["speed"][int(k >= 3)]
+        found[Condition(SPEEDS[k], unit, "speed", AXES[k])] = samples.nu[:, k]
+    for k in np.flatnonzero(moves).tolist():
         name, unit = f"absolute {SPEEDS[k]}", UNITS["speed"][int(k >= 3)]
-        found[Condition(name, unit, "absolute", axis)] = np.abs(samples.nu[:, k])
+        found[Condition(name, unit, "absolute", AXES[k])] = np.abs(samples.nu[:, k])
     for k, axis in enumerate(AXES):
         unit = UNITS["thrust"][int(k >= 3)]
         found[Condition(f"{axis} thrust", unit, "thrust", axis)] = samples.wrench[:, k]
@@ -108,22 +114,28 @@ def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Ar
         unit = UNITS["change"][int(k >= 3)]
         found[Condition(f"change of {axis} thrust", unit, "change", axis)] = rate[:, k]
     angles = to_euler(samples.attitude)
-    for k, (name, axis) in enumerate(zip(ANGLES, AXES[3:], strict=True)):
-        found[Condition(name, "rad", "attitude", axis)] = angles[:, k]
+    turns = moves[3:] if motion.measured is None else [*moves[3:5], *motion.measured.heading]
+    for k in np.flatnonzero(turns).tolist():
+        found[Condition(ANGLES[k], "rad", "attitude", AXES[3 + k])] = angles[:, k]
     return found | _place(motion, samples.index) | {Condition("time in the run", "s", "time"): time}
 
 
 def _place(motion: Motion, index: Array) -> dict[Condition, Array]:
-    """Position in MoCap axes; distances where walls and surface are known."""
+    """Position in MoCap axes, as far as it was measured; distances to known walls and surface."""
+    known = np.ones(3, bool) if motion.measured is None else motion.measured.coordinates
     position = motion.eta[index, :3]
     in_mocap = position * motion.site.axes
     walls, surface = motion.site.tank[:2], motion.site.tank[2, 0]
     names = "xy" if np.isfinite(surface) else "xyz"
-    found = {Condition(f"MoCap {n}", "m", "place"): in_mocap[:, k] for k, n in enumerate(names)}
-    if np.isfinite(walls).all():
+    found = {
+        Condition(f"MoCap {n}", "m", "place"): in_mocap[:, k]
+        for k, n in enumerate(names)
+        if known[k]
+    }
+    if np.isfinite(walls).all() and known[:2].all():
         away = np.concatenate([position[:, :2] - walls[:, 0], walls[:, 1] - position[:, :2]], 1)
         found[Condition("distance to the nearest wall", "m", "place")] = away.min(axis=1)
-    if np.isfinite(surface):
+    if np.isfinite(surface) and known[2]:
         found[Condition("depth below the surface", "m", "place")] = position[:, 2] - surface
     return found
 

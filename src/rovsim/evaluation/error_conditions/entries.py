@@ -41,8 +41,8 @@ def _list_model(one: SearchedModel) -> ModelConditions:
 
 
 def _size(explanation: Explanation, k: int) -> ErrorSize:
-    """RMS of the error and of the measured acceleration of axis k."""
-    if explanation.blocks is None:
+    """RMS of the error and of the measured acceleration of axis k, where it was measured."""
+    if explanation.blocks is None or not explanation.blocks.axes[k]:
         return ErrorSize(rms=None, measured_rms=None)
 
     def rms(x: Array) -> float:

@@ -72,12 +72,14 @@ class Explanation:
 
 
 def explain(blocks: Blocks, seed: int = 0) -> Explanation:
-    """Search all axes and conditions."""
+    """Search all conditions on the axes that were measured."""
     if len(blocks.time) < 2:
         return Explanation.nothing()
-    tables, found, enough = {}, [], True
-    for k, axis in enumerate(AXES):
-        error = blocks.error[:, k]
+    tables: dict[str, dict[str, Table]] = {axis: {} for axis in AXES}
+    found: list[Finding] = []
+    enough = True
+    for k in np.flatnonzero(blocks.axes).tolist():
+        axis, error = AXES[k], blocks.error[:, k]
         stretch = number_stretches(blocks, error)
         cuts = [cut_bins(c, x, stretch) for c, x in blocks.values.items()]
         tables[axis] = {b.condition.name: bin_errors(b, error, stretch) for b in cuts}

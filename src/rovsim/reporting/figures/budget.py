@@ -38,7 +38,7 @@ ADDED = (Look("#CC79A7", "-"), Look("#56B4E9", "-"), Look("#CC79A7", (0, (4, 1.5
 @styled()
 def draw(*, time: Array, parts: Mapping[str, Array], missing: Array) -> Figure:
     """Draw parts {name: (n, 6)} in N, N m and the missing force (n, 6) over `time` (n,) s."""
-    known = np.isfinite(missing).all(axis=1)
+    known = np.isfinite(missing).any(axis=1)
     names = _largest(parts, known)
     curves = {"missing": _smoothed(time, missing), **{n: parts[n] for n in names}}
     curves = {n: np.where(known[:, None], v, np.nan) for n, v in curves.items()}

@@ -30,9 +30,10 @@ def draw(*, where: ErrorConditions) -> Figure:
     """Draw `where.json`: for each axis the conditions that explain most of any model's error."""
     models = dict(list(where.models.items())[-SHOWN:])
     style = looks(models)
-    figure = sheet(222)
-    rows = figure.subplots(len(AXES), COLUMNS, sharey="row")
-    for k, (axis, panels) in enumerate(zip(AXES, rows, strict=True)):
+    searched = [axis for axis in AXES if any(m.axes[axis] for m in models.values())] or AXES
+    figure = sheet(37 * len(searched))
+    rows = figure.subplots(len(searched), COLUMNS, sharey="row", squeeze=False)
+    for axis, panels in zip(searched, rows, strict=True):
         tables = {name: m.axes[axis] for name, m in models.items()}
         names = strongest(list(tables.values()))
         known = {f.condition for m in models.values() for f in m.findings if f.axis == axis}
@@ -40,7 +41,7 @@ def draw(*, where: ErrorConditions) -> Figure:
             _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
             title = _title(name, [t[name] for t in tables.values() if name in t]) if name else ""
             panel.set_title(title, fontsize=7.5, weight="bold" if name in known else "normal")
-        panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[k]})")
+        panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[AXES.index(axis)]})")
         panels[0].locator_params(axis="y", nbins=4)
     figure.align_ylabels(list(rows[:, 0]))
     legend(figure, lines(style))
