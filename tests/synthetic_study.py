@@ -248,7 +248,10 @@ def diagnosis(ladder: dict[str, Any]) -> dict[str, Any]:
         ],
         "indistinguishable": [["input_delay", "thruster_lag"]],
         "where": [{"axis": "surge", "condition": "surge speed", "share_of_error": 0.9}],
-        "unexplained": {"fraction": 0.2, "significant": True, "hint": "Sway: a push at 24 s."},
+        "unexplained": {
+            "fraction": 0.2, "significant": True, "hint": "Sway: a push at 24 s.",
+            "disturbance": disturbance(),
+        },
         "next_experiment": "Drive steps.",
         "error": {"nominal": 0.19, "with_effects": 0.044, "noise_floor": 0.0435},
         "not_excited": ["roll", "pitch"],
@@ -259,6 +262,30 @@ def diagnosis(ladder: dict[str, Any]) -> dict[str, Any]:
         "noise": {},
         "base": {"schema": "rovsim.model/1", "vehicle": "bluerov2_heavy", "effects": []},
         "ladder": ladder,
+    }  # fmt: skip
+
+
+def disturbance() -> dict[str, Any]:
+    """A push in sway at 24 s, as a vehicle goes round."""
+    t = np.arange(0.0, 60.0, 0.5)
+    place = np.stack([5.0 + np.cos(0.2 * t), 2.5 + np.sin(0.2 * t), 0.0 * t], 1)
+    force = np.outer(6.0 * np.exp(-((t - 24.0) ** 2)), [0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    run = {
+        "run": "6dof-1",
+        "time_s": t.tolist(),
+        "place_m": place.tolist(),
+        "force": force.tolist(),
+    }
+    push = {
+        "run": "6dof-1",
+        "time_s": 24.0,
+        "axis": "sway",
+        "force": 6.0,
+        "place_m": [5.1, 1.5, 0.0],
+    }
+    return {
+        "axes": ["sway"], "rms": {"sway": 0.9}, "band_hz": [0.02, 0.4], "strongest": [push],
+        "runs": [run],
     }  # fmt: skip
 
 

@@ -10,7 +10,7 @@ structure       what is left, and no candidate explains
 common scale    does a factor of all forces stay open?
 joint fit       where there is some: all that could be wrong together, pruned; it competes
 replay fit      where there is some: values that replay best, rather than foresee the next reading
-equation        where there is some: a law for it, if one holds
+equation        where there is some: a law for it, if one holds; if not, the force in time
 test runs       opened once, for the errors that are reported
 """
 
@@ -26,6 +26,7 @@ from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
+from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import ProposedLaw, propose_law
 from rovsim.diagnosis.observer.camera import find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
@@ -69,7 +70,8 @@ class TrainDiagnosis:
 
     `usable` runs; `fit` of the base and all selected effects, None where there was too little to
     judge; `scale` of all forces, where it is unknown; `not_observable` effects that the runs could
-    not show; `proposed`: a law for what is left, where one holds.
+    not show; `proposed`: a law for what is left, where one holds; `disturbance`: the force in
+    time, where none does.
     """
 
     base: Model
@@ -82,6 +84,7 @@ class TrainDiagnosis:
     scale: CommonScale | None = None
     not_observable: Sequence[str] = ()
     proposed: ProposedLaw | None = None
+    disturbance: ForceInTime | None = None
 
     @property
     def enough(self) -> bool:
@@ -161,6 +164,7 @@ def _diagnose(
         rivals=rivals, structures=found.structures, scale=scale,
         not_observable=list_not_observable(found.selection, catalogue, base.vehicle),
         proposed=proposed,
+        disturbance=_trace(found) if found.structures and proposed is None else None,
     )  # fmt: skip
 
 
@@ -228,6 +232,11 @@ def _propose(found: _Settled, base: Model, gate: Gate, usable: UsableRuns) -> Pr
 
     catalogued = found.fit.hypothesis.model
     return propose_law(found.selection, catalogued, base, gate, usable.runs, polish)
+
+
+def _trace(found: _Settled) -> ForceInTime | None:
+    """The force in time that is left."""
+    return trace_force(found.fit, found.bank, found.structures)
 
 
 def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:

@@ -9,14 +9,12 @@ from scipy.sparse.csgraph import connected_components
 from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
-from rovsim.diagnosis.equations.proposal import (
-    FILE,
-    ID,
-    ProposedLaw,
-    list_quantities,
-    name_target,
+from rovsim.diagnosis.equations.describe import (
+    describe_force,
+    describe_law,
+    describe_values,
+    rounded,
 )
-from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
 from rovsim.diagnosis.selection.rivals import SURE, Rival
 from rovsim.dynamics.catalogue import Catalogue
@@ -25,11 +23,7 @@ from rovsim.results.diagnosis import (
     DiagnosisErrors,
     FittedEffect,
     FittedNoise,
-    FittedValue,
-    Proposal,
-    ProposedTerm,
     RivalEffect,
-    RivalLaw,
     ScaleOfForces,
     Unexplained,
 )
@@ -72,7 +66,7 @@ def report(
         not_measured=found.usable.unmeasured,
         not_observable=tuple(found.not_observable),
         rivals=tuple(
-            RivalEffect(effect=r.effect, instead_of=r.instead_of, deficit=_rounded(r.deficit))
+            RivalEffect(effect=r.effect, instead_of=r.instead_of, deficit=rounded(r.deficit))
             for r in found.rivals
             if np.isfinite(r.deficit)
         ),
@@ -93,23 +87,23 @@ def _list_joint(found: TrainDiagnosis) -> list[list[str]]:
 def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
     if scale is None:
         return None
-    return ScaleOfForces(std=_rounded(scale.std), parameters=scale.parameters)
+    return ScaleOfForces(std=rounded(scale.std), parameters=scale.parameters)
 
 
 def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
     """Errors of contract section 3; None where there is nothing to score."""
-    errors = [_rounded(step.windows_2s) for step in ladder.models]
+    errors = [rounded(step.windows_2s) for step in ladder.models]
     return DiagnosisErrors(
-        nominal=errors[0], with_effects=errors[selected], noise_floor=_rounded(ladder.noise_floor)
+        nominal=errors[0], with_effects=errors[selected], noise_floor=rounded(ladder.noise_floor)
     )
 
 
 def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
     return FittedEffect(
         effect=one.term.id,
-        parameters=_parameters(one.term, std),
-        error_reduction=_rounded(one.error_reduction),
-        probability=_rounded(one.probability),
+        parameters=describe_values(one.term, std),
+        error_reduction=rounded(one.error_reduction),
+        probability=rounded(one.probability),
     )
 
 
@@ -117,25 +111,6 @@ def _listed(found: TrainDiagnosis) -> list[Ranked]:
     """The first effects of the ranking, and those selected."""
     named = {one.term.id for one in found.selected}
     return [r for k, r in enumerate(found.ranking) if k < LISTED or r.term.id in named]
-
-
-def _rounded(value: float | None) -> float | None:
-    return None if value is None or not np.isfinite(value) else float(f"{value:.6g}")
-
-
-def _parameters(term: Term, std: Mapping[str, float]) -> dict[str, FittedValue]:
-    """What the fit chose, and what else differs from the default."""
-    given = term.effect.given()
-    units = {p.name: p.unit for p in term.effect.parameters}
-    names = [p.name for p in term.effect.parameters if p.name in given or p.name in std]
-    return {
-        name: FittedValue(
-            value=_rounded(term.effect[name]),
-            unit=units[name],
-            **({"std": _rounded(std[name])} if name in std else {}),
-        )
-        for name in names
-    }
 
 
 def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
@@ -161,37 +136,9 @@ def describe_structures(found: TrainDiagnosis) -> Unexplained:
         axes = ", ".join(dict.fromkeys(s.axis for s in also))
         hint += f" Also {axes}: {also[0].what}."
     return Unexplained(
-        fraction=_rounded(first.share), significant=True, hint=hint,
-        proposal=_describe_proposal(found.proposed) if found.proposed else None,
-    )  # fmt: skip
-
-
-def _describe_proposal(law: ProposedLaw) -> Proposal:
-    h, scales = law.fit.hypothesis, law.fit.std
-    beside = [
-        FittedEffect(
-            effect=term.id,
-            parameters=_parameters(
-                term,
-                {p.name: float(scales[k] * p.scale)
-                 for p, k in zip(term.parameters, h.columns[i], strict=True)},
-            ),
-        )
-        for i, term in law.beside
-    ]  # fmt: skip
-    return Proposal(
-        axis=law.axis, equation=law.equation, file=FILE, effect=ID, meaning=law.meaning,
-        parameters={
-            n.name: FittedValue(value=_rounded(n.value), std=_rounded(n.std), unit=n.unit)
-            for n in law.numbers
-        },
-        error_reduction=_rounded(law.error_reduction),
-        terms=tuple(
-            ProposedTerm(on=name_target(t), quantities=list_quantities(t), size=_rounded(size))
-            for t, size in zip(law.terms, law.sizes, strict=True)
-        ),
-        beside=tuple(beside),
-        rivals=tuple(RivalLaw(equation=e, deficit=_rounded(d)) for e, d in law.rivals),
+        fraction=rounded(first.share), significant=True, hint=hint,
+        proposal=describe_law(found.proposed) if found.proposed else None,
+        disturbance=describe_force(found.disturbance) if found.disturbance else None,
     )  # fmt: skip
 
 
@@ -200,8 +147,8 @@ def _noise(found: TrainDiagnosis) -> FittedNoise:
         return FittedNoise()
     noise = found.fit.noise
     return FittedNoise(
-        disturbance=tuple(map(_rounded, noise.level)),
-        memory_s=tuple(map(_rounded, noise.memory)),
-        reading=tuple(map(_rounded, noise.reading)),
-        colour=tuple(map(_rounded, noise.colour)) if noise.colour.any() else (),
+        disturbance=tuple(map(rounded, noise.level)),
+        memory_s=tuple(map(rounded, noise.memory)),
+        reading=tuple(map(rounded, noise.reading)),
+        colour=tuple(map(rounded, noise.colour)) if noise.colour.any() else (),
     )

@@ -82,6 +82,7 @@ class ReportData:
 # Figures drawn once, from the results of those names; and those drawn for every run.
 ONCE = {
     "ranking": "diagnosis",
+    "disturbance": "diagnosis",
     "error_by_axis": "comparison",
     "error_growth": "growth",
     "ladder": "ladder",

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import Field, JsonValue
 
 from rovsim.core.schema import Section
-from rovsim.results.base import Result, Sparse
+from rovsim.results.base import ByAxis, Result, Sparse
 from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.ladder import Ladder
 
@@ -63,16 +63,50 @@ class Proposal(Section):
     rivals: tuple[RivalLaw, ...] = ()
 
 
+class Push(Section):
+    """A moment of a disturbance: N or N m on one body axis, at a place in MoCap coordinates, m."""
+
+    run: str
+    time_s: float
+    axis: str
+    force: float
+    place_m: tuple[float, float, float]
+
+
+class ForceOfRun(Section):
+    """Force of a disturbance along one run: N, N m along the body's axes at places in MoCap m."""
+
+    run: str
+    time_s: tuple[float, ...]
+    place_m: tuple[tuple[float, float, float], ...]
+    force: tuple[tuple[float, float, float, float, float, float], ...]
+
+
+class Disturbance(Section):
+    """What pushes and follows no law: `rms` N, N m; `axes` on which it is more than noise.
+
+    Four fifths of its power on the strongest of these lie in `band_hz`.
+    """
+
+    axes: tuple[str, ...]
+    rms: ByAxis
+    band_hz: tuple[float, float]
+    strongest: tuple[Push, ...]
+    runs: tuple[ForceOfRun, ...]
+
+
 class Unexplained(Section):
     """Structure that no effect of the catalogue explains: its share of the innovations.
 
-    `proposal`: an equation for it, where one holds.
+    `proposal`: an equation for it, where one holds; `disturbance`: the force in time, where none
+    does.
     """
 
     fraction: float | None
     significant: bool
     hint: str
     proposal: Proposal | None = None
+    disturbance: Disturbance | None = None
 
 
 class DiagnosisErrors(Section):

@@ -5,6 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Mapping, Sequence
 
+from rovsim import AXES
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.wording import listed, significant
 from rovsim.results.base import or_nan
@@ -24,6 +25,7 @@ VERDICTS = {
     "insufficient_data": "The recording does not say: too little was recorded, or moved.",
 }
 INTERVAL = 1.96  # standard deviations to either side hold 95 %
+MOST_PUSHES = 3  # moments of a disturbance that are told
 MANY = 1e6  # odds that need no number
 NO_TEST = (
     "No test run could be used, so there is no error to report; "
@@ -168,7 +170,7 @@ def _law_sentences(found: Diagnosis) -> list[str]:
     """The law that is proposed for it: what it is worth, and how to use it."""
     law = found.unexplained.proposal
     if law is None:
-        return []
+        return _disturbance_sentences(found)
     values = ", ".join(f"{name} {interval(v)}" for name, v in law.parameters.items())
     worth = f"It removes {percent(law.error_reduction)} of the error on the train runs"
     step = next((s for s in found.ladder.models if s.model == f"+{law.effect}"), None)
@@ -179,6 +181,23 @@ def _law_sentences(found: Diagnosis) -> list[str]:
         f"It is written as {law.file}: read it, change it, and add it with "
         f"`rovsim add diagnosis=… effects_file={law.file} model=NEW.yaml`.",
     ]
+
+
+def _disturbance_sentences(found: Diagnosis) -> list[str]:
+    """The force in time where no law holds: how large, how fast, and when it was strongest."""
+    force = found.unexplained.disturbance
+    if force is None:
+        return []
+    low, high = force.band_hz
+    sizes = [f"{a} {significant(or_nan(force.rms[a]), 2)} {_unit(a)}" for a in force.axes]
+    said = f"No law was found for it: a disturbance of {listed(sizes)} (RMS)."
+    said += f" Most of its power lies from {low:.2g} to {high:.2g} Hz."
+    times = [f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MOST_PUSHES]]
+    return [said + (f" It was strongest at {listed(times)}." if times else "")]
+
+
+def _unit(axis: str) -> str:
+    return "N" if axis in AXES[:3] else "N m"
 
 
 def still_sentences(axes: Sequence[str]) -> list[str]:

@@ -73,6 +73,7 @@ def _present(
         where=found.where,
         diagnosis=found.diagnosis,
     )
-    wanted = [(figure, "") for figure in FIGURES]
+    force = found.diagnosis.unexplained.disturbance
+    wanted = [(figure, "") for figure in (*FIGURES, *(["disturbance"] if force else []))]
     origin = provenance(settings, catalogue)
     return present(out, data.campaign.name, shown, wanted, origin, catalogue)

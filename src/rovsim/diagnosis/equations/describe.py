@@ -1,0 +1,108 @@
+"""What is left, as `diagnosis.json` says it: a law, or the force in time."""
+
+from typing import Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.equations.disturbance import ForceInTime
+from rovsim.diagnosis.equations.proposal import FILE, ID, ProposedLaw, list_quantities, name_target
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.results.base import ByAxis
+from rovsim.results.diagnosis import (
+    Disturbance,
+    FittedEffect,
+    FittedValue,
+    ForceOfRun,
+    Proposal,
+    ProposedTerm,
+    Push,
+    RivalLaw,
+)
+
+LINE = 0.2  # s between two lines of a force in time: what the readings resolve (sudden_pushes.py)
+
+
+def rounded(value: float | None) -> float | None:
+    """A number to six digits; None where it is none."""
+    return None if value is None or not np.isfinite(value) else float(f"{value:.6g}")
+
+
+def describe_values(term: Term, std: Mapping[str, float]) -> dict[str, FittedValue]:
+    """What the fit chose, and what else differs from the default."""
+    given = term.effect.given()
+    units = {p.name: p.unit for p in term.effect.parameters}
+    names = [p.name for p in term.effect.parameters if p.name in given or p.name in std]
+    return {
+        name: FittedValue(
+            value=rounded(term.effect[name]),
+            unit=units[name],
+            **({"std": rounded(std[name])} if name in std else {}),
+        )
+        for name in names
+    }
+
+
+def describe_force(force: ForceInTime) -> Disturbance:
+    """The force in time, a line every fifth of a second."""
+    each = zip(force.runs, force.time, force.place, force.force, strict=True)
+    return Disturbance(
+        axes=force.axes, rms=ByAxis.of(_round_all(force.rms)),
+        band_hz=(round(force.band[0], 3), round(force.band[1], 3)),
+        strongest=tuple(
+            Push(run=p.run, time_s=round(p.time, 2), axis=p.axis, force=float(f"{p.force:.4g}"),
+                 place_m=_triple(p.place))
+            for p in force.pushes
+        ),
+        runs=tuple(_describe_run(*one) for one in each),
+    )  # fmt: skip
+
+
+def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfRun:
+    every = max(1, round(LINE / float(np.median(np.diff(time))))) if len(time) > 1 else 1
+    return ForceOfRun(
+        run=run, time_s=tuple(np.round(time[::every], 2).tolist()),
+        place_m=tuple(map(_triple, place[::every])),
+        force=tuple(map(tuple, _round_all(force[::every]).tolist())),
+    )  # fmt: skip
+
+
+def _round_all(values: Array) -> Array:
+    """To four digits of the largest."""
+    most = float(np.max(np.abs(values), initial=1e-12))
+    return np.asarray(np.round(values, 3 - int(np.floor(np.log10(max(most, 1e-12))))))
+
+
+def describe_law(law: ProposedLaw) -> Proposal:
+    """A law that is proposed."""
+    h, scales = law.fit.hypothesis, law.fit.std
+    beside = [
+        FittedEffect(
+            effect=term.id,
+            parameters=describe_values(
+                term,
+                {p.name: float(scales[k] * p.scale)
+                 for p, k in zip(term.parameters, h.columns[i], strict=True)},
+            ),
+        )
+        for i, term in law.beside
+    ]  # fmt: skip
+    return Proposal(
+        axis=law.axis, equation=law.equation, file=FILE, effect=ID, meaning=law.meaning,
+        parameters={
+            n.name: FittedValue(value=rounded(n.value), std=rounded(n.std), unit=n.unit)
+            for n in law.numbers
+        },
+        error_reduction=rounded(law.error_reduction),
+        terms=tuple(
+            ProposedTerm(on=name_target(t), quantities=list_quantities(t), size=rounded(size))
+            for t, size in zip(law.terms, law.sizes, strict=True)
+        ),
+        beside=tuple(beside),
+        rivals=tuple(RivalLaw(equation=e, deficit=rounded(d)) for e, d in law.rivals),
+    )  # fmt: skip
+
+
+def _triple(place: Array) -> tuple[float, float, float]:
+    x, y, z = np.round(place, 3).tolist()
+    return x, y, z

@@ -1,0 +1,147 @@
+"""Where no law holds: the force in time that is left, where and when it acted, and how fast it is.
+
+The innovations of an axis are white, and a push d with the spectrum S of the fitted disturbance
+shows in them as H d. The best estimate of it from all of a run, later readings included, is then
+S H* e at every frequency (Wiener 1949; the smoother of the filter's own model).
+"""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.fft import next_fast_len
+from scipy.signal import find_peaks, welch
+
+from rovsim import AXES
+from rovsim.diagnosis.checks.residual import AxisResidual, Structure, split_by_axis
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.kalman import AxisFilter
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.selection.gauss_newton import Fit
+
+BAND = (0.1, 0.9)  # shares of the power: four fifths of it lie between
+APART, STRONG, LISTED = 1.0, 2.0, 8  # s between pushes, RMS that one stands out by, how many
+SEGMENT = 20.0  # s of a spectrum: resolves 0.05 Hz, and a run of a minute has several
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """A moment at which the disturbance was strong: N, N m on one axis, at a place (3,) MoCap m."""
+
+    run: str
+    time: float
+    axis: str
+    force: float
+    place: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ForceInTime:
+    """What pushes and follows no law.
+
+    `runs` and their `time` (n,) s, `place` (n, 3) MoCap m and `force` (n, 6) N, N m along the body;
+    `axes` on which it is more than noise; `rms` (6,); `band` Hz that holds most of its power on the
+    strongest of these; `pushes`, the strongest first.
+    """
+
+    runs: tuple[str, ...]
+    time: tuple[Array, ...]
+    place: tuple[Array, ...]
+    force: tuple[Array, ...]
+    axes: tuple[str, ...]
+    rms: Array
+    band: tuple[float, float]
+    pushes: tuple[Push, ...]
+
+
+def trace_force(
+    found: Fit, bank: FilterBank, structures: Sequence[Structure]
+) -> ForceInTime | None:
+    """The smooth force that is left; None where its axes were not read throughout."""
+    residuals = {one.axis: one for one in split_by_axis(found, bank)}
+    named = {one.axis for one in structures}
+    axes = tuple(a for a in AXES if a in residuals and a in named)
+    if not axes:
+        return None
+    M, memory = found.hypothesis.model.body.M, found.noise.memory
+    forces = []
+    for k, run in enumerate(bank.runs):
+        a = np.zeros((len(run.time), 6))
+        for i, axis in enumerate(AXES):
+            if axis in residuals:
+                own = residuals[axis]
+                a[:, i] = smooth(own.white[k], own.filters[k], run, own.level, float(memory[i]))
+        forces.append(a @ M.T)
+    return _gather(bank.runs, forces, axes, residuals)
+
+
+def smooth(white: Array, f: AxisFilter, run: ObservedRun, level: float, memory: float) -> Array:
+    """Acceleration (n,) at the readings of a run, of its settled whitened innovations (m,)."""
+    e, out = np.zeros(len(run.time)), np.zeros(len(run.time))
+    e[run.settled] = white
+    for first, last in run.rows:
+        out[first:last] = smooth_stretch(e[first:last], f, run.period, level, memory)
+    return out
+
+
+def smooth_stretch(e: Array, f: AxisFilter, period: float, level: float, memory: float) -> Array:
+    """Acceleration (n,) that an unbroken stretch of whitened innovations (n,) tells of."""
+    count = next_fast_len(2 * len(e))  # so that the end does not meet the beginning
+    z = np.exp(2j * np.pi * np.fft.rfftfreq(count))
+    b, a = f.response
+    fade = np.exp(-period / memory)
+    spectrum = level**2 * (1.0 - fade**2) / np.abs(1.0 - fade / z) ** 2
+    response = np.polyval(b, z) / np.polyval(a, z)
+    return np.fft.irfft(spectrum * np.conj(response) * np.fft.rfft(e, count), count)[: len(e)]
+
+
+def _gather(
+    runs: Sequence[ObservedRun], forces: Sequence[Array], axes: tuple[str, ...],
+    residuals: dict[str, AxisResidual],
+) -> ForceInTime:  # fmt: skip
+    whole = np.concatenate(forces)
+    rms = np.sqrt(np.mean(whole**2, axis=0))
+    index = [AXES.index(a) for a in axes]
+    places = [run.motion.state[run.index, :3] * run.motion.site.axes for run in runs]
+    strongest = max(index, key=lambda i: rms[i] / _usual(residuals[AXES[i]], runs))
+    return ForceInTime(
+        tuple(run.motion.run.id for run in runs), tuple(run.time for run in runs), tuple(places),
+        tuple(forces), axes, rms, _find_band([f[:, strongest] for f in forces], runs[0].period),
+        tuple(_find_pushes(runs, forces, places, index, rms)),
+    )  # fmt: skip
+
+
+def _usual(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
+    """How much the axis accelerates in these runs, so that forces and moments compare."""
+    i = AXES.index(residual.axis)
+    nu_dot = np.concatenate([run.motion.nu_dot[run.motion.usable, i] for run in runs])
+    return max(float(np.nanstd(nu_dot)), 1e-9)
+
+
+def _find_band(forces: Sequence[Array], period: float) -> tuple[float, float]:
+    """Lowest and highest frequency, Hz, of most of the power."""
+    length = min(round(SEGMENT / period), *(len(f) for f in forces))
+    spectra = [welch(f, 1.0 / period, nperseg=length) for f in forces]
+    share = np.cumsum(sum(power for _, power in spectra))
+    low, high = np.searchsorted(share / max(share[-1], 1e-300), BAND)
+    return float(spectra[0][0][low]), float(spectra[0][0][min(high, len(share) - 1)])
+
+
+def _find_pushes(
+    runs: Sequence[ObservedRun], forces: Sequence[Array], places: Sequence[Array],
+    index: Sequence[int], rms: Array,
+) -> list[Push]:  # fmt: skip
+    """The strongest, in units of the RMS of their axis."""
+    found: list[tuple[float, Push]] = []
+    for run, force, place in zip(runs, forces, places, strict=True):
+        for i in index:
+            size = np.abs(force[:, i]) / max(rms[i], 1e-12)
+            peaks, _ = find_peaks(size, height=STRONG, distance=max(1, round(APART / run.period)))
+            found += [
+                (float(size[k]), Push(run.motion.run.id, float(run.edges[0] + run.time[k]), AXES[i],
+                                      float(force[k, i]), place[k]))
+                for k in peaks
+            ]  # fmt: skip
+    found.sort(key=lambda one: -one[0])
+    return [push for _, push in found[:LISTED]]
