@@ -8,6 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.evaluation.budget import Budget
+from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import Result
 from rovsim.results.comparison import OPEN_LOOP, Comparison
@@ -108,13 +109,17 @@ def select_arguments(
     common = {"time": motion.time, "usable": motion.usable}
     if figure == "velocities":
         nu = data.predicted(run, SHOWN, "nu", models)
-        return {**common, "nu": motion.nu, "predicted_nu": nu}
+        return {**common, "nu": blank(motion.measured, motion.nu, np.nan), "predicted_nu": nu}
     if figure == "residual_series":
         nu_dot = data.predicted(run, SHOWN, "nu_dot", models)
-        return {**common, "nu_dot": motion.nu_dot, "predicted_nu_dot": nu_dot}
+        measured = blank(motion.measured, motion.nu_dot, np.nan)
+        return {**common, "nu_dot": measured, "predicted_nu_dot": nu_dot}
     eta = data.predicted(run, OPEN_LOOP, "eta", models)
     tank = motion.site.tank if np.isfinite(motion.site.tank).all() else None
-    return {**common, "eta": motion.eta, "predicted_eta": eta, "tank": tank}
+    place = motion.eta[:, :3]
+    if motion.measured is not None and not motion.measured.coordinates.all():
+        place = np.full_like(place, np.nan)
+    return {**common, "eta": place, "predicted_eta": eta, "tank": tank}
 
 
 def describe(figure: str, run: str, data: ReportData | None = None) -> str:

@@ -10,6 +10,7 @@ from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel, cursor, height, series_data, styles, time_series
 from rovsim.apps.workbench.parts import chart
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.simulation.prediction import Prediction
@@ -34,7 +35,8 @@ def panels(
 ) -> list[Panel]:
     """A panel per axis, and under it what each model missed (measured minus model)."""
     _, units = QUANTITIES[quantity]
-    measured = np.where(motion.usable[:, None], getattr(motion, quantity), np.nan)
+    moved = blank(motion.measured, getattr(motion, quantity), np.nan)
+    measured = np.where(motion.usable[:, None], moved, np.nan)
     found = []
     for axis in axes:
         k = AXES.index(axis)

@@ -17,6 +17,7 @@ from rovsim.results.error_conditions import BLOCK
 BINS = 8
 VISITS = 4  # stretches that must have visited a bin before it is judged
 SHORTEST, LONGEST = 2.0, 10.0  # s, of a stretch
+FLAT = 1e-6  # N, m, rad, s, or of them a second: less is rounding
 TIMES = 3.0  # correlation times a stretch should last
 
 
@@ -86,7 +87,7 @@ def cut(values: Array) -> tuple[Array, Array]:
     The outer bins hold whatever lies beyond; what never varied has a single bin.
     """
     low, high = np.quantile(values, [0.03, 0.97])
-    count = BINS if high > low else 1
+    count = BINS if high - low > FLAT else 1
     edges = np.linspace(low, high, count + 1)
     member = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, count - 1)
     edges[0], edges[-1] = values.min(), values.max()

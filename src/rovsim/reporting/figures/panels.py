@@ -30,7 +30,7 @@ def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, li
 def plot_all(
     axes: list[Axes], time: Array, curves: Mapping[str, Array], looks: Mapping[str, Look]
 ) -> list[str]:
-    """Plot curves {name: (n, 6)}; the first sets the scale. Returns remarks for the reader."""
+    """Plot curves {name: (n, 6)}; the first, measured, sets the scale. Returns remarks."""
     leaving: set[str] = set()
     for k, axis in enumerate(axes):
         for order, (name, values) in enumerate(curves.items()):
@@ -40,7 +40,10 @@ def plot_all(
     if len(time):
         axes[-1].set_xlim(float(time[0]), float(max(time[-1], time[0] + 1e-6)))
     empty = [name for name, values in curves.items() if not np.isfinite(values).any()]
+    seen = np.isfinite(next(iter(curves.values()))).any(axis=0)
+    silent = [axis for axis, yes in zip(AXES, seen, strict=True) if not yes] if seen.any() else []
     return [
+        f"Nothing was measured of {listed(silent)}." if silent else "",
         f"Partly beyond the axes: {listed(sorted(leaving))}." if leaving else "",
         f"No values: {listed(empty)}." if empty else "",
     ]
