@@ -6,12 +6,14 @@ import sys
 from pathlib import Path
 from typing import Sequence
 
+from rovsim import __version__
 from rovsim.core.errors import BadInput, RovsimError, nearest
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")
 FILES = {"init": "files"}  # commands that take files by themselves, and the key they become
 FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
+OPTIONS = (*FLAGS, "-m", "--multirun", "-h", "--help")
 COMMANDS = Path(__file__).with_name("commands")
 
 
@@ -35,11 +37,14 @@ def _main(words: list[str]) -> None:
     if not words or words[0] in ("-h", "--help", "help"):
         print(_help(names))
         return
+    if words[0] in ("-V", "--version"):
+        print(f"rovsim {__version__}")
+        return
     command, rest = words[0], words[1:]
     if command not in names:
         raise BadInput(
             f"unknown command '{command}'",
-            where="rovsim",
+            where="command line",
             expected=f"one of {', '.join(names)}",
             remedy=nearest(command, names),
         )
@@ -65,7 +70,7 @@ def _help(names: Sequence[str]) -> str:
     lines = ["rovsim COMMAND key=value …", ""]
     lines += [f"  {name:<9} {_doc(name).splitlines()[0]}" for name in names]
     lines += ["", "rovsim COMMAND --help tells more; keys and their values stand in conf/."]
-    lines += ["--quiet prints nothing but errors, --json the result as JSON."]
+    lines += ["--quiet prints nothing but errors, --json the result as JSON; rovsim --version."]
     return "\n".join(lines)
 
 
@@ -86,9 +91,16 @@ def override(word: str) -> str:
     """One word of the command line as a Hydra override; plain values are quoted.
 
     Raises:
-        BadInput: the word has no `=`.
+        BadInput: an option that is not known, or a word without `=`.
     """
     key, equals, value = word.partition("=")
+    if not equals and word.startswith("-"):
+        raise BadInput(
+            f"unknown option '{word}'",
+            where="command line",
+            expected=f"one of {', '.join(OPTIONS)}",
+            remedy=nearest(word, OPTIONS),
+        )
     if not equals:
         raise BadInput(
             f"'{word}' has no '='",

@@ -10,9 +10,13 @@ from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis, FittedEffect
 from rovsim.results.error_conditions import ErrorConditions
 
-WIDTH, BAR = 96, 24
+WIDTH, BAR = 80, 24  # a terminal has 80 columns unless it was made wider
 MOST = 6  # findings printed; the report has them all
 RANKED = 5  # effects of the ranking printed
+MEANING = (
+    "error on the test runs: velocity, the model set to the measured state again every 2 s, in "
+    "units of the measured velocity's standard deviation, mean over the excited axes"
+)
 
 
 def tell_comparison(
@@ -27,11 +31,7 @@ def tell_comparison(
 
 
 def _errors(errors: Mapping[str, float | None]) -> list[str]:
-    lines = [
-        "",
-        "error on the test runs: velocity after being set to the measured state every 2 s,",
-    ]
-    lines += ["in units of the measured velocity's spread, mean over the excited axes", ""]
+    lines = ["", *textwrap.wrap(MEANING, WIDTH), ""]
     width = max((len(short(name)) for name in errors), default=0)
     most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
     lines += [
@@ -46,11 +46,8 @@ def _findings(where: ErrorConditions) -> list[str]:
         return []
     name, model = list(where.models.items())[-1]
     told, rest = model.sentences[:MOST], len(model.sentences) - MOST
-    lines = [
-        "",
-        f"where {short(name)} fails ({model.split} runs {', '.join(model.runs)})",
-        "",
-    ]
+    head = f"where {short(name)} fails ({model.split} runs {', '.join(model.runs)})"
+    lines = ["", *textwrap.wrap(head, WIDTH), ""]
     for one in told:
         lines += textwrap.wrap(one, WIDTH, initial_indent="  - ", subsequent_indent="    ")
     return [*lines, f"  … and {rest} more in the report"] if rest > 0 else lines
@@ -59,9 +56,10 @@ def _findings(where: ErrorConditions) -> list[str]:
 def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> str:
     """The verdict, the selected effects and those most worth by themselves, with bars."""
     said = explain(found, catalogue)
-    lines = ["", f"{said.name}: {said.sentence}", ""]
+    lines = ["", *textwrap.wrap(f"{said.sentence} (verdict: {said.name})", WIDTH), ""]
     for one, words in zip(found.selected, said.missing, strict=True):
         lines += _effect(one.error_reduction or 0.0, words)
+    lines += ["", "± is the 95 % interval."] if found.selected else []
     lines += _ranking(found.ranking)
     following = [f"Next: {said.next}"] if said.next else []
     for remark in (*said.remarks, *following):
@@ -70,8 +68,9 @@ def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> s
 
 
 def _effect(share: float, words: Missing) -> list[str]:
+    worth, _, sure = words.worth.partition(", ")
     values = [f"      {value}" for value in words.parameters]
-    return [f"  {words.effect:<22}{_bar(share)} {words.worth}", *values]
+    return [f"  {words.effect:<22}{_bar(share)} {worth}", f"      {sure}", *values]
 
 
 def _ranking(ranking: Sequence[FittedEffect]) -> list[str]:

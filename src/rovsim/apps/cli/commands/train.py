@@ -9,7 +9,7 @@ residual.k=1,3,5 control=3dof,6dof. Needs the extra rovsim[learn].
 
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
-from rovsim.application.pipeline.replays import replay_models
+from rovsim.application.pipeline.replays import climb, replay_models
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
@@ -20,6 +20,8 @@ from rovsim.core.extras import require
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.evaluation.scores import score_all
+from rovsim.reporting.html.terminal import tell_comparison
+from rovsim.results.error_conditions import ErrorConditions
 
 
 class Settings(TrainingSettings, CampaignSettings):
@@ -41,7 +43,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     out = choose_folder(settings, f"results/{data.campaign.name}/trained/{name}")
     file, story = out / "model.yaml", provenance(settings, catalogue)
     corrected = train(motions, base, settings, catalogue, file, story)
-    found = score_all(motions, replay_models([base, corrected], motions, settings))
+    replays = replay_models([base, corrected], motions, settings)
+    found = score_all(motions, replays)
     found.write(out / "comparison.json")
     with reported("logging to MLflow"):
         track(
@@ -53,4 +56,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             scores=found.models["model"].runs,
             files=sorted(p for p in out.iterdir() if p.is_file()),
         )
-    say(settings, str(file), {"model": str(file)})
+    steps = climb(motions, replays)
+    tested = any(motion.run.split == "test" for motion in motions)
+    errors = {step.model: step.windows_2s for step in steps}
+    text = tell_comparison(errors, ErrorConditions(models={}), tested)
+    say(settings, f"{text}\n\n{file}", {"model": str(file), "errors": errors})
