@@ -96,6 +96,11 @@ class Knowledge:
         """Of the train runs."""
         return float(sum(run.motion.usable.mean() * run.instants[-1] for run in self.runs))
 
+    @cached_property
+    def count(self) -> int:
+        """Readings that count, of the train runs."""
+        return int(sum(run.settled.sum() for run in self.runs))
+
     @property
     def deficit(self) -> float:
         """How much less likely the second rival is than the first, in twice the log."""

@@ -35,7 +35,7 @@ def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment
         question: what was asked.
         site: whose axes the start is given in.
     """
-    start = _start(plan.start, plan.flight.heading, site)
+    start = describe_start(plan.start, plan.flight.heading, site)
     return Experiment(
         seconds=question.seconds,
         model=model,
@@ -52,7 +52,7 @@ def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment
     )
 
 
-def _start(place: Array, heading: float, site: Site) -> Start:
+def describe_start(place: Array, heading: float, site: Site) -> Start:
     """In the recordings' axes; a yaw about an axis that points up turns the other way."""
     x, y, z = (float(v) for v in np.round(place * site.axes, 4))
     yaw = heading if np.array_equal(site.axes, np.ones(3)) else -heading

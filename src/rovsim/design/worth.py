@@ -7,7 +7,9 @@ foresees the flight worse by what none of its parameters can take up:
     min over x of |e + J^T x|^2 + x^T H x,
 
 e being its innovations there and x how far its parameters move from where the train runs left
-them. Half of that is what the logarithm of the odds is expected to gain.
+them. What is left on an axis, r of n readings, a diagnosis would take for noise, as far as it can:
+not |r|^2 but n log(1 + |r|^2 / n) counts. Half of that is what the logarithm of the odds is
+expected to gain.
 """
 
 from dataclasses import dataclass
@@ -122,4 +124,8 @@ def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, ex
     H, slope = inner_products(J), J @ e
     if not exact:
         H = H + other.information
-    return 0.5 * float(max(e @ e - slope @ solve(H, slope), 0.0))
+    x = -solve(H, slope)
+    left = (e + x @ J).reshape(6, -1)
+    before = 0.0 if exact else float(x @ other.information @ x)
+    count = left.shape[1] + (0 if exact else known.count)
+    return 0.5 * (before + float(count * np.log1p(np.sum(left**2, axis=1) / count).sum()))
