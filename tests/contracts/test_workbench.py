@@ -56,6 +56,43 @@ def test_its_ladder_holds_the_diagnosis_the_models_and_the_floor_last(bench, mon
     assert names == ["zero_acceleration", "nominal", "+lag", "noise_floor"]
 
 
+LAW = """
+from rovsim.dynamics.effects.base import Parameter, Wrench
+
+
+class ProposedEffect(Wrench):
+    \"\"\"A law.\"\"\"
+
+    id, equation, neglects, source = "proposed_effect", "Y = c v", "", ""
+    parameters = (Parameter("sway", "N s/m", "c", scale=1.0),)
+
+    @staticmethod
+    def wrench(at, p):
+        return 0.0, p.sway * at.nu_r[1], 0.0, 0.0, 0.0, 0.0
+"""
+
+
+def test_a_law_is_run_only_when_it_is_taken_in(bench):
+    law = {
+        "axis": "sway", "equation": "Y = c v", "file": "proposed_effect.py",
+        "parameters": {"sway": {"value": -4.0, "std": 0.1, "unit": "N s/m"}},
+        "error_reduction": 0.5, "effect": "proposed_effect", "meaning": "", "terms": [],
+    }  # fmt: skip
+    content = diagnosis().to_json()
+    content["unexplained"] |= {"proposal": law}
+    own = Workbench(bench.settings, bench.catalogue, bench.data, bench.models, bench.paths)
+    own.found(Diagnosis.model_validate(content))
+    assert own.draft.ticked == ["thruster_lag"]
+    with pytest.raises(BadInput):
+        own.take_law()
+    own.law_path.parent.mkdir(parents=True, exist_ok=True)
+    own.law_path.write_text(LAW, encoding="utf-8")
+    own.take_law()
+    assert own.draft.ticked == ["proposed_effect"]
+    assert own.draft.model().added[-1].given() == {"sway": -4.0}
+    assert own.settings.effect_files == [own.law_path]
+
+
 def test_a_diagnosis_of_other_recordings_settings_or_models_is_not_shown(bench):
     path = bench.diagnosis_path
     other = bench.settings.model_copy(update={"seed": 7})

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Sequence
+from typing import Container, Sequence
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import checked
@@ -10,7 +10,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import EffectEntry, build_effect, build_model, load_model
-from rovsim.results.diagnosis import Diagnosis, FittedEffect, Proposal
+from rovsim.results.diagnosis import Diagnosis, FittedEffect
 
 
 def add_effects(
@@ -27,9 +27,8 @@ def add_effects(
     Raises:
         BadInput: an effect the diagnosis has no values for, or values no model can have.
     """
-    law = diagnosis.unexplained.proposal
-    with_law = law is not None and law.effect in (catalogue if effects is None else effects)
-    chosen = (*law.beside, _as_effect(law)) if law and with_law else diagnosis.selected
+    known = catalogue if effects is None else dict.fromkeys(effects)
+    chosen = choose_effects(diagnosis, known)
     fitted = diagnosis.fitted | {one.effect: one for one in chosen}
     names = [one.effect for one in chosen] if effects is None else list(effects)
     for name in names:
@@ -43,12 +42,16 @@ def add_effects(
     vehicle = build_model(diagnosis.base, source, catalogue).vehicle
     base = load_model(to, vehicle, catalogue)
     entries = list_entries([fitted[name] for name in names], source)
-    known = catalogue.on(vehicle)
-    return extend(base, [build_effect(entry, known) for entry in entries]), names
+    there = catalogue.on(vehicle)
+    return extend(base, [build_effect(entry, there) for entry in entries]), names
 
 
-def _as_effect(law: Proposal) -> FittedEffect:
-    return FittedEffect(effect=law.effect, parameters=law.parameters)
+def choose_effects(diagnosis: Diagnosis, known: Container[str]) -> tuple[FittedEffect, ...]:
+    """The selected effects; where the law that was proposed is known, it and those beside it."""
+    law = diagnosis.unexplained.proposal
+    if law is None or law.effect not in known:
+        return diagnosis.selected
+    return *law.beside, FittedEffect(effect=law.effect, parameters=law.parameters)
 
 
 def list_entries(fitted: Sequence[FittedEffect], source: Path) -> list[EffectEntry]:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rovsim.diagnosis.apply import extend, list_entries
+from rovsim.diagnosis.apply import choose_effects, extend, list_entries
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.dynamics.model import Model
@@ -29,12 +29,22 @@ class Draft:
     values: dict[str, dict[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.ticked = [one.effect for one in self.diagnosis.selected] if self.diagnosis else []
+        self.ticked = [one.effect for one in self.chosen]
+
+    @property
+    def chosen(self) -> tuple[FittedEffect, ...]:
+        """The selected effects; or the law that was taken in, and what is beside it."""
+        return choose_effects(self.diagnosis, self.catalogue) if self.diagnosis else ()
 
     @property
     def fitted(self) -> dict[str, FittedEffect]:
-        """What the diagnosis has values for, the selected effects first."""
-        return self.diagnosis.fitted if self.diagnosis else {}
+        """What the diagnosis has values for, those first that are chosen."""
+        first = {one.effect: one for one in self.chosen}
+        return first | {
+            name: one
+            for name, one in (self.diagnosis.fitted if self.diagnosis else {}).items()
+            if name not in first
+        }
 
     def tick(self, effect: str, yes: bool) -> None:
         """Add or leave out an effect."""

@@ -13,7 +13,9 @@ from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, WorkbenchSettings, select
+from rovsim.core.files import write_text
 from rovsim.core.progress import reported
+from rovsim.diagnosis.equations.proposal import FILE
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in, load_catalogue
 from rovsim.reporting.report_data import PER_RUN
@@ -22,20 +24,30 @@ from rovsim.results.ladder import Ladder
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
+OF_DIAGNOSIS = ("ranking",)
 ONCE = (
     "ranking", "ladder", "where", "where_map", "error_by_axis", "error_growth", "excitation"
 )  # fmt: skip
 
 
 def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
-    """Diagnose settings.model; writes diagnosis.json to `path` and returns it."""
+    """Diagnose settings.model; writes it to `path`, a proposed effect beside it, and returns it."""
     catalogue = load_catalogue(settings.effect_files)
     data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     how = select(settings, DiagnosisSettings)
-    found = diagnose(data.runs, base, how, catalogue).diagnosis
-    found.write(path)
-    return found
+    found = diagnose(data.runs, base, how, catalogue)
+    if found.effect_file is not None:
+        write_text(law_beside(path), found.effect_file)
+    found.diagnosis.write(path)
+    return found.diagnosis
+
+
+def law_beside(diagnosis: Path) -> Path:
+    """Where the file of the effect lies that a diagnosis proposes."""
+    return diagnosis.with_name(
+        FILE if diagnosis.stem == "diagnosis" else f"{diagnosis.stem}_{FILE}"
+    )
 
 
 def train_into(settings: WorkbenchSettings, path: Path) -> Path:
@@ -58,7 +70,7 @@ def report_into(
     data = measure(open_campaign(settings.campaign), settings.signals)
     models = load_models(settings.model, data.vehicle, catalogue)
     shown = replace(compare(data, models, settings), ladder=ladder, diagnosis=diagnosis)
-    wanted = [(figure, "") for figure in ONCE if figure != "ranking" or diagnosis]
+    wanted = [(figure, "") for figure in ONCE if figure not in OF_DIAGNOSIS or diagnosis]
     tests = [run for run, motion in data.motions.items() if motion.run.split == "test"]
     wanted += [(figure, run) for run in tests for figure in PER_RUN]
     origin = provenance(select(settings, CampaignSettings), catalogue)

@@ -1,6 +1,8 @@
 """Why: which effects are missing, how sure that is, and what to record next."""
 
+from base64 import b64encode
 from html import escape
+from pathlib import Path
 
 from nicegui import ui
 
@@ -8,6 +10,7 @@ from rovsim.apps.workbench.gallery import picture
 from rovsim.apps.workbench.parts import (
     bar,
     cell,
+    computed,
     formula,
     heading,
     onward,
@@ -18,7 +21,8 @@ from rovsim.apps.workbench.parts import (
     words,
 )
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.reporting.html.verdict import Missing, explain, percent
+from rovsim.core.errors import RovsimError
+from rovsim.reporting.html.verdict import Missing, explain, interval, percent
 from rovsim.results.diagnosis import Diagnosis, DiagnosisErrors
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
@@ -40,6 +44,7 @@ async def show(bench: Workbench) -> None:
     _errors(found.error)
     for missing in said.missing:
         await _effect(bench, missing)
+    await _left(bench, found)
     if found.selected:
         onward("Add what is missing", "/add")
     if said.next:
@@ -93,6 +98,47 @@ async def _effect(bench: Workbench, missing: Missing) -> None:
             with ui.column().classes("seen"):
                 await picture(bench, known)
                 ui.label("From the gallery: what it looks like in a calm tank, not your data.")
+
+
+async def _left(bench: Workbench, found: Diagnosis) -> None:
+    """What no effect explains: a law for it, or the force in time."""
+    law = found.unexplained.proposal
+    if law is not None:
+        with ui.column().classes("card effect"):
+            ui.html("<h3>A law for what is left</h3>", sanitize=False)
+            text(law.meaning)
+            formula(law.equation)
+            with ui.row().classes("values"):
+                for name, value in law.parameters.items():
+                    ui.label(f"{name} {interval(value)}").classes("value")
+            text(f"It removes {percent(law.error_reduction)} of the error. ± is a 95 % interval.")
+            text(f"An effect of your own, to be read and changed: {bench.law_path}", "soft")
+            ui.button("Add the law", on_click=lambda: _take(bench)).props("unelevated no-caps")
+    elif found.unexplained.disturbance is not None:
+        section("A disturbance, and no law")
+        path = bench.out / "pictures" / "disturbance.png"
+        await computed(_draw_disturbance, found, path)
+        png = b64encode(path.read_bytes()).decode()
+        about = "What pushes and follows no law, on the path and in time"
+        ui.html(f'<img src="data:image/png;base64,{png}" alt="{about}">', sanitize=False).classes(
+            "picture"
+        )
+
+
+def _take(bench: Workbench) -> None:
+    try:
+        bench.take_law()
+    except RovsimError as error:
+        ui.notify(str(error), type="warning", multi_line=True)
+        return
+    ui.navigate.to("/add")
+
+
+def _draw_disturbance(found: Diagnosis, path: Path) -> None:
+    from rovsim.reporting.figures import kind
+    from rovsim.reporting.figures.style import save
+
+    save(kind("disturbance").draw(diagnosis=found), path.parent, path.stem)
 
 
 def _ranking(found: Diagnosis) -> None:

@@ -15,7 +15,7 @@ from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.diagnosis.settings import DiagnosisSettings
-from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_conditions
@@ -97,6 +97,25 @@ class Workbench:
         """Take in a new diagnosis; a draft begins with what it selected."""
         self.diagnosis = diagnosis
         self.__dict__.pop("draft", None)
+
+    def take_law(self) -> None:
+        """Take in the law that the diagnosis proposes; a draft begins with it.
+
+        Its file is run here and nowhere before: because the user asked for it.
+
+        Raises:
+            BadInput: its file is not there, or cannot be used any more.
+        """
+        files = [*self.settings.effect_files, self.law_path]
+        self.catalogue = load_catalogue(files).on(self.data.vehicle)
+        self.settings = self.settings.model_copy(update={"effects_file": list(map(str, files))})
+        self.__dict__.pop("draft", None)
+
+    @property
+    def law_path(self) -> Path:
+        """File of the effect that the diagnosis proposes."""
+        given = self.settings.diagnosis
+        return tasks.law_beside(Path(given) if given else self.diagnosis_path)
 
     def add(self, model: Model, path: Path) -> None:
         """Take in a model that was saved or trained."""

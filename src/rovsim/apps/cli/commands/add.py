@@ -3,7 +3,9 @@
 rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml [effects=[id,…]] [to=nominal|FILE]
 
 Takes the selected effects with their fitted values and intervals, or the named ones of the ranking,
-and adds them to the base model `to`. NEW.yaml is plain YAML, and a model wherever a model is asked.
+and adds them to the base model `to`; with effects_file=OUT/proposed_effect.py the law that the
+diagnosis proposes and the effects beside it. NEW.yaml is plain YAML, and a model wherever a model
+is asked.
 """
 
 from pathlib import Path
