@@ -33,7 +33,7 @@ from rovsim.results.base import or_nan
 
 ID, FILE = "proposed_effect", "proposed_effect.py"
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
-ENOUGH = 0.05  # of the error on stretches that were kept apart: less is not worth an equation
+ENOUGH = 0.05  # of the error of replays: less is not worth an equation
 
 Polish = Callable[[Fit], tuple[Fit, FilterBank]]
 
@@ -103,9 +103,9 @@ def propose_law(
     """An equation for what is left; None where none holds.
 
     A law holds if it gains more than the best of so many terms would by chance, if it helps on
-    blocks it was not fitted to, if stretches that took no part in anything are replayed better with
-    it than by the best that the catalogue can do, and if nothing is left on its axis but noise:
-    half a law is a wrong one.
+    blocks it was not fitted to, if the runs are replayed better with it than by the best that the
+    catalogue can do, and stretches that took no part in anything no worse, and if nothing is left
+    on its axis but noise: half a law is a wrong one.
 
     Args:
         selection: what the search selected.
