@@ -74,6 +74,7 @@ def test_the_tutorial_ends_with_the_error_fallen(notebooks):
     assert errors["repaired"] < 0.5 * errors["nominal"]
     assert known["found"].selected.index.tolist() == [("thruster_lag", "time_constant")]
     assert known["found"].verdict == "missing_effects"
+    assert known["after"].table().columns[0] == "surge [m/s]"
     lag = known["repaired"].effects.loc[("thruster_lag", "time_constant")]
     assert lag["value"] == pytest.approx(0.18, abs=4 * lag["std"])
     assert "thruster_lag" in pages[-1]  # what Gazebo leaves out

@@ -100,7 +100,9 @@ class ShownComparison(Figures):
             horizon: s of the windows ("0.5", "2", "5"), or open_loop.
             split: train or test.
         """
-        return _named(self.printed(quantity, horizon, split))
+        printed = self.printed(quantity, horizon, split)
+        heads = [f"{column.heading} [{column.unit}]" for column in printed.columns]
+        return printed.frame.set_axis(heads, axis=1)
 
     def printed(
         self, quantity: str = "velocity_rmse", horizon: str = "2", split: str = "test"
@@ -119,7 +121,7 @@ class ShownComparison(Figures):
         parts += [html.heading("Velocity RMSE of 2 s windows"), html.table(self.table())]
         for name, lines in self.sentences.items():
             parts += [html.heading(f"Where {name} fails"), html.sentences(lines)]
-        return "".join([*parts, self._picture("error_by_axis")])
+        return "".join([*parts, self._picture("error_growth")])
 
 
 @dataclass(frozen=True, eq=False)
