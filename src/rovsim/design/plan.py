@@ -154,7 +154,8 @@ def _choose(
             "no flight stays within the limits",
             where="rovsim design",
             expected="room for a flight that nobody steers",
-            remedy="Give fewer seconds, or a smaller design.limits.clearance.",
+            remedy="Give the model that a diagnosis found: what a model lacks is a disturbance. Or "
+            "give fewer seconds, or wider design.limits.",
         )
     flight, worth = max(everything, key=lambda one: one[1].told)
     paths = _paths(where, flight, many)

@@ -10,7 +10,7 @@ from rovsim.design.knowledge import Knowledge, Known
 from rovsim.design.plan import Plan
 from rovsim.design.search import Tried
 from rovsim.design.settings import Question
-from rovsim.design.worth import Worth
+from rovsim.design.worth import NOTHING, Worth
 from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.results.base import or_none
 from rovsim.results.experiment import (
@@ -115,7 +115,7 @@ def _compare(
     expected = _expect(known, worth)
     return UsualManoeuvre(
         odds=expected.odds, std=expected.std, amplitude=tried.amplitude,
-        designed_is_better=or_none(_round(designed.told / max(worth.told, 1e-12))),
+        designed_is_better=or_none(_round(designed.told / max(worth.told, NOTHING))),
     )  # fmt: skip
 
 

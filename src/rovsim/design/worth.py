@@ -29,6 +29,7 @@ from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import tune
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
+NOTHING = 1e-3  # of what the train runs hold: less is not worth a comparison
 THINNED = 4  # of so many readings one is asked how errors go on: 0.2 s apart
 
 
@@ -53,7 +54,7 @@ class Worth:
         """
         if len(self.gain):
             return float(np.min(self.gain))
-        gained = np.maximum(self.surer[0] ** 2 - 1.0, 1e-12)
+        gained = np.maximum(self.surer[0] ** 2 - 1.0, NOTHING)
         return float(np.exp(np.mean(np.log(gained))))
 
 
