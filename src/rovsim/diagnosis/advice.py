@@ -37,6 +37,11 @@ def advise(
         parts.append(
             f"{names} cannot be told apart with these runs. {_revealed(groups[0], catalogue)}"
         )
+        both = ",".join(groups[0][:2])
+        parts.append(
+            f"`rovsim design 'between=[{both}]'` plans such a flight for a vehicle that can hold a "
+            "place."
+        )
     if joint:
         parts.append(_apart(joint, catalogue))
     if found.scale:
