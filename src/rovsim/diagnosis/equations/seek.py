@@ -51,7 +51,12 @@ class Judged:
 
 
 def seek_law(workspace: SearchWorkspace, found: Fit) -> Judged | None:
-    """The likeliest law beside what was found, or in place of it; None where all may be chance."""
+    """The likeliest law beside what was found, or in place of it; None where all may be chance.
+
+    None either where axes are read now and then: their filters have another clock.
+    """
+    if not all((run.shown | ~run.free.astype(bool)).all() for run in workspace.bank.runs):
+        return None
     starts = [found.hypothesis]
     if found.hypothesis.terms:
         starts.append(replace(found.hypothesis, terms=()))
@@ -68,6 +73,8 @@ def _grow(workspace: SearchWorkspace, start: Hypothesis) -> Judged | None:
     runs = workspace.bank.runs
     around, middle, place = Surroundings.of(runs), middle_of(runs), None
     candidates = list_terms(runs)
+    if not candidates:
+        return None
     price = 2.0 * float(np.log(len(candidates)))
     # what the best of all terms gains by chance, its price paid (Bonferroni's bound)
     chance = max(0.0, float(chi2.isf(FALSE_ALARM / len(candidates), 1)) - price)
@@ -79,6 +86,8 @@ def _grow(workspace: SearchWorkspace, start: Hypothesis) -> Judged | None:
             place = float(middle[0]), float(middle[1])
         left = [t for t in list_terms(runs, place) if t not in current.terms]
         columns = weigh(workspace, current.fit, left, middle)
+        if len(columns.terms) < TERMS:
+            break
         tried = []
         for term in propose(columns, TERMS - len(current.terms))[:TRIED]:
             h = add_term(
