@@ -25,6 +25,7 @@ from rovsim.design.plan import Plan, plan
 from rovsim.design.report import describe_start, report
 from rovsim.design.search import Tried
 from rovsim.design.settings import Question
+from rovsim.design.worth import NOTHING
 from rovsim.diagnosis.observer.observed_run import prepare_runs
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
@@ -210,7 +211,7 @@ def _ratios(results: Sequence[Mapping[str, Any]], get: Any) -> Array:
         elif "usual" not in one or "left" in one["usual"]:
             found.append(np.inf)
         else:
-            found.append(get(one, "designed") / max(get(one, "usual"), 1e-9))
+            found.append(get(one, "designed") / max(get(one, "usual"), NOTHING))
     return np.array(found)
 
 
