@@ -4,7 +4,6 @@ import ast
 import re
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -115,10 +114,8 @@ def test_mistakes_are_those_of_the_commands(notebooks):
         campaign.export("nominal", "stonefis")
 
 
-def test_importing_rovsim_stays_fast():
-    start = time.perf_counter()
+def test_importing_rovsim_loads_nothing_slow():
     done = subprocess.run(
         [sys.executable, "-X", "importtime", "-c", "import rovsim"], capture_output=True, text=True
     )
-    assert time.perf_counter() - start < 10.0  # a process that starts, on a busy machine
     assert not re.search(r"numpy|pandas|matplotlib|numba", done.stderr)
