@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from rovsim.application.pipeline.models import require_physics
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import staged
@@ -35,7 +36,8 @@ def design(data: Measured, model: Model, question: Question, catalogue: Catalogu
     Raises:
         BadInput: a model that is not of physics, a question that makes no sense, or no flight.
     """
-    _refuse(model, question)
+    require_physics(model, "design with")
+    _refuse(question)
     log = data.campaign.commands
     if log is None:
         raise BadInput(
@@ -54,14 +56,7 @@ def design(data: Measured, model: Model, question: Question, catalogue: Catalogu
     return Designed(experiment, format_commands(commands, log), _picture(found, commands, log))
 
 
-def _refuse(model: Model, question: Question) -> None:
-    if model.residual is not None or model.inert:
-        raise BadInput(
-            f"cannot design with {model.name}",
-            where="model",
-            expected="one model of physics, without a trained residual",
-            remedy="Give model=nominal, or one model file without a residual.",
-        )
+def _refuse(question: Question) -> None:
     if len(set(question.between)) not in (0, 2) or len(question.between) > 2:
         raise BadInput(
             f"between=[{','.join(question.between)}]",

@@ -1,6 +1,6 @@
 """Which effects a model lacks."""
 
-from rovsim.core.errors import BadInput
+from rovsim.application.pipeline.models import require_physics
 from rovsim.core.progress import staged
 from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, diagnose_campaign
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -17,12 +17,6 @@ def diagnose(
     Raises:
         BadInput: the model has a trained residual, or no physics.
     """
-    if base.residual is not None or base.inert:
-        raise BadInput(
-            f"cannot diagnose {base.name}",
-            where="model",
-            expected="one model of physics, without a trained residual",
-            remedy="Give model=nominal, or one model file without a residual.",
-        )
+    require_physics(base, "diagnose")
     with staged("diagnosing", STAGES) as stage:
         return diagnose_campaign(runs, base, settings, catalogue, stage)

@@ -49,6 +49,21 @@ def load_one_model(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Cata
     )
 
 
+def require_physics(model: Model, doing: str) -> None:
+    """Refuse a model that is not of physics alone; `doing` says what cannot be done with it.
+
+    Raises:
+        BadInput: it has a trained residual, or no physics.
+    """
+    if model.residual is not None or model.inert:
+        raise BadInput(
+            f"cannot {doing} {model.name}",
+            where="model",
+            expected="one model of physics, without a trained residual",
+            remedy="Give model=nominal, or one model file without a residual.",
+        )
+
+
 def add_effects(
     diagnosis: Path,
     base: str,

@@ -24,7 +24,6 @@ from rovsim.results.ladder import Ladder
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
-OF_DIAGNOSIS = ("ranking",)
 ONCE = (
     "ranking", "ladder", "where", "where_map", "error_by_axis", "error_growth", "excitation"
 )  # fmt: skip
@@ -70,7 +69,7 @@ def report_into(
     data = measure(open_campaign(settings.campaign), settings.signals)
     models = load_models(settings.model, data.vehicle, catalogue)
     shown = replace(compare(data, models, settings), ladder=ladder, diagnosis=diagnosis)
-    wanted = [(figure, "") for figure in ONCE if figure not in OF_DIAGNOSIS or diagnosis]
+    wanted = [(figure, "") for figure in ONCE if figure != "ranking" or diagnosis]
     tests = [run for run, motion in data.motions.items() if motion.run.split == "test"]
     wanted += [(figure, run) for run in tests for figure in PER_RUN]
     origin = provenance(select(settings, CampaignSettings), catalogue)
