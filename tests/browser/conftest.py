@@ -54,7 +54,7 @@ def phone(chromium, workbench):
 
 def _tab(chromium, address, size):
     page = chromium.new_page(viewport={"width": size[0], "height": size[1]})
-    page.set_default_timeout(20_000)
+    page.set_default_timeout(60_000)
     found = Tab(page, address)
     yield found
     page.close()

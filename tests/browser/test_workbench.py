@@ -21,6 +21,10 @@ SCREENS = ("compare", "where", "why", "add", "ladder", "data", "gallery")
 CHANGED = (
     "([name, v]) => Number(document.querySelector(`[data-name='${name}']`).dataset.value) != v"
 )
+LATER = (
+    "([name, v]) => Number(document.querySelector(`[role=slider][aria-label='${name}']`)"
+    ".getAttribute('aria-valuenow')) > v"
+)
 
 
 def found(tab) -> None:
@@ -124,9 +128,7 @@ def test_the_horizon_changes_the_errors_and_a_run_plays(tab):
         tab.page.get_by_text(f"Horizon, {reached}").wait_for()
     tab.page.wait_for_function(CHANGED, arg=["velocity_rmse/surge", before])
     tab.page.get_by_role("button", name="Play").click()
-    clock = tab.page.get_by_role("slider", name="Time in the run, seconds")
-    tab.page.wait_for_timeout(1000)
-    assert float(clock.get_attribute("aria-valuenow")) > 0.5
+    tab.page.wait_for_function(LATER, arg=["Time in the run, seconds", 0.5])
     # Without a graphics card a click of the mouse waits for pictures of the tank: press at once.
     tab.page.get_by_role("button", name="Pause").dispatch_event("click")
     tab.page.get_by_role("button", name="Play").wait_for()

@@ -1,5 +1,6 @@
 """The path in the tank, in three dimensions: turned with the mouse, played in time."""
 
+from contextlib import suppress
 from typing import Callable, Mapping
 
 import numpy as np
@@ -13,6 +14,8 @@ from rovsim.measurement.signals.motion import Motion
 
 TICK = 0.1  # s between two pictures of a playback
 SPEED = 2  # times as fast as it was
+DRAWN = "new Promise(requestAnimationFrame)"  # kept when the browser draws its next picture
+PATIENCE = 10.0  # s for one picture, before the next is sent: hidden tabs draw none
 PIECES = 80  # bent tubes that a path is drawn with at most: about one a second
 PICTURES = 10  # a second: a machine that draws without a graphics card must keep up
 THIN = 0.0012  # radius of a tube of width 1, over the size of the room
@@ -88,11 +91,13 @@ class Path:
         self.play.set_text("Pause" if self.timer.active else "Play")
         self.play.set_icon("pause" if self.timer.active else "play_arrow")
 
-    def _tick(self) -> None:
-        """One picture on; from the end it starts anew."""
+    async def _tick(self) -> None:
+        """One picture on, no faster than the browser draws; from the end it starts anew."""
         on = self.clock.value + TICK * SPEED
         self.clock.value = round(on if on <= self.time[-1] else float(self.time[0]), 2)
         self._show(self.clock.value)
+        with suppress(TimeoutError):
+            await ui.run_javascript(DRAWN, timeout=PATIENCE)
 
     def _show(self, moment: float) -> None:
         """Put the vehicles where they are at one moment."""
