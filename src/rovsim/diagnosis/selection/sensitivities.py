@@ -17,6 +17,7 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
 
+DRAW = 0  # seed
 ROUNDS = 10  # at most, where the noise is not yet known
 CLOSE = 0.1  # of a level of noise: changed by less, it is known
 SHRINK = 1e-4  # of each column's own square: parallel candidates share
@@ -122,9 +123,18 @@ def _join(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
 def _remainder(
     bank: FilterBank, e: Sequence[Array], columns: Sequence[Array], noise: Noise
 ) -> list[Array]:
-    """Innovations (6, n) of each run less the best combination of all columns (c, 6, n)."""
+    """Innovations (6, n) of each run less a likely combination of all columns (c, 6, n).
+
+    Drawn from all that the data allow: the best combination takes as many numbers' worth of noise
+    as there are columns, in short records nearly all of a slow disturbance.
+    """
     target = bank.flatten([one[None] for one in e], noise)[0]
     white = bank.flatten(columns, noise)
     H = inner_products(white).astype(float)
-    x = -np.linalg.solve(H + np.diag(SHRINK * np.diag(H) + 1e-9), white @ target)
+    size = np.sqrt(np.diag(H))
+    size[size == 0.0] = 1.0
+    sure, turn = np.linalg.eigh(H / np.outer(size, size))
+    sure = np.maximum(sure, 0.0) + SHRINK
+    chance = np.random.default_rng(DRAW).normal(size=len(H))
+    x = turn @ (chance / np.sqrt(sure) - turn.T @ (white @ target / size) / sure) / size
     return [one + np.tensordot(x, c, axes=1) for one, c in zip(e, columns, strict=True)]
