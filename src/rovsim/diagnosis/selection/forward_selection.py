@@ -6,13 +6,13 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival, Selection
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
@@ -113,16 +113,32 @@ def contest(
     rivals = []
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
-        others = [p for p in rest.others if p.gain > 0.0 and p.term.id != term.id]
-        for p in keep_close(others, trials):
+        for p in find_challengers(workspace, term, rest, trials):
             deficit = rest.loss - workspace.price * term.choices - p.gain
-            if p.gain > PROMISING * rest.loss:
+            if _explains(workspace, p) > PROMISING * rest.loss:
                 trial = workspace.fit(rest.hypothesis.with_term(p.term))
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -swap:
                     return contest(workspace, prune(workspace, trial), trials, swap)
             rivals.append(Rival(p.term.id, term.id, deficit))
     return current, rivals
+
+
+def find_challengers(
+    workspace: SearchWorkspace, term: Term, rest: Removed, trials: int
+) -> list[Proposal]:
+    """The first other effects that may explain what a removed term did, best first.
+
+    Where a term itself is hardly worth its price, a rival need not be: the two share the evidence.
+    """
+    others = [p for p in rest.others if p.term.id != term.id]
+    worth = keep_close([p for p in others if p.gain > 0.0], trials)
+    return worth or [p for p in others[:trials] if _explains(workspace, p) > PROMISING * rest.loss]
+
+
+def _explains(workspace: SearchWorkspace, proposal: Proposal) -> float:
+    """Decrease of the sum of squares, its price not paid."""
+    return proposal.gain + workspace.price * proposal.term.choices
 
 
 def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
