@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.benchmarks.blind.asking import diagnosis
 from rovsim.benchmarks.blind.flight import fly
-from rovsim.benchmarks.blind.suites import combination, hiding, nothing, outside
+from rovsim.benchmarks.blind.suites import combination, nothing, outside
 from rovsim.core.files import read_yaml
 from rovsim.results.diagnosis import Diagnosis
 from worlds import SHARED, needed
@@ -49,15 +49,10 @@ def check_law(found, law):
     assert after - found.error.noise_floor < 0.1 * (before - found.error.noise_floor)
 
 
-SHORT = {"duration": 30.0}  # s a run
-
-
 @pytest.mark.parametrize(
     "case",
     [
-        nothing(40, "development", tank=SHORT),
         combination(2, 41, "development"),
-        hiding("single", ("quadratic_damping",), 0, "development", tank=SHORT),
         outside("squat", 0, "development"),
     ],
     ids=lambda case: case.id,
@@ -88,3 +83,4 @@ def test_the_same_runs_give_the_same_diagnosis_on_any_number_of_cores(tmp_path, 
     first = diagnosis(tmp_path / "raw", tmp_path)
     monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 1)
     assert diagnosis(tmp_path / "raw", tmp_path) == first
+    assert first.verdict == "adequate"

@@ -16,7 +16,6 @@ from rovsim.core.run import Site
 from rovsim.dynamics.body import packed
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Wrench
-from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import NO_MEMORY, Constants, Inputs, Jobs, Place
@@ -221,7 +220,6 @@ def _slots(models: Sequence[Model], candidates: Sequence[type[Wrench]]) -> list[
         most |= Counter(type(wrench) for wrench in model.wrenches)
     if most:
         most |= Counter(cls for cls in built_in().values() if issubclass(cls, Wrench))
-        most |= Counter([Law])  # any law that a diagnosis may propose
     return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]
 
 
