@@ -14,9 +14,11 @@ from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.clock import time_step
+from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import OPEN_LOOP
 from rovsim.simulation.batch import Batch, Starts
+from rovsim.simulation.carried import carry
 from rovsim.simulation.drive import drive_by_log
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import as_true, interpolate, interpolate_state
@@ -64,7 +66,8 @@ def simulate(
     Args:
         model: the model to drive.
         motion: the run; true, as the model sees it.
-        starts: for each trajectory its first step, number of samples, and state (13,).
+        starts: for each trajectory its first step, number of samples, and state (13,); in order of
+            time, and velocities that were not measured are the model's own.
         settings: step length and how commands are held.
 
     Returns:
@@ -79,10 +82,9 @@ def simulate(
     state = np.array([s[2] for s in starts]).reshape(1, -1, 13)
     memory = remembered_at([model], [motion], grid.edges, first)
     drive = drive_by_log(model, motion, grid, settings)
-    batch = Batch([model], motion.site)
-    return batch.trajectories([drive], Starts(state, first, steps, memory), grid.time, grid.stride)[
-        0
-    ]
+    batch, known = Batch([model], motion.site), find_measured(motion.measured)
+    begins = carry(batch, [drive], Starts(state, first, steps, memory), grid.time, known)
+    return batch.trajectories([drive], begins, grid.time, grid.stride)[0]
 
 
 def _predict_samples(

@@ -16,7 +16,9 @@ from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import normalize, rms
+from rovsim.measurement.signals.measured import find_measured
 from rovsim.simulation.batch import Starts
+from rovsim.simulation.carried import carry
 from rovsim.simulation.measured_states import as_true
 from rovsim.simulation.sharpened import stage_outputs
 from rovsim.simulation.windows import find_windows
@@ -126,7 +128,9 @@ class Windows:
         first = self._steps
         steps = np.array([run.at[b] for _, b in self.spans], np.int64) - first
         begins = Starts(begin, first, steps, recall(models, run, run.grid, first))
-        return serve_all(models, run).trajectories(drives, begins, run.grid - run.grid[0])
+        batch, time = serve_all(models, run), run.grid - run.grid[0]
+        begins = carry(batch, drives, begins, time, find_measured(run.motion.measured))
+        return batch.trajectories(drives, begins, time)
 
     @property
     def _steps(self) -> Array:
