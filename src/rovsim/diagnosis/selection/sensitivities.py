@@ -4,7 +4,7 @@ The observer keeps every model close to the measurement, so these columns hardly
 other effects the model has: they are made once.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Sequence
 
 import numpy as np
@@ -13,13 +13,15 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import inner_products
-from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.noise import FIRST_NOISE, Noise
+from rovsim.diagnosis.observer.noise_fit import NoiseFit
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
 
 DRAW = 0  # seed
 ROUNDS = 10  # at most, where the noise is not yet known
 CLOSE = 0.1  # of a level of noise: changed by less, it is known
+SETTLED = 1.0  # in twice the log likelihood: gained by less, so is a hypothesis' own noise
 SHRINK = 1e-4  # of each column's own square: parallel candidates share
 
 
@@ -101,6 +103,10 @@ def fit_remaining_noise(
     It is close to the true one whatever is still missing: candidates are compared under it. What is
     left depends on the noise in turn, so that this takes up to `rounds`; the last looks for slow
     errors of the readings.
+
+    Where axes hang together, a wrong noise of one can pass for an effect on another, and the two
+    then hold each other. So it is the noise of the hypothesis alone where that is likelier by more
+    than one for each column, which is what chance gives them.
     """
     bank, e, columns = sensitivities.bank, sensitivities.base, sensitivities.columns
     if at.terms:
@@ -111,8 +117,25 @@ def fit_remaining_noise(
         noise, _ = bank.fit_noise(_remainder(bank, e, columns, known), known)
         if np.max(np.abs(np.log(noise.level / known.level))) < CLOSE:
             break
-    noise, _ = bank.fit_noise(_remainder(bank, e, columns, noise), noise, colour=True)
-    return noise
+    found = bank.fit_noise(_remainder(bank, e, columns, noise), noise, colour=True)
+    own = _fit_own_noise(bank, at.model, found.noise)
+    return (own if own.likelihood > found.likelihood + sensitivities.count else found).noise
+
+
+def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
+    """The likeliest noise if nothing is missing from a model, with filters that suit it.
+
+    Each round starts from the first guess: a level that once fell to zero does not come back.
+    """
+    first = replace(FIRST_NOISE, colour=noise.colour, colour_memory=noise.colour_memory)
+    found = NoiseFit(noise, -np.inf)
+    for _ in range(ROUNDS):
+        bank = bank.redesign(model, found.noise)
+        again = bank.fit_noise([e[0] for e in bank.evaluate([model])], first)
+        if not again.likelihood > found.likelihood + SETTLED:
+            break
+        found = again
+    return found
 
 
 def _join(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
