@@ -207,7 +207,7 @@ def _without(h: Hypothesis, *names: str) -> Hypothesis:
 
 def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     bank = FilterBank.design(runs, h.model, FIRST_NOISE)
-    noise, _ = bank.fit_noise([e[0] for e in bank.evaluate([h.model])], FIRST_NOISE)
+    noise, _ = bank.fit_noise(bank.innovations(h.model), FIRST_NOISE)
     found = fit(h, bank.redesign(h.model, noise), noise, REACH)
     if not np.isfinite(found.likelihood):
         raise BadInput(

@@ -177,7 +177,7 @@ def _observe(
     to the measurement. The filters of the search then suit the noise that was found.
     """
     first = FilterBank.design(runs, base, FIRST_NOISE)
-    noise, _ = first.fit_noise([e[0] for e in first.evaluate([base])], FIRST_NOISE)
+    noise, _ = first.fit_noise(first.innovations(base), FIRST_NOISE)
     close = first.redesign(base, noise)
     candidates = list_candidates(runs, catalogue, base.vehicle)
     sensitivities = linearise_candidates(close, Hypothesis(base), candidates)

@@ -42,6 +42,10 @@ class FilterBank:
             for run, own in zip(self.runs, self.tunings, strict=True)
         ]
 
+    def innovations(self, model: Model) -> list[Array]:
+        """Innovations (6, n) of each run of one model."""
+        return [e[0] for e in self.evaluate([model])]
+
     def _of_run(self, run: ObservedRun, tuning: Tuning, models: Sequence[Model]) -> Array:
         return observe(models, run, tuning)
 

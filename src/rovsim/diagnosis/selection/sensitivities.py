@@ -61,7 +61,7 @@ def linearise_candidates(
     bank: FilterBank, base: Hypothesis, candidates: Sequence[Candidate]
 ) -> Sensitivities:
     """Columns of all candidates around a hypothesis, but for those the observer cannot hold."""
-    absent = [e[0] for e in bank.evaluate([base.model])]
+    absent = bank.innovations(base.model)
     blocks: list[CandidateColumns] = []
     parts: list[list[Array]] = []
     count = 0
@@ -131,7 +131,7 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
     found = NoiseFit(noise, -np.inf)
     for _ in range(ROUNDS):
         bank = bank.redesign(model, found.noise)
-        again = bank.fit_noise([e[0] for e in bank.evaluate([model])], first)
+        again = bank.fit_noise(bank.innovations(model), first)
         if not again.likelihood > found.likelihood + SETTLED:
             break
         found = again
