@@ -79,6 +79,8 @@ class Batch:
         candidates: wrench effects that other models of the same task have.
         learned: with their residual, which is the same for all.
 
+    `free` (13,): 1 for the numbers of a state that can change, 0 for velocities that cannot.
+
     Raises:
         BadInput: models with different residuals.
     """
@@ -102,7 +104,7 @@ class Batch:
         self._place = Place(
             np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
         )
-        self._free = np.concatenate([np.ones(7), models[0].body.free])
+        self.free = np.concatenate([np.ones(7), models[0].body.free])
         self._reads = _reads(models[0], slots)
 
     def trajectories(
@@ -120,7 +122,7 @@ class Batch:
         rows = np.tile(starts.steps // stride + 1, models)
         stops = np.cumsum(rows)
         out = np.empty((int(rows.sum()), 13))
-        starts = replace(starts, state=starts.state * self._free)
+        starts = replace(starts, state=starts.state * self.free)
         out[stops - rows] = starts.state.reshape(-1, 13)
         run_jobs(
             self.engine.integrate, starts.jobs(stops - rows + 1), time, stride, self._constants,
@@ -139,7 +141,7 @@ class Batch:
         stops = np.cumsum(np.tile(starts.steps, models))
         out = np.empty((models * count, 6))
         own, row = _distinct(correction.readings)
-        starts = replace(starts, state=starts.state * self._free)
+        starts = replace(starts, state=starts.state * self.free)
         jobs = starts.jobs(stops - np.tile(starts.steps, models))
         run_jobs(
             self.engine.observe, jobs, correction.time, correction.ends, self._constants,
@@ -154,7 +156,7 @@ class Batch:
 
         `memory` (n, 6) is what the water remembers then; empty: nothing.
         """
-        out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self._free)
+        out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self.free)
         self.engine.accelerations(
             times, states, memory, self._constants, self._inputs([drive]),
             self._parameters, self._residual, self._place, out,
@@ -163,7 +165,7 @@ class Batch:
 
     def advance(self, drive: Drive, state: Array, memory: Array, t: float, h: float) -> None:
         """Move the first model's state (13,) and memory (6,) on over all steps, in place."""
-        state *= self._free
+        state *= self.free
         self.engine.advance(
             state, memory, t, h, self._constants, self._inputs([drive]), self._parameters,
             self._residual, self._place,

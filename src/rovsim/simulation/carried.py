@@ -25,7 +25,8 @@ def carry(
         time: (k+1,) s at which the integration steps begin and end.
         measured: axes (6,) whose velocity was.
     """
-    if measured.all():
+    unread = ~measured & (batch.free[7:] > 0.0)
+    if not unread.any():
         return starts
     state = starts.state.copy()
     for k, steps in enumerate(np.diff(starts.first)):
@@ -33,6 +34,6 @@ def carry(
         memory = starts.memory[:, one] if starts.memory.size else starts.memory
         until = Starts(state[:, one], starts.first[one], np.array([steps]), memory)
         ends = [of_model[0][-1, 7:] for of_model in batch.trajectories(drives, until, time, steps)]
-        gone = ~measured & np.isfinite(ends)  # what diverged starts anew
+        gone = unread & np.isfinite(ends)  # what diverged starts anew
         state[:, k + 1, 7:] = np.where(gone, ends, state[:, k + 1, 7:])
     return replace(starts, state=state)
