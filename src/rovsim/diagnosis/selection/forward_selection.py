@@ -22,6 +22,9 @@ PROMISING = 0.5  # of what a term explains: another name may do better than it p
 # In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
 # thirty times, against a coefficient of a file that is known to be off.
 FILE_ODDS = 13.8
+# Of the best predicted gain: effects that promise about the same are all refitted, for the order of
+# first-order predictions is not that of fits (a torpedo's weight, sixth to first order, was best).
+LEVEL = 0.75
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
 
 
@@ -82,7 +85,8 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
     """The best single addition, refitted and pruned; None when none beats chance and matters."""
     left = list_promising(workspace, current)
     for _ in range(ROUNDS):
-        trying = keep_close(left, workspace.settings.trials)
+        level = sum(p.gain > LEVEL * left[0].gain for p in left)
+        trying = keep_close(left, max(workspace.settings.trials, level))
         left = [p for p in left if p not in trying]
         tried = [workspace.fit(current.hypothesis.with_term(p.term)) for p in trying]
         for best in sorted(tried, key=workspace.score, reverse=True):
