@@ -23,7 +23,7 @@ from rovsim.design.record import record
 from rovsim.design.surroundings import Surroundings
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.innovations import estimate_motions
+from rovsim.diagnosis.observer.innovations import estimate_errors
 from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import tune
@@ -91,7 +91,7 @@ def value(
 def _mix_motions(run: ObservedRun, rival: Known, known: Knowledge) -> tuple[AxisMotion, ...]:
     """How errors go on in the train runs and a flight, each as long as it lasts."""
     some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
-    own = np.array(estimate_motions(rival.hypothesis.model, [some]))
+    own = np.array(estimate_errors(rival.hypothesis.model, [some]).motions)
     before, lasts = known.seconds, float(run.instants[-1])
     both = (before * np.array(known.motions) + lasts * own) / (before + lasts)
     return tuple(AxisMotion(float(d), float(k)) for d, k in both)

@@ -182,7 +182,7 @@ def _observe(
     candidates = list_candidates(runs, catalogue, base.vehicle)
     sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
     noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
-    return SearchWorkspace(close.redesign(base, noise), sensitivities, noise, settings)
+    return SearchWorkspace(close, sensitivities, noise, settings).redesign(Hypothesis(base), noise)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,14 +1,15 @@
 """Innovations, and how they change with parameters: what all decisions are made of."""
 
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import Sequence
 
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.autoregression import COUPLED, Stretches, fit_autoregression
 from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.innovations import estimate_motions, observe
+from rovsim.diagnosis.observer.innovations import estimate_errors, observe
 from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.noise import Noise, Tuning, tune, whiten
 from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
@@ -18,18 +19,23 @@ from rovsim.dynamics.model import Model
 
 @dataclass(frozen=True, eq=False)
 class FilterBank:
-    """The runs, and the filters they are observed with."""
+    """The runs, and the filters they are observed with.
+
+    `coupled`: axes drive each other (autoregression.py). Innovations found with the filters of one
+    noise are then those of another only nearly.
+    """
 
     runs: tuple[ObservedRun, ...]
     motions: tuple[AxisMotion, ...]
     tunings: tuple[Tuning, ...]
+    coupled: bool = False
 
     @staticmethod
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
-        motions = estimate_motions(base, runs)
-        found = tuple(tune(noise.white, motions, w) for w in runs)
-        return FilterBank(tuple(runs), motions, found)
+        errors = estimate_errors(base, runs)
+        found = tuple(tune(noise.white, errors.motions, w) for w in runs)
+        return FilterBank(tuple(runs), errors.motions, found, errors.coupling > COUPLED)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""
@@ -51,7 +57,13 @@ class FilterBank:
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
-        return whiten(e, self.runs, self.tunings, self.tune(noise))
+        by_axis = whiten(e, self.runs, self.tunings, self.tune(noise))
+        past = noise.autoregression
+        return by_axis if past is None else past.whiten(by_axis, self._stretches)
+
+    @cached_property
+    def _stretches(self) -> Stretches:
+        return Stretches.of(self.runs)
 
     def flatten(self, rows: Sequence[Array], noise: Noise) -> Array:
         """Rows (q, 6, n_run) of each run, whitened, all axes after one another: (q, 6 n)."""
@@ -64,6 +76,14 @@ class FilterBank:
 
     def fit_noise(self, e: Sequence[Array], start: Noise, colour: bool = False) -> NoiseFit:
         """The most likely noise of innovations (6, n) of each run; see `fit_noise`."""
+        found = self.fit_axes(e, start, colour)
+        if not self.coupled:
+            return found
+        past, gain = fit_autoregression(self.whiten(e, found.noise), self._stretches)
+        return NoiseFit(replace(found.noise, autoregression=past), found.likelihood + gain)
+
+    def fit_axes(self, e: Sequence[Array], start: Noise, colour: bool = False) -> NoiseFit:
+        """The same, each axis by itself, also where they are coupled."""
         return fit_noise(e, self.runs, self.tunings, self.motions, start, colour)
 
     def linearise(self, at: Hypothesis) -> Linearised:

@@ -1,6 +1,6 @@
 """Innovations of many models on one run, in one compiled call."""
 
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -41,23 +41,39 @@ def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 
 
-def estimate_motions(model: Model, runs: Sequence[ObservedRun]) -> tuple[AxisMotion, ...]:
-    """How errors of each axis go on: -d nu_dot / d nu and / d pose, mean over the measured states.
+class ErrorDynamics(NamedTuple):
+    """How small errors go on: -d nu_dot / d nu, and / d pose (6, 6), mean over measured states.
 
     Errors of the position stand along the body's axes, or level ones (`ObservedRun.known`).
     """
+
+    damping: Array
+    stiffness: Array
+
+    @property
+    def motions(self) -> tuple[AxisMotion, ...]:
+        """Each axis by itself."""
+        each = zip(np.diag(self.damping), np.diag(self.stiffness), strict=True)
+        return tuple(AxisMotion(float(d), float(k)) for d, k in each)
+
+    @property
+    def coupling(self) -> float:
+        """How fast velocities of two axes drive each other, 1/s, at most."""
+        across = self.damping * self.damping.T
+        return float(np.sqrt(np.max(np.abs(across - np.diag(np.diag(across))))))
+
+
+def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
+    """How errors of a model's velocities and poses go on over the measured states."""
     slopes = []
     for run in runs:
         states = as_true(model, run.motion).state
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
         states = _nudge(states[index], level=bool(run.known[4]))
         found = _accelerate(model, run, index, states)
-        axes = range(6)
-        slopes.append(
-            [[(found[0, :, i] - found[m + i, :, i]) / NUDGE for i in axes] for m in (1, 7)]
-        )
-    means = np.mean(np.concatenate([np.array(own) for own in slopes], axis=2), axis=2)
-    return tuple(AxisMotion(float(d), float(k)) for d, k in means.T)
+        slopes.append((found[0] - found[1:]) / NUDGE)
+    means = np.mean(np.concatenate(slopes, axis=1), axis=1)
+    return ErrorDynamics(means[:6].T, means[6:].T)
 
 
 def _nudge(states: Array, level: bool) -> Array:

@@ -18,6 +18,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.autoregression import Autoregression
 from rovsim.diagnosis.observer.kalman import (
     AxisFilter,
     AxisMotion,
@@ -34,6 +35,7 @@ class Noise:
     """Per axis (6,): `level` m/s2 or rad/s2 and `memory` s of the disturbance, `reading` noise.
 
     `colour` is a slow error of the readings, which lasts `colour_memory` s; 0 where there is none.
+    `autoregression`: what the axes foretell of each other, where they hang together.
     """
 
     level: Array
@@ -41,6 +43,7 @@ class Noise:
     reading: Array
     colour: Array = field(default_factory=lambda: np.zeros(6))
     colour_memory: Array = field(default_factory=lambda: np.full(6, 0.5))
+    autoregression: Autoregression | None = None
 
     def of_axis(self, i: int) -> AxisNoise:
         """The noise of one axis."""

@@ -52,6 +52,11 @@ class Sensitivities:
     blocks: tuple[CandidateColumns, ...]
 
     @property
+    def candidates(self) -> list[Candidate]:
+        """All that have columns."""
+        return [block.candidate for block in self.blocks]
+
+    @property
     def count(self) -> int:
         """Number of columns."""
         return len(self.columns[0])
@@ -114,7 +119,7 @@ def fit_remaining_noise(
         e, columns = seen.e, _join(seen.J, columns)
     for _ in range(rounds - 1):
         known = noise
-        noise, _ = bank.fit_noise(_remainder(bank, e, columns, known), known)
+        noise = bank.fit_axes(_remainder(bank, e, columns, known), known).noise
         if np.max(np.abs(np.log(noise.level / known.level))) < CLOSE:
             break
     found = bank.fit_noise(_remainder(bank, e, columns, noise), noise, colour=True)

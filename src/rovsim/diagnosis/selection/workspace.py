@@ -20,7 +20,11 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit
 from rovsim.diagnosis.selection.nominal_terms import spread_of_file
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, rank_proposals
-from rovsim.diagnosis.selection.sensitivities import Sensitivities, fit_remaining_noise
+from rovsim.diagnosis.selection.sensitivities import (
+    Sensitivities,
+    fit_remaining_noise,
+    linearise_candidates,
+)
 from rovsim.diagnosis.settings import SearchSettings
 
 
@@ -53,8 +57,20 @@ class SearchWorkspace:
     def renew(self, current: Fit) -> "SearchWorkspace":
         """The workspace whose filters and noise suit what is now known to act."""
         noise = fit_remaining_noise(self.sensitivities, current.hypothesis, self.noise, rounds=1)
-        fresh = self.bank.redesign(current.hypothesis.model, noise)
-        return SearchWorkspace(fresh, self.sensitivities, noise, self.settings)
+        return self.redesign(current.hypothesis, noise)
+
+    def redesign(self, at: Hypothesis, noise: Noise) -> "SearchWorkspace":
+        """The workspace whose filters suit a hypothesis and a noise.
+
+        Columns found with the filters of one noise can be turned into those of another, but not
+        where axes drive each other: there they are made anew, and the noise is fitted to them.
+        """
+        bank, columns = self.bank.redesign(at.model, noise), self.sensitivities
+        if bank.coupled:
+            base = Hypothesis(columns.base_model)
+            columns = linearise_candidates(bank, base, columns.candidates)
+            noise = fit_remaining_noise(columns, at, noise, rounds=1)
+        return SearchWorkspace(bank, columns, noise, self.settings)
 
     @cached_property
     def price(self) -> float:

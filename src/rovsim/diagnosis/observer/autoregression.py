@@ -1,0 +1,101 @@
+"""What past innovations say about the next, where axes drive each other.
+
+The filters of noise.py treat every axis by itself. A vehicle that always goes ahead couples some:
+its sway drives its yaw, its heave its pitch (the Munk moment; Fossen 2021, Handbook of Marine Craft
+Hydrodynamics and Motion Control, sections 6.3 and 8.1). There the innovations of one axis foretell
+those of another, and an effect that pushes like that is taken for found. So they are whitened once
+more by a vector autoregression (Luetkepohl 2005, New Introduction to Multiple Time Series Analysis,
+chapter 2) within surge, heave and pitch and within sway, roll and yaw, which hardly meet.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+
+# Readings before the present one, in growing groups whose sum counts: about a second at 20 Hz.
+GROUPS = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 16))
+SUBSYSTEMS = ((0, 2, 4), (1, 3, 5))
+# 1/s: two axes whose errors drive each other this fast do so within what the filters, whose
+# bandwidth is about 1 Hz, take for a disturbance. A torpedo's sway and yaw: 0.6; vehicles that go
+# to and fro: below 0.2, for what their axes do to each other then changes sign.
+COUPLED = 0.4
+
+
+class Stretches(NamedTuple):
+    """Settled innovations of all runs, one after the other.
+
+    `first` (n,): where the unbroken stretch of each begins; `shown` (n, 6): which axes are read.
+    """
+
+    first: Array
+    shown: Array
+
+    @staticmethod
+    def of(runs: Sequence[ObservedRun]) -> "Stretches":
+        """The stretches of some runs."""
+        first, shown, count = [np.empty(0, np.int64)], [np.empty((0, 6), bool)], 0
+        for run in runs:
+            number = np.searchsorted(run.rows[:, 1], np.arange(len(run.time)), side="right")
+            _, begins, own = np.unique(number[run.settled], return_index=True, return_inverse=True)
+            first.append(count + begins[own])
+            shown.append(run.shown[run.settled])
+            count += len(own)
+        return Stretches(np.concatenate(first), np.concatenate(shown))
+
+
+@dataclass(frozen=True, eq=False)
+class Autoregression:
+    """What is foretold: `weights` (6, 6, g), of axis i from axis j, and `spread` (6,) of the rest.
+
+    In units of innovations that each axis' own filter has whitened.
+    """
+
+    weights: Array
+    spread: Array
+
+    def whiten(self, z: Array, stretches: Stretches) -> Array:
+        """Innovations (..., 6, n) less what their past foretells, again of unit variance."""
+        out = z.astype(float)
+        for axes in SUBSYSTEMS:
+            for j in axes:
+                for group, past in enumerate(_past(z[..., j, :], stretches.first)):
+                    for i in axes:
+                        out[..., i, :] -= self.weights[i, j, group] * past
+        return np.asarray(out * (stretches.shown.T / self.spread[:, None]), z.dtype)
+
+
+def fit_autoregression(z: Array, stretches: Stretches) -> tuple[Autoregression, float]:
+    """The likeliest autoregression of innovations z (6, n), and its gain in twice the likelihood.
+
+    z are whitened axis by axis; the gain is that of the log likelihood over taking them for white.
+    """
+    weights, spread, gain = np.zeros((6, 6, len(GROUPS))), np.ones(6), 0.0
+    for axes in SUBSYSTEMS:
+        past = np.concatenate([_past(z[j], stretches.first) for j in axes])
+        for i in axes:
+            shown = stretches.shown[:, i]
+            if shown.sum() <= len(past) or not z[i, shown].any():
+                continue
+            found, *_ = np.linalg.lstsq(past[:, shown].T, z[i, shown], rcond=None)
+            rest = z[i, shown] - found @ past[:, shown]
+            variance = float(np.mean(rest**2))
+            weights[i, list(axes)] = found.reshape(len(axes), -1)
+            spread[i] = np.sqrt(variance)
+            gain += float(z[i] @ z[i]) - shown.sum() * (1.0 + np.log(variance))
+    return Autoregression(weights, spread), gain
+
+
+def _past(z: Array, first: Array) -> Array:
+    """Sums (g, ..., n) of each group of readings (..., n) before, within the stretch."""
+    total = np.concatenate([np.zeros((*z.shape[:-1], 1)), np.cumsum(z, axis=-1, dtype=float)], -1)
+    now = np.arange(z.shape[-1])
+    return np.stack(
+        [
+            total[..., np.maximum(now - a + 1, first)] - total[..., np.maximum(now - b, first)]
+            for a, b in GROUPS
+        ]
+    )
