@@ -113,24 +113,40 @@ def _strength(nu: Array, commanded: Array, excited: Array) -> float:
 def _correlations(a: Array, b: Array) -> Array:
     """Correlations (k, 6, 6) of a (n, 6) with every stretch of b (m, 6); NaN where few overlap."""
     seen_a, seen_b = (np.isfinite(x).all(axis=1).astype(float) for x in (a, b))
-    a, b = (np.nan_to_num(x - _mean(x)) for x in (a, b))
-    count = _slide(seen_a, seen_b)
+    a, b = (np.nan_to_num(x - _mean(x)).T for x in (a, b))
+    slide = _Sliding(a.shape[1], b.shape[1])
+    once_a, once_b = slide.transform(seen_a), slide.transform(seen_b)
+    count = slide.sums(once_a, once_b)
     few = count < OVERLAP * min(seen_a.sum(), seen_b.sum())
-    found = np.empty((len(count), 6, 6))
-    size_a = [_slide(x**2, seen_b) for x in a.T]
-    size_b = [_slide(seen_a, x**2) for x in b.T]
-    for i, j in np.ndindex(6, 6):
-        size = np.sqrt(np.maximum(size_a[i] * size_b[j], SPARSE))
-        found[:, i, j] = _slide(a[:, i], b[:, j]) / size
-    found[few] = np.nan
-    return found
+    size_a = slide.sums(slide.transform(a**2), once_b)
+    size_b = slide.sums(once_a, slide.transform(b**2))
+    products = slide.sums(slide.transform(a)[:, None], slide.transform(b)[None])
+    found = products / np.sqrt(np.maximum(size_a[:, None] * size_b[None], SPARSE))
+    return np.where(few[:, None, None], np.nan, np.moveaxis(found, -1, 0))
+
+
+@dataclass(frozen=True)
+class _Sliding:
+    """Sums of products of rows (..., `short`) with every stretch of rows (..., `long`)."""
+
+    short: int
+    long: int
+
+    @property
+    def _length(self) -> int:
+        return int(scipy.fft.next_fast_len(self.short + self.long - 1, real=True))
+
+    def transform(self, x: Array) -> Array:
+        """Fourier transform, made once for all that a row is compared with."""
+        return np.asarray(scipy.fft.rfft(x, self._length))
+
+    def sums(self, short: Array, long: Array) -> Array:
+        """Sums (..., long - short + 1) from the transforms of both."""
+        found = scipy.fft.irfft(np.conj(short) * long, self._length)
+        return np.asarray(found[..., : self.long - self.short + 1])
 
 
 def _mean(x: Array) -> Array:
     known = np.isfinite(x).all(axis=1)
     return x[known].mean(axis=0) if known.any() else np.zeros(x.shape[1])
 
-
-def _slide(a: Array, b: Array) -> Array:
-    """Sums of products of a (n,) with every stretch of b (m,), m >= n."""
-    return scipy.signal.correlate(b, a, mode="valid", method="fft")
