@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study thesis test test-ui wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue clean lock
+.PHONY: help setup study thesis test test-ui wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -18,6 +18,7 @@ help:
 	@echo "make bench   replay and inference speed, into results/bench.json"
 	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full|recordings|equations"
 	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
+	@echo "make docs    the documentation as a site that works offline: site/index.html"
 	@echo "make setup   the environment alone"
 
 .venv/.complete: environment.lock pyproject.toml
@@ -59,8 +60,8 @@ chromium: setup
 	  command -v $$name >/dev/null && exit 0; done; $(BIN)/playwright install chromium
 
 check: setup
-	$(BIN)/ruff format --check src tests workflow
-	$(BIN)/ruff check src tests workflow
+	$(BIN)/ruff format --check src tests workflow docs/site
+	$(BIN)/ruff check src tests workflow docs/site
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/snakefmt --check Snakefile workflow
@@ -76,6 +77,9 @@ benchmark-blind: setup
 
 catalogue: setup
 	$(BIN)/python -m rovsim.reporting.catalogue
+
+docs: setup
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
 
 clean:
 	rm -rf results/* .snakemake
