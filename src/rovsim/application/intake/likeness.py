@@ -149,4 +149,3 @@ class _Sliding:
 def _mean(x: Array) -> Array:
     known = np.isfinite(x).all(axis=1)
     return x[known].mean(axis=0) if known.any() else np.zeros(x.shape[1])
-
