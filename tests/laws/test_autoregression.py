@@ -42,7 +42,7 @@ def foretold(z, i, j, lag):
 
 def test_what_the_past_foretells_is_gone():
     z = driven(0.2)
-    past, gain = fit_autoregression(z, stretches())
+    past, gain = fit_autoregression([z], stretches())
     white = past.whiten(z, stretches())
     assert foretold(z, YAW, SWAY, 1) > 10.0
     assert foretold(z, SWAY, YAW, 2) > 10.0
@@ -55,16 +55,24 @@ def test_what_the_past_foretells_is_gone():
     assert gain == pytest.approx(2 * sum(LENGTHS) * np.log(1.0 + foretold_share), rel=0.5)
 
 
+def test_what_is_drawn_twice_counts_once():
+    z = driven(0.2)
+    once, gain = fit_autoregression([z], stretches())
+    twice, same = fit_autoregression([z, z], stretches())
+    np.testing.assert_allclose(twice.weights, once.weights, atol=1e-12)
+    assert same == pytest.approx(gain)
+
+
 def test_where_nothing_is_foretold_little_is_gained():
     """Chance gives one, in twice the log likelihood, for each of the ninety weights."""
     z = driven(0.0)
-    _, gain = fit_autoregression(z, stretches())
+    _, gain = fit_autoregression([z], stretches())
     assert 45.0 < gain < 150.0
 
 
 def test_it_looks_back_and_only_within_a_stretch():
     z = driven(0.2)
-    past, _ = fit_autoregression(z, stretches())
+    past, _ = fit_autoregression([z], stretches())
     white = past.whiten(z, stretches())
     other = z.copy()
     other[:, LENGTHS[0] - 5 : LENGTHS[0]] += 9.0
@@ -78,23 +86,25 @@ def test_what_nobody_reads_stays_nothing():
     shown = np.ones((sum(LENGTHS), 6), bool)
     shown[::3, SWAY] = False
     z = np.where(shown.T, driven(0.2), 0.0)
-    past, _ = fit_autoregression(z, stretches(shown))
+    past, _ = fit_autoregression([z], stretches(shown))
     white = past.whiten(np.stack([z, z]), stretches(shown))
     assert not white[:, SWAY, ::3].any()
     assert white[0, SWAY, 1::3].all()
 
 
 def test_subsystems_do_not_meet():
-    past, _ = fit_autoregression(driven(0.2), stretches())
+    past, _ = fit_autoregression([driven(0.2)], stretches())
     assert past.weights[YAW, SWAY].any()
     assert not past.weights[::2, 1::2].any()
     assert not past.weights[1::2, ::2].any()
 
 
-def test_axes_are_coupled_if_each_drives_the_other():
-    damping = np.diag([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+def test_axes_are_coupled_if_each_drives_the_other_all_the_time():
+    damping, stiffness = np.diag([1.0, 1.0, 1.0, 2.0, 2.0, 2.0]), np.zeros((6, 6))
     damping[YAW, SWAY] = 2.0
-    assert ErrorDynamics(damping, np.zeros((6, 6))).coupling == 0.0
+    assert ErrorDynamics(damping, np.abs(damping), stiffness).coupling == 0.0
     damping[SWAY, YAW] = -0.5
-    assert ErrorDynamics(damping, np.zeros((6, 6))).coupling == pytest.approx(1.0)
+    assert ErrorDynamics(damping, np.abs(damping), stiffness).coupling == pytest.approx(1.0)
     assert COUPLED < 1.0
+    to_and_fro = 1.6 * np.abs(damping)
+    assert ErrorDynamics(damping, to_and_fro, stiffness).coupling == 0.0

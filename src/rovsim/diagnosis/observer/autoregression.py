@@ -19,9 +19,8 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 # Readings before the present one, in growing groups whose sum counts: about a second at 20 Hz.
 GROUPS = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 16))
 SUBSYSTEMS = ((0, 2, 4), (1, 3, 5))
-# 1/s: two axes whose errors drive each other this fast do so within what the filters, whose
-# bandwidth is about 1 Hz, take for a disturbance. A torpedo's sway and yaw: 0.6; vehicles that go
-# to and fro: below 0.2, for what their axes do to each other then changes sign.
+# 1/s: two axes that always drive each other this fast do so within what the filters, whose
+# bandwidth is about 1 Hz, take for a disturbance. A torpedo's sway and yaw: 0.6.
 COUPLED = 0.4
 
 
@@ -68,24 +67,29 @@ class Autoregression:
         return np.asarray(out * (stretches.shown.T / self.spread[:, None]), z.dtype)
 
 
-def fit_autoregression(z: Array, stretches: Stretches) -> tuple[Autoregression, float]:
-    """The likeliest autoregression of innovations z (6, n), and its gain in twice the likelihood.
+def fit_autoregression(
+    draws: Sequence[Array], stretches: Stretches
+) -> tuple[Autoregression, float]:
+    """The likeliest autoregression of innovations, and its gain in twice the log likelihood.
 
-    z are whitened axis by axis; the gain is that of the log likelihood over taking them for white.
+    Args:
+        draws: innovations (6, n), whitened axis by axis; each might be the true ones.
+        stretches: where they begin, and which are there.
     """
     weights, spread, gain = np.zeros((6, 6, len(GROUPS))), np.ones(6), 0.0
     for axes in SUBSYSTEMS:
-        past = np.concatenate([_past(z[j], stretches.first) for j in axes])
+        past = [np.concatenate([_past(z[j], stretches.first) for j in axes]) for z in draws]
         for i in axes:
             shown = stretches.shown[:, i]
-            if shown.sum() <= len(past) or not z[i, shown].any():
+            before = np.concatenate([own[:, shown] for own in past], axis=1)
+            z = np.concatenate([own[i, shown] for own in draws])
+            if shown.sum() <= len(before) or not z.any():
                 continue
-            found, *_ = np.linalg.lstsq(past[:, shown].T, z[i, shown], rcond=None)
-            rest = z[i, shown] - found @ past[:, shown]
-            variance = float(np.mean(rest**2))
+            found, *_ = np.linalg.lstsq(before.T, z, rcond=None)
+            variance = float(np.mean((z - found @ before) ** 2))
             weights[i, list(axes)] = found.reshape(len(axes), -1)
             spread[i] = np.sqrt(variance)
-            gain += float(z[i] @ z[i]) - shown.sum() * (1.0 + np.log(variance))
+            gain += float(z @ z) / len(draws) - shown.sum() * (1.0 + np.log(variance))
     return Autoregression(weights, spread), gain
 
 

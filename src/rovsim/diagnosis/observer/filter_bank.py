@@ -79,12 +79,21 @@ class FilterBank:
         found = self.fit_axes(e, start, colour)
         if not self.coupled:
             return found
-        past, gain = fit_autoregression(self.whiten(e, found.noise), self._stretches)
+        draws, runs = self._draws(e), len(self.runs)
+        white = [self.whiten(e[k * runs : (k + 1) * runs], found.noise) for k in range(draws)]
+        past, gain = fit_autoregression(white, self._stretches)
         return NoiseFit(replace(found.noise, autoregression=past), found.likelihood + gain)
 
     def fit_axes(self, e: Sequence[Array], start: Noise, colour: bool = False) -> NoiseFit:
         """The same, each axis by itself, also where they are coupled."""
-        return fit_noise(e, self.runs, self.tunings, self.motions, start, colour)
+        draws = self._draws(e)
+        return fit_noise(
+            e, self.runs * draws, self.tunings * draws, self.motions, start, colour, draws
+        )
+
+    def _draws(self, e: Sequence[Array]) -> int:
+        """How often there are innovations of every run."""
+        return len(e) // len(self.runs)
 
     def linearise(self, at: Hypothesis) -> Linearised:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""

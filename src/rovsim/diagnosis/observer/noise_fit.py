@@ -42,6 +42,7 @@ def fit_noise(
     motions: Sequence[AxisMotion],
     start: Noise,
     colour: bool = False,
+    draws: int = 1,
 ) -> NoiseFit:
     """The most likely noise of innovations e (6, n_run).
 
@@ -54,11 +55,13 @@ def fit_noise(
         motions: how errors of the six axes go on.
         start: where to begin.
         colour: whether to look for slow errors of the readings; if not, they stay.
+        draws: how often each run is there, with innovations that might all be its own.
     """
     noises, costs = [], []
     for i, motion in enumerate(motions):
         filters = tuple(one.filters[i] for one in found)
-        axis = _AxisInnovations(i, tuple(one[i] for one in e), tuple(runs), filters, motion)
+        own = tuple(one[i] for one in e)
+        axis = _AxisInnovations(i, own, tuple(runs), filters, motion, draws)
         if not axis.counted:
             noises.append(start.of_axis(i))
             continue
@@ -72,13 +75,17 @@ def fit_noise(
 
 @dataclass(frozen=True, eq=False)
 class _AxisInnovations:
-    """Innovations (n_run,) of an axis, and the filter of each run they were found with."""
+    """Innovations (n_run,) of an axis, and the filter of each run they were found with.
+
+    All that is there `draws` times counts once.
+    """
 
     axis: int
     e: tuple[Array, ...]
     runs: tuple[ObservedRun, ...]
     filters: tuple[AxisFilter, ...]
     motion: AxisMotion
+    draws: int
 
     @property
     def counted(self) -> bool:
@@ -101,7 +108,7 @@ class _AxisInnovations:
             self._of_run(noise, run, old, e)
             for e, run, old in zip(self.e, self.runs, self.filters, strict=True)
         )
-        return float(found) if np.isfinite(found) else np.inf
+        return float(found) / self.draws if np.isfinite(found) else np.inf
 
     def _of_run(self, noise: Array, run: ObservedRun, old: AxisFilter, e: Array) -> float:
         i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])

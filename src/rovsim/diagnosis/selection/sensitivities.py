@@ -19,6 +19,7 @@ from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
 
 DRAW = 0  # seed
+ENOUGH = 10_000  # readings: the noise of fewer hangs on what was drawn; so more is drawn
 ROUNDS = 10  # at most, where the noise is not yet known
 CLOSE = 0.1  # of a level of noise: changed by less, it is known
 SETTLED = 1.0  # in twice the log likelihood: gained by less, so is a hypothesis' own noise
@@ -154,7 +155,8 @@ def _remainder(
     """Innovations (6, n) of each run less a likely combination of all columns (c, 6, n).
 
     Drawn from all that the data allow: the best combination takes as many numbers' worth of noise
-    as there are columns, in short records nearly all of a slow disturbance.
+    as there are columns, in short records nearly all of a slow disturbance. Short ones are drawn
+    several times, all runs after one another.
     """
     target = bank.flatten([one[None] for one in e], noise)[0]
     white = bank.flatten(columns, noise)
@@ -163,6 +165,11 @@ def _remainder(
     size[size == 0.0] = 1.0
     sure, turn = np.linalg.eigh(H / np.outer(size, size))
     sure = np.maximum(sure, 0.0) + SHRINK
-    chance = np.random.default_rng(DRAW).normal(size=len(H))
-    x = turn @ (chance / np.sqrt(sure) - turn.T @ (white @ target / size) / sure) / size
-    return [one + np.tensordot(x, c, axes=1) for one, c in zip(e, columns, strict=True)]
+    draws = -(-ENOUGH // len(target))
+    # by the symmetric root: unlike eigenvectors it hardly changes with a rounding
+    chance = turn.T @ np.random.default_rng(DRAW).normal(size=(draws, len(H))).T
+    best = turn.T @ (white @ target / size) / sure
+    likely = (turn @ (chance / np.sqrt(sure)[:, None] - best[:, None])).T / size
+    return [
+        one + np.tensordot(x, c, axes=1) for x in likely for one, c in zip(e, columns, strict=True)
+    ]
