@@ -15,7 +15,13 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import describe_effect, read_model
 
 pytestmark = pytest.mark.browser
-SCREENS = ("compare", "where", "why", "add", "ladder", "data", "gallery")
+DARK = "document.body.classList.contains('body--dark')"
+READY = {  # what is there once a screen is drawn
+    "compare": ".chart canvas", "where": ".chart canvas", "why": ".verdict",
+    "add": "[data-name='run/now'][data-value]", "ladder": ".chart canvas", "data": ".chart canvas",
+    "gallery": "h1",
+}  # fmt: skip
+SCREENS = tuple(READY)
 
 
 CHANGED = (
@@ -49,7 +55,7 @@ def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbenc
     (path,) = folder.glob("results/*/ui/*/diagnosis.json")
     diagnosis = json.loads(path.read_text())
     assert "lacks physics" in tab.page.locator(".verdict").inner_text()
-    assert tab.page.locator(".effect h3").all_inner_texts() == ["thruster_lag"]
+    assert tab.page.locator(".effect h2").all_inner_texts() == ["thruster_lag"]
     shown = tab.numbers()
     for name, value in diagnosis["error"].items():
         assert shown[f"error/{name}"] == value
@@ -247,3 +253,48 @@ def test_strangers_are_turned_away(workbench):
         urllib.request.urlopen(request, timeout=10)
     assert refused.value.code == 400
     refused.value.close()
+
+
+def test_every_screen_is_accessible_in_light_and_dark(tab):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
+    found(tab)
+    broken, shades = [], set()
+    for screen, ready in {**READY, "open": "h1", "gallery/thruster_lag": "h1"}.items():
+        tab.go(screen)
+        tab.page.wait_for_selector(ready)
+        for scheme in ("light", "dark"):
+            tab.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+            tab.page.wait_for_function(f"{DARK} === {str(scheme == 'dark').lower()}")
+            shades.add(tab.page.evaluate("getComputedStyle(document.body).backgroundColor"))
+            for one in axe.run(tab.page).response["violations"]:
+                broken.append(f"{screen}, {scheme}: {one['id']}, {one['nodes'][0]['html'][:120]}")
+    assert broken == []
+    assert len(shades) == 2
+
+
+def test_light_and_dark_turn_and_are_remembered(tab):
+    tab.page.emulate_media(color_scheme="light")
+    tab.go("gallery")
+    assert not tab.page.evaluate(DARK)
+    tab.page.get_by_role("button", name="Light or dark").click()
+    tab.page.wait_for_function(DARK)
+    tab.go("gallery")
+    tab.page.wait_for_function(DARK)
+
+
+def test_a_chart_is_kept_as_a_picture_and_as_values(tab):
+    tab.go("compare")
+    tab.page.wait_for_selector(READY["compare"])
+    with tab.page.expect_download() as picture:
+        tab.page.get_by_role("button", name="PNG: ").click()
+    assert picture.value.path().read_bytes().startswith(b"\x89PNG")
+    with tab.page.expect_download() as values:
+        tab.page.get_by_role("button", name="CSV: ").click()
+    head, *rows = values.value.path().read_text().splitlines()
+    assert head == "series,x,y"
+    named = {row.split(",")[0] for row in rows}
+    assert {"0/measured", "0/nominal"} <= named
+    known = [
+        float(row.split(",")[2]) for row in rows if row.startswith("0/nominal,") and row[-1] != ","
+    ]
+    assert len(known) > 100

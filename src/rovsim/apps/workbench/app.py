@@ -19,11 +19,21 @@ from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
 SCREENS = ("compare", "where", "why", "add", "ladder", "data")
-STYLE = Path(__file__).with_name("style.css")
+STYLE, SAVE = (Path(__file__).with_name(name) for name in ("style.css", "save.js"))
 ICON = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><path fill="none" '
     'stroke="#0072B2" stroke-width="4" d="M2 21c5-14 9-14 14 0s9 14 14 0"/></svg>'
 )
+# Light or dark is the system's, until somebody turns it; this browser then remembers.
+TURN = """() => {
+  const dark = !document.body.classList.contains("body--dark");
+  localStorage.setItem("dark", dark);
+  setDark(dark);
+}"""
+RECALL = """
+  const kept = localStorage.getItem("dark");
+  if (kept !== null) setDark(kept === "true");
+"""
 PRACTICE = Path("results/practice/raw")
 LOOK = 0.25  # s between two looks at long work
 
@@ -148,6 +158,7 @@ class Page:
     def build(self) -> None:
         """Header, progress, screen."""
         ui.add_head_html(f"<style>{STYLE.read_text(encoding='utf-8')}</style>")
+        ui.add_head_html(f"<script>{SAVE.read_text(encoding='utf-8')}</script>")
         ui.colors(primary="#0072B2")
         ui.query("html").props('lang="en"')
         with ui.element("header"):
@@ -159,6 +170,8 @@ class Page:
                     title = "Effects" if name == "gallery" else name.capitalize()
                     link = ui.link(title, f"/{name}").props(f'accesskey="{k}" title="key {k}"')
                     self.links[name] = link
+            shade = ui.button(icon="contrast").classes("shade").on("click", js_handler=TURN)
+            shade.props('flat round dense aria-label="Light or dark" title="Light or dark"')
         self._progress()
         with ui.element("div").classes("screen"):
             routes: dict[str, Callable] = {f"/{n}": partial(self._screen, n) for n in self.links}
@@ -167,6 +180,7 @@ class Page:
             self.pages = ui.sub_pages(routes)
         ui.keyboard(on_key=self._key)
         ui.timer(LOOK, self._look)
+        ui.run_javascript(RECALL)
 
     def _name(self) -> str:
         folder = self.shared.settings.campaign
@@ -274,5 +288,5 @@ def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     ui.run(
         lambda: Page(shared).build(), host=HOST, port=settings.port, show=settings.open,
         reload=False, title="rovsim", favicon=ICON, tailwind=False, show_welcome_message=False,
-        reconnect_timeout=10.0,
+        reconnect_timeout=10.0, dark=None,
     )  # fmt: skip

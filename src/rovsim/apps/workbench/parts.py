@@ -12,6 +12,7 @@ from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
+SAVE = {"PNG": "savePicture", "CSV": "saveValues"}  # functions of save.js
 
 # One thread computes: it uses all cores, and what was asked for first is shown first.
 _thread = ThreadPoolExecutor(1)
@@ -103,6 +104,10 @@ def chart(
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}
     found = ui.echart({**common, **options}, on_point_click)
     found.props.update({"role": "img", "aria-label": about})
+    with ui.row().classes("keep"):
+        for name, function in SAVE.items():
+            button = ui.button(name).props(f'flat dense no-caps aria-label="{name}: {about}"')
+            button.on("click", js_handler=f"() => {function}(getElement({found.id}).chart)")
     return found.classes("chart").style(f"height:{height}px" if height else "")
 
 

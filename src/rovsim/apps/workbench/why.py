@@ -84,7 +84,7 @@ async def _effect(bench: Workbench, missing: Missing) -> None:
     """A card: what it is, its values, its equation, what makes it happen, its picture."""
     with ui.row().classes("card effect"):
         with ui.column().classes("words"):
-            ui.html(f"<h3>{escape(missing.effect)}</h3>", sanitize=False)
+            ui.html(f"<h2>{escape(missing.effect)}</h2>", sanitize=False)
             text(missing.meaning)
             with ui.row().classes("values"):
                 for value in missing.parameters:
@@ -105,7 +105,7 @@ async def _left(bench: Workbench, found: Diagnosis) -> None:
     law = found.unexplained.proposal
     if law is not None:
         with ui.column().classes("card effect"):
-            ui.html("<h3>A law for what is left</h3>", sanitize=False)
+            ui.html("<h2>A law for what is left</h2>", sanitize=False)
             text(law.meaning)
             formula(law.equation)
             with ui.row().classes("values"):

@@ -1,0 +1,30 @@
+/* A chart to keep: its picture, or every value of it; `x` and `y` of a bar or a field are its names. */
+function saveFile(url, name) {
+  const link = document.createElement("a");
+  link.href = url;
+  link.download = name;
+  link.click();
+}
+
+function savePicture(chart) {
+  saveFile(chart.getDataURL({pixelRatio: 2, backgroundColor: "#fff"}), "rovsim.png");
+}
+
+function saveValues(chart) {
+  const shown = chart.getOption();
+  const names = ["xAxis", "yAxis"].map((axis) => shown[axis]?.[0]?.data);
+  const named = (data, k) => String(data?.[k]?.value ?? data?.[k] ?? k).replace("\u2212", "-");
+  const quoted = (x) => /[",\n]/.test(x) ? '"' + String(x).replaceAll('"', '""') + '"' : x;
+  const rows = shown.series.flatMap((series) => (series.data ?? []).map((point, k) => {
+    const value = point?.value ?? point;
+    const own = !Array.isArray(value) ? [named(names[0] ?? names[1], k), value]
+      : value.length > 2 ? [named(names[0], value[0]), named(names[1], value[1]), value[2]] : value;
+    const name = (series.id ?? series.name ?? "").replace(/\0.*/, "") || series.name;
+    return [name, ...own].map((x) => quoted(x ?? "")).join(",");
+  }));
+  const head = rows[0]?.split(",").length > 3 ? "series,x,y,value" : "series,x,y";
+  const text = [head, ...rows, ""].join("\n");
+  const url = URL.createObjectURL(new Blob([text], {type: "text/csv"}));
+  saveFile(url, "rovsim.csv");
+  URL.revokeObjectURL(url);
+}
