@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study thesis test test-ui wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
+.PHONY: help setup study thesis test test-ui fuzz wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -13,6 +13,7 @@ help:
 	@echo "make ui      the workbench in the browser (CAMPAIGN=DIR opens one)"
 	@echo "make test    every test"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
+	@echo "make fuzz    hostile input at every door: TRIES=2000"
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
@@ -46,6 +47,11 @@ wheel-test: setup
 
 ui: setup
 	$(BIN)/rovsim ui $(if $(CAMPAIGN),campaign=$(CAMPAIGN))
+
+# Seeds that no test tries, TRIES at each door.
+TRIES ?= 2000
+fuzz: setup
+	ROVSIM_FUZZ=$(TRIES) ROVSIM_FUZZ_FIRST=1000 ROVSIM_MUTATIONS=500 $(BIN)/python -m pytest -n $(CORES) tests/fuzz tests/contracts/test_damaged_recordings.py
 
 test-ui: setup chromium
 	$(BIN)/python -m pytest tests/browser

@@ -11,8 +11,9 @@ import yaml
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import listed, main, override, quoted
 from rovsim.core import extras
-from rovsim.core.files import read_yaml, write_text
+from rovsim.core.files import write_text
 from rovsim.core.shipped import conf_names, shipped
+from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.vehicle import load_vehicle
 
 AWKWARD = [

@@ -5,7 +5,8 @@ import pytest
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
-from rovsim.core.files import read_json, read_yaml
+from rovsim.core.files import read_json
+from rovsim.core.yaml_files import read_yaml
 from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import built_in
 from rovsim.evaluation.ladder import score_step

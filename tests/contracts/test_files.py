@@ -1,24 +1,23 @@
 """Files appear whole or not at all; nothing read from disk is ever executed."""
 
+import io
+import os
 import pickle
+import resource
+import zipfile
 
 import numpy as np
 import pytest
 import yaml
 
+from fuzz.hostile import TEXTS
 from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import choose_folder
+from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
-from rovsim.core.files import (
-    appearing,
-    read_arrays,
-    read_json,
-    read_yaml,
-    write_arrays,
-    write_json,
-    write_yaml,
-)
+from rovsim.core.files import appearing, read_json, write_json
 from rovsim.core.schema import checked
+from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.measurement.signals.chain import SignalSettings
 
 
@@ -75,6 +74,58 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path):
     with pytest.raises(ValueError, match="JSON"):
         write_json(path, {"bad": float("nan")})
     assert read_json(path) == {"kept": 1}
+
+
+def test_a_full_disk_is_said_and_leaves_the_old_file(tmp_path):
+    write_json(tmp_path / "x.json", [1])
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))  # EFBIG, as a quota would
+    try:
+        with pytest.raises(BadInput, match=r"x\.json: cannot be written .* make room"):
+            write_json(tmp_path / "x.json", list(range(10_000)))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert read_json(tmp_path / "x.json") == [1]
+    assert list(tmp_path.iterdir()) == [tmp_path / "x.json"]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (TEXTS["bomb"], "aliases"),
+        (TEXTS["cycle"], "aliases"),
+        (TEXTS["deep"], "nested too deeply"),
+        (TEXTS["digits"], "not YAML"),
+        (TEXTS["line"], "characters"),
+    ],
+)
+def test_a_bomb_is_one_message(text, found, tmp_path):
+    (tmp_path / "x.yaml").write_text(text)
+    with pytest.raises(BadInput, match=found) as refusal:
+        read_yaml(tmp_path / "x.yaml")
+    assert len(str(refusal.value)) < 2000
+
+
+def test_an_alias_may_repeat(tmp_path):
+    (tmp_path / "x.yaml").write_text("a: &a [1, 2]\nb: *a\nc: *a\n")
+    assert read_yaml(tmp_path / "x.yaml") == {key: [1, 2] for key in "abc"}
+
+
+def test_an_archive_that_unpacks_to_a_memory_is_refused(tmp_path):
+    head = io.BytesIO()
+    described = {"descr": "<f8", "fortran_order": False, "shape": (10**10,)}
+    np.lib.format.write_array_header_1_0(head, described)
+    for filling in (b"", bytes(10**8)):
+        with zipfile.ZipFile(tmp_path / "x.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("a.npy", head.getvalue() + filling)
+        with pytest.raises(BadInput, match=r"unpack|in \d+ bytes"):
+            read_arrays(tmp_path / "x.npz")
+
+
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "x.yaml")
+    with pytest.raises(BadInput, match="a device or a pipe"):
+        read_yaml(tmp_path / "x.yaml")
 
 
 def test_a_place_that_cannot_be_written_is_said(tmp_path):

@@ -4,8 +4,8 @@ import pytest
 import yaml
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import read_yaml
 from rovsim.core.shipped import shipped
+from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.dynamics.vehicle import load_vehicle

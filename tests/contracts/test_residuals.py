@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import yaml
 
+from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
-from rovsim.core.files import read_arrays, write_arrays
 from rovsim.dynamics.learned.features import FEATURES, FeatureSettings, feature_names
 from rovsim.dynamics.learned.layout import BLOCKS, COUNT, POINTS
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many

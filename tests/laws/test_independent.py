@@ -15,10 +15,10 @@ from rovsim.benchmarks.blind.independent.motion import Mover, Vehicle
 from rovsim.benchmarks.blind.independent.thrusters import Thrusters
 from rovsim.benchmarks.blind.independent.vehicle import read_constants
 from rovsim.benchmarks.blind.suites import hiding, suite
-from rovsim.core.files import read_yaml
 from rovsim.core.rotations import conjugate, from_euler, log, multiply
 from rovsim.core.run import Site
 from rovsim.core.shipped import conf_file
+from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.catalogue import built_in
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run

@@ -6,7 +6,7 @@ import pytest
 from rovsim.benchmarks.blind.asking import diagnosis
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import combination, nothing, outside
-from rovsim.core.files import read_yaml
+from rovsim.core.yaml_files import read_yaml
 from rovsim.results.diagnosis import Diagnosis
 from worlds import SHARED, needed
 

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import read_yaml
 from rovsim.core.rotations import from_euler
 from rovsim.core.run import Commands, Logged, Site
+from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.engine.types import NO_MEMORY

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from rovsim.apps.cli.main import main
-from rovsim.core.files import read_json, read_yaml
+from rovsim.core.files import read_json
+from rovsim.core.yaml_files import read_yaml
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"

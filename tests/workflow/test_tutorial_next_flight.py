@@ -11,8 +11,9 @@ import pytest
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
-from rovsim.core.files import read_json, read_yaml
+from rovsim.core.files import read_json
 from rovsim.core.run import Commands
+from rovsim.core.yaml_files import read_yaml
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products

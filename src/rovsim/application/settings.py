@@ -7,7 +7,7 @@ from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from rovsim.application.sections import SimulationSettings, TimingSettings, TrainingSettings
 from rovsim.core.errors import BadInput, nearest
-from rovsim.core.schema import S, Section, checked
+from rovsim.core.schema import PathText, S, Section, checked
 from rovsim.core.shipped import conf_folders, conf_names
 from rovsim.design.settings import DesignSettings
 from rovsim.diagnosis.settings import SearchSettings
@@ -32,7 +32,7 @@ class FoldSettings(Section):
     """
 
     leave_one_run_out: bool = False
-    published: str | None = None
+    published: PathText | None = None
     pitfalls: bool = False
     residuals: tuple[str, ...] = ("knn", "gp")
     controls: tuple[Control, ...] = ("6dof",)
@@ -79,8 +79,8 @@ class CommandSettings(Section):
     `out` None: a folder under results/.
     """
 
-    effects_file: str | list[str] | None = None
-    out: str | None
+    effects_file: PathText | list[PathText] | None = None
+    out: PathText | None
     output: Literal["text", "json", "quiet"] = "text"
 
     @property
@@ -93,15 +93,15 @@ class CommandSettings(Section):
 class CampaignSettings(SimulationSettings, CommandSettings):
     """What every command on a campaign takes."""
 
-    campaign: str | None
-    model: str | list[str]
+    campaign: PathText | None
+    model: PathText | list[PathText]
 
 
 class WorkbenchSettings(TrainingSettings, CampaignSettings):
     """What the workbench takes: a campaign, and how it is diagnosed and learned from."""
 
     search: SearchSettings
-    diagnosis: str | None
+    diagnosis: PathText | None
     port: int = Field(ge=1, le=65535)
     open: bool
 
@@ -112,13 +112,13 @@ class Settings(WorkbenchSettings):
     command: str | None = None
     tank: TankSettings
     effects: list[str] | None = None
-    to: str = "nominal"
+    to: PathText = "nominal"
     between: list[str] | None = None
     know: list[str] | None = None
     seconds: float = 60.0
     design: DesignSettings = DesignSettings()
-    fly: str | None = None
-    files: list[str] = Field(default_factory=list)
+    fly: PathText | None = None
+    files: list[PathText] = Field(default_factory=list)
     force: bool = False
     study: StudySettings
     folds: FoldSettings
@@ -151,7 +151,7 @@ def compose(overrides: Sequence[str]) -> Settings:
             return settings_of(hydra_compose("config", overrides=list(overrides)))
     except (HydraException, OmegaConfBaseException) as error:
         raise BadInput(
-            str(error).split("\n")[0].rstrip("."),
+            str(error).split("\n")[0].removeprefix("LexerNoViableAltException: ").rstrip("."),
             where=f"overrides {' '.join(overrides)}",
             expected="key=value with keys of conf/config.yaml and options of its groups",
             remedy=_nearest_override(overrides),

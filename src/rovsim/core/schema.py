@@ -1,9 +1,11 @@
 """Typed sections read from YAML: an unknown key is an error that names the nearest known one."""
 
+import os
+import reprlib
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, ValidationError
 
 from rovsim.core.errors import BadInput, nearest
 
@@ -14,6 +16,15 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
+def _path(text: str) -> str:
+    """Refuse what no file system can name: every look at such a path would fail in its own way."""
+    too_long = len(text) > 4000 or any(len(os.fsencode(p)) > 255 for p in text.split("/"))
+    if too_long or "\x00" in text:
+        raise ValueError("a path that a file system can name")
+    return text
+
+
+PathText = Annotated[str, AfterValidator(_path)]
 # A number as it is: neither true nor '1.5' is one.
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 
@@ -37,11 +48,18 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
         return kind.model_validate(content)
     except ValidationError as error:
         raise _explained(error, kind, content, where) from None
+    except OverflowError:
+        raise BadInput(
+            "holds a number with hundreds of digits",
+            where=where,
+            expected="numbers below 1e308",
+            remedy="Correct that number.",
+        ) from None
 
 
 def _explained(error: ValidationError, kind: type[Section], content: Any, where: Any) -> BadInput:
     first = error.errors(include_url=False)[0]
-    place = ".".join(str(part) for part in first["loc"])
+    place = ".".join(str(part) for part in first["loc"] if not _is_type(part))
     if first["type"] == "extra_forbidden":
         key = str(first["loc"][-1])
         known = _known_keys(kind, first["loc"][:-1])
@@ -59,11 +77,16 @@ def _explained(error: ValidationError, kind: type[Section], content: Any, where:
             remedy="Add it; docs/formats.md has an example.",
         )
     return BadInput(
-        f"'{place}' is {first.get('input')!r}",
+        f"'{place}' is {reprlib.repr(first.get('input'))}",
         where=where,
         expected=_sentence(first["msg"]),
         remedy="Correct that value.",
     )
+
+
+def _is_type(part: int | str) -> bool:
+    """Whether a part of a place names a member of a union, which does not stand in the file."""
+    return isinstance(part, str) and (part == "str" or "[" in part)
 
 
 def _sentence(message: str) -> str:

@@ -1,6 +1,7 @@
 """The constants of Fossen's equation, filled in by effects, then packed for the engine."""
 
 from dataclasses import dataclass, field
+from math import inf
 from typing import Sequence
 
 import numpy as np
@@ -76,6 +77,8 @@ class Body:
     def least_inertia(self) -> float:
         """Smallest eigenvalue of the inertia that moves: positive if such a body can exist."""
         M = (self.M_RB + self.M_A)[np.ix_(self.free, self.free)]
+        if not np.isfinite(M).all():
+            return -inf
         return float(np.linalg.eigvalsh(0.5 * (M + M.T))[0])
 
     @property

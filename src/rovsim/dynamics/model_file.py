@@ -6,8 +6,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from rovsim.core.errors import BadInput, nearest
-from rovsim.core.files import plain, read_yaml, write_yaml
-from rovsim.core.schema import Number, Section, checked
+from rovsim.core.files import plain
+from rovsim.core.schema import Number, PathText, Section, checked
+from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.learned.residual import StoredResidual, read_residual
@@ -56,7 +57,7 @@ class ModelFile(Section):
     """A model file as it stands on disk: data only."""
 
     schema_: Literal["rovsim.model/1"] = Field("rovsim.model/1", alias="schema")
-    vehicle: str | dict[str, Any]
+    vehicle: PathText | dict[str, Any]
     effects: tuple[EffectEntry, ...] = ()
     residual: dict[str, Any] | None = None
     provenance: dict[str, Any] | None = None

@@ -7,7 +7,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.files import read_arrays, write_arrays
+from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.results.base import ByAxis
 from rovsim.results.budget import BudgetTotals, RunBudget
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
-from rovsim.core.files import read_yaml
 from rovsim.core.rotations import axes_signs
 from rovsim.core.schema import checked
+from rovsim.core.yaml_files import read_yaml
 from rovsim.measurement.campaign_file import CampaignFile, CommandLog, Mocap, Run, Tank
 from rovsim.measurement.unanswered import check_answered
 

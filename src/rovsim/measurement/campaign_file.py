@@ -7,7 +7,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 
 from rovsim import AXES
 from rovsim.core.rotations import BodyAxes, WorldAxes
-from rovsim.core.schema import Section
+from rovsim.core.schema import PathText, Section
 from rovsim.measurement.sensors import Sensors
 
 
@@ -41,6 +41,7 @@ def _distinct(names: list[str]) -> list[str]:
 
 Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1)]
+Place = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
 FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
 Interval = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_interval)]
 
@@ -136,8 +137,8 @@ class Run(Section):
     id: FileName
     control: Literal["3dof", "6dof"]
     split: Literal["train", "test"]
-    mocap: Text
-    commands: Text
+    mocap: Place
+    commands: Place
 
     @property
     def commanded(self) -> bool:
@@ -149,10 +150,10 @@ class CampaignFile(Section):
     """The keys of `campaign.yaml`."""
 
     name: FileName
-    vehicle: Text
+    vehicle: Place
     tank: Tank | None = None
     mocap: Mocap
     commands: CommandLog | None = None  # not needed where no run has commands
     runs: Annotated[list[Run], Field(min_length=1)]
-    folder: str = ""  # where the recordings lie when they are not beside this file
+    folder: PathText = ""  # where the recordings lie when they are not beside this file
     source: str = ""  # where to get them, told when they are missing

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.files import read_arrays, write_arrays
+from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.run import RunInfo
 
 

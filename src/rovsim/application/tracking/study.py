@@ -7,7 +7,7 @@ from typing import Any, Mapping, Sequence
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.diagnosis import track_diagnosis
 from rovsim.application.tracking.runs import track
-from rovsim.core.files import read_yaml
+from rovsim.core.yaml_files import read_yaml
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Ladder

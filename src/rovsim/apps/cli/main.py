@@ -1,5 +1,6 @@
 """`rovsim COMMAND key=value …`: one message and exit code 2 for input that cannot be used."""
 
+import os
 import pkgutil
 import re
 import sys
@@ -25,11 +26,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)
         sys.exit(2)
+    except OSError as error:  # a full disk, a file that may not be read, a name too long
+        if isinstance(error, BrokenPipeError):
+            sys.exit(141)
+        where = f"{error.filename}: " if error.filename else ""
+        print(f"rovsim: {where}{error.strerror or error}", file=sys.stderr)
+        sys.exit(2)
     except KeyboardInterrupt:
         print("rovsim: interrupted; what was finished is kept.", file=sys.stderr)
         sys.exit(130)
-    except BrokenPipeError:
-        sys.exit(141)
 
 
 def _main(words: list[str]) -> None:
@@ -84,7 +89,7 @@ def _doc(name: str) -> str:
 
 def is_file(word: str) -> bool:
     """Whether a word names a file and no key: it is there, or looks like no `key=value`."""
-    return re.match(r"[\w.]+=", word) is None or Path(word).exists()
+    return re.match(r"[\w.]+=", word) is None or os.path.exists(word)
 
 
 def override(word: str) -> str:
@@ -120,7 +125,8 @@ def listed(text: str) -> list[str]:
     pieces, items = text.split(","), []
     while pieces:
         count = next(
-            (n for n in range(len(pieces), 1, -1) if Path(",".join(pieces[:n]).strip()).exists()), 1
+            (n for n in range(len(pieces), 1, -1) if os.path.exists(",".join(pieces[:n]).strip())),
+            1,
         )
         items.append(",".join(pieces[:count]).strip())
         pieces = pieces[count:]

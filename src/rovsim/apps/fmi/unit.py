@@ -6,7 +6,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import appearing, read_yaml
+from rovsim.core.files import appearing
+from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import write_model
 

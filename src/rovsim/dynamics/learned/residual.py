@@ -9,9 +9,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
-from rovsim.core.files import plain, read_arrays, write_arrays
-from rovsim.core.schema import Section, checked
+from rovsim.core.files import plain
+from rovsim.core.schema import PathText, Section, checked
 from rovsim.dynamics.learned.checks import check_exported, checked_rows, posterior
 from rovsim.dynamics.learned.features import Block, FeatureSettings
 from rovsim.dynamics.learned.layout import POINTS
@@ -26,7 +27,7 @@ class StoredResidual(Section):
 
     kind: str
     control: Control  # runs it was trained on
-    file: str  # arrays, beside the model file
+    file: PathText  # arrays, beside the model file
     sha256: str  # of that file
     features: tuple[Block, ...]
     scaling: Literal["standard", "range", "none"]

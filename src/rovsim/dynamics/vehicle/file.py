@@ -10,9 +10,9 @@ from pydantic import Field, PositiveFloat
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
-from rovsim.core.files import read_yaml
 from rovsim.core.schema import Section, checked
 from rovsim.core.shipped import conf_file, conf_names
+from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy

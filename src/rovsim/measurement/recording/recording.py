@@ -7,7 +7,7 @@ from typing import Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.files import read_arrays, write_arrays
+from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.run import Commands, Logged, RunInfo, Site
 from rovsim.measurement.recording.channels import Channel, by_name, from_names
 from rovsim.measurement.sensors import Sensors

@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.files import read_arrays
+from rovsim.core.array_files import read_arrays
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.binned import bin_motion

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.files import read_arrays, write_arrays
+from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.recording.recording import labels, unlabelled
 from rovsim.measurement.signals.clock import find_stretches

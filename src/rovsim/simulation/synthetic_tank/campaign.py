@@ -9,8 +9,9 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import write_text, write_yaml
+from rovsim.core.files import write_text
 from rovsim.core.rotations import HALF_TURN_X
+from rovsim.core.yaml_files import write_yaml
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model

@@ -11,7 +11,8 @@ import numpy as np
 from rovsim.application.export.equation import Equation
 from rovsim.application.export.holding import Left
 from rovsim.application.export.targets import mss
-from rovsim.core.files import plain, yaml_text
+from rovsim.core.files import plain
+from rovsim.core.yaml_files import yaml_text
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 

@@ -14,8 +14,8 @@ from rovsim.benchmarks.blind.independent.pilot import Pilot, draw_pushes
 from rovsim.benchmarks.blind.independent.thrusters import Thrusters
 from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Hidden, read_constants
 from rovsim.core.errors import BadInput
-from rovsim.core.files import read_yaml, write_yaml
 from rovsim.core.shipped import conf_file
+from rovsim.core.yaml_files import read_yaml, write_yaml
 
 # Effects of the catalogue that are stated here once more. Not a loop on board, whose set-points
 # the log would hold, nor a current that wanders, with which no observer can drift.

@@ -1,0 +1,85 @@
+"""Safe YAML 1.2, written and read: no tags that build objects, no bombs."""
+
+import copy
+import io
+from functools import lru_cache
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text, write_text
+
+LARGEST = 1 << 20  # characters; a campaign of thousands of runs has a tenth, read in seconds
+MOST_NODES = 1_000_000  # with everything written out that aliases repeat
+
+
+def write_yaml(path: Path, content: Any) -> None:
+    """Write plain YAML atomically, keys in the order given."""
+    write_text(path, yaml_text(content))
+
+
+def yaml_text(content: Any, rows: bool = False) -> str:
+    """Plain YAML, keys in the order given; `rows`: what holds plain values alone is one line."""
+    yaml, text = YAML(typ="safe", pure=True), io.StringIO()
+    # with the quotes and numbers of YAML 1.1, readers of 1.1 and 1.2 agree on every value
+    yaml.version, yaml.width, yaml.default_flow_style = (1, 1), 100, None if rows else False
+    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
+    yaml.dump(content, text)
+    return text.getvalue().removeprefix("%YAML 1.1\n---\n")
+
+
+def read_yaml(path: Path) -> Any:
+    """Read safe YAML 1.2 (no tags that build objects).
+
+    Raises:
+        BadInput: the file is missing or is not YAML, gives a key twice, or is far too large.
+    """
+    text = read_text(path)
+    if len(text) > LARGEST:
+        raise _refused(path, f"{len(text)} characters", f"at most {LARGEST}")
+    try:
+        content = _parse(text)
+    except YAMLError as error:
+        raise _refused(f"{path}{_line(error)}", f"not YAML ({_problem(error)})") from None
+    except RecursionError:
+        raise _refused(path, "nested too deeply") from None
+    except ValueError as error:  # of a number or a date
+        raise _refused(path, f"not YAML ({error})") from None
+    if _count(content, {}) > MOST_NODES:
+        raise _refused(path, "aliases that repeat each other without end")
+    return copy.deepcopy(content)
+
+
+def _refused(where: object, found: str, expected: str = "a plain YAML file") -> BadInput:
+    remedy = "Check the indentation and the quotes there."
+    return BadInput(found, where=where, expected=expected, remedy=remedy)
+
+
+@lru_cache(maxsize=32)
+def _parse(text: str) -> Any:
+    """Content of a YAML text, not to be changed: the parser takes 0.1 s for a vehicle file."""
+    return YAML(typ="safe", pure=True).load(text)
+
+
+def _count(node: Any, known: dict[int, float]) -> float:
+    """Values in a tree with its aliases written out; infinite where it holds itself."""
+    if not isinstance(node, (dict, list)):
+        return 1
+    if id(node) not in known:
+        known[id(node)] = inf  # until it is counted: whoever meets it meanwhile is inside it
+        inside = node.values() if isinstance(node, dict) else node
+        known[id(node)] = 1 + sum(_count(child, known) for child in inside)
+    return known[id(node)]
+
+
+def _problem(error: YAMLError) -> str:
+    return getattr(error, "problem", None) or str(error)
+
+
+def _line(error: YAMLError) -> str:
+    mark = getattr(error, "problem_mark", None)
+    return f", line {mark.line + 1}" if mark else ""
