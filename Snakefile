@@ -18,6 +18,14 @@ except RovsimError as error:
     sys.exit(2)
 
 
+onstart:
+    try:
+        study.hold()
+    except RovsimError as error:
+        print(f"rovsim: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
 wildcard_constraints:
     run="[^/]+",
     fold="[^/]+",

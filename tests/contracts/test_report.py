@@ -13,6 +13,7 @@ from rovsim import AXES
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
+from rovsim.reporting.formula import mathml
 from rovsim.reporting.html import leave_one_run_out, published_errors, report, terminal
 from rovsim.reporting.html.marked import BEGIN, END
 from rovsim.reporting.html.speed import timing_sentences
@@ -55,6 +56,21 @@ def _rude(found):
     unexplained = found.unexplained.model_copy(update={"hint": "<script>alert(1)</script>"})
     rude = {"unexplained": unexplained, "next_experiment": "Run <i>6dof & co</i>"}
     return found.model_copy(update=rude)
+
+
+@pytest.mark.parametrize(
+    "latex",
+    [
+        r"\text{<img src=x onerror=alert(1)>}", r"\href{javascript:alert(1)}{x}", r"\style{x:y}{z}",
+        r"\frac{a}", "}{", "", r"\color{a\" onload=\"x}{y}",
+    ],
+)  # fmt: skip
+def test_an_equation_is_shown_and_never_run(latex):
+    parser = Tags()
+    parser.feed(mathml(latex))
+    for tag, attributes in parser.found:
+        assert tag in ("code", "math", "mrow", "mi", "mo", "mn", "mtext", "mfrac", "mstyle")
+        assert not {"href", "style", "onload"} & set(attributes)
 
 
 class Tags(HTMLParser):

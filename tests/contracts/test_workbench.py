@@ -2,6 +2,7 @@
 
 import socket
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -137,7 +138,8 @@ def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench
     ("name", "found"),
     [("nominal.yaml", "as another"), ("new.json", "yaml"), ("campaign.yaml", "no model file")],
 )
-def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, name, found):
+def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, monkeypatch, name, found):
+    monkeypatch.chdir(tmp_path)
     path = tmp_path / name
     path.write_text("name: mine\n")
     with pytest.raises(BadInput, match=found):
@@ -145,7 +147,18 @@ def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, name, found)
     assert path.read_text() == "name: mine\n"
 
 
-def test_a_saved_draft_is_one_of_the_models_and_may_be_saved_again(bench, tmp_path):
+def test_saving_stays_where_the_workbench_is(bench, tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    (tmp_path / "here" / "link").symlink_to(tmp_path)
+    for name in ("../out.yaml", str(tmp_path / "out.yaml"), "link/out.yaml"):
+        with pytest.raises(BadInput, match="outside"):
+            bench.save(Path(name))
+    assert not (tmp_path / "out.yaml").exists()
+
+
+def test_a_saved_draft_is_one_of_the_models_and_may_be_saved_again(bench, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     here = Workbench(bench.settings, built_in(), bench.data, dict(bench.models), dict(bench.paths))
     here.draft.tick("thruster_lag", True)
     for value in (0.1, 0.2):

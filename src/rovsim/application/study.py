@@ -5,6 +5,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
 
+from filelock import FileLock, Timeout
+
 from rovsim.application.provenance import digest, own_digest, provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import Settings, compose, select
@@ -18,6 +20,7 @@ from rovsim.reporting.report_data import PER_RUN
 from rovsim.results.ladder import EFFECTS
 from rovsim.simulation.synthetic_tank.description import SEALED, describe
 
+HELD: dict[Path, FileLock] = {}  # until the process ends
 BASELINES = ("zero_acceleration", "nominal")
 PHYSICS = ("refitted", EFFECTS)
 DRAWN = ("nominal", EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
@@ -79,6 +82,27 @@ class Study:
     def folder(self) -> str:
         """Where the study writes."""
         return f"results/{self.name}"
+
+    def hold(self) -> None:
+        """Keep other studies of this campaign out until this process ends, however it ends.
+
+        Snakemake's own lock is a file that outlives a process that was killed.
+
+        Raises:
+            BadInput: another process writes there.
+        """
+        place = Path(self.folder)
+        place.mkdir(parents=True, exist_ok=True)
+        HELD[place] = FileLock(place / ".study.lock", blocking=False)
+        try:
+            HELD[place].acquire()
+        except Timeout:
+            raise BadInput(
+                "another study writes here",
+                where=place,
+                expected="one study of a campaign at a time",
+                remedy="Wait until it ends, or stop it: what it finished is kept.",
+            ) from None
 
     def raw(self, run: str = "") -> list[str]:
         """Raw files: of one run, with the campaign file, or all that the tank writes."""

@@ -1,11 +1,14 @@
 """Files that appear whole or not at all: text and JSON. Nothing read here is ever executed."""
 
 import errno
+import glob
 import json
 import os
 import tempfile
 from contextlib import contextmanager
+from hashlib import sha256
 from pathlib import Path
+from socket import gethostname
 from typing import Any, Iterator, Mapping
 
 import numpy as np
@@ -36,16 +39,36 @@ def appearing(path: Path) -> Iterator[Path]:
 
 
 def _beside(path: Path) -> Path:
-    """A new empty file in the folder of `path`, which is made if need be."""
+    """A new empty file in the folder of `path`, which is made if need be.
+
+    Its name tells what it becomes and who writes it: what a killed process left is cleared away.
+    """
+    file = sha256(os.fsencode(path.name)).hexdigest()[:12]
+    here = f".{file}-{gethostname()[:40]}-"
     try:
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, "a folder of that name is in the way")
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
+        for old in path.parent.glob(f"{glob.escape(here)}*"):
+            if not _lives(old.name.removeprefix(here).partition("-")[0]):
+                old.unlink(missing_ok=True)
+        mine = f"{here}{os.getpid()}-"
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=mine, suffix=path.suffix)
     except OSError as error:
         raise _unwritable(path, error) from None
     os.close(handle)
     return Path(name)
+
+
+def _lives(process: str) -> bool:
+    """Whether a process of this machine, by its number, is still there."""
+    try:
+        os.kill(int(process), 0)
+    except ProcessLookupError:
+        return False
+    except (ValueError, OSError):  # no number, or somebody else's
+        pass
+    return True
 
 
 def _unwritable(path: Path, error: OSError) -> BadInput:

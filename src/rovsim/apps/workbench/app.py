@@ -15,6 +15,7 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from rovsim.application.settings import WorkbenchSettings, compose
 from rovsim.apps.workbench import HOST
+from rovsim.apps.workbench.gate import Gate
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
@@ -279,6 +280,7 @@ def _module(name: str) -> ModuleType:
 def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
     shared = App(settings, catalogue)
+    server.add_middleware(Gate)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
 
     @server.get("/report")

@@ -8,6 +8,7 @@ from typing import Any, Callable, Sequence
 from nicegui import ui
 
 from rovsim.apps.workbench.charts import Options
+from rovsim.reporting.formula import mathml
 from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 
@@ -128,7 +129,5 @@ def onward(label: str, path: str) -> None:
 
 
 def formula(latex: str) -> None:
-    """An equation, as MathML: every browser shows it, nothing is fetched."""
-    from latex2mathml.converter import convert
-
-    ui.html(convert(latex), sanitize=False).classes("formula")
+    """An equation."""
+    ui.html(mathml(latex), sanitize=False).classes("formula")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Sequence
 
 from rovsim.application.pipeline.kept import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.models import load_models
@@ -127,7 +127,8 @@ class Workbench:
         Raises:
             BadInput: no such model can be, or the place is taken by something else.
         """
-        _check_place(path, {*BUILT_IN, self.base.name}, self.catalogue)
+        inside = (Path(), self.out, self.data.campaign.file.parent)
+        _check_place(path, inside, {*BUILT_IN, self.base.name}, self.catalogue)
         story: dict[str, object] = {
             "base": self.base.name,
             "effects": self.draft.ticked,
@@ -239,10 +240,12 @@ class Workbench:
         return self._searched[model]
 
 
-def _check_place(path: Path, taken: set[str], catalogue: Catalogue) -> None:
-    """Refuse to write over what is no model file, and to call a model as another one is called."""
+def _check_place(path: Path, inside: Sequence[Path], taken: set[str], catalogue: Catalogue) -> None:
+    """Refuse to write elsewhere or over what is no model, and to call a model as another is."""
     found = ""
-    if path.suffix not in (".yaml", ".yml"):
+    if not any(path.resolve().is_relative_to(folder.resolve()) for folder in inside):
+        found = "lies outside the folder in which the workbench was started"
+    elif path.suffix not in (".yaml", ".yml"):
         found = "does not end in .yaml"
     elif path.stem in taken:
         found = f"would be called '{path.stem}', as another model is"

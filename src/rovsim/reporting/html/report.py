@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from latex2mathml.converter import convert
 from markupsafe import Markup
 
 from rovsim import AXES
@@ -15,6 +14,7 @@ from rovsim.core.files import write_text
 from rovsim.core.mappings import leaves
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, kind
+from rovsim.reporting.formula import mathml
 from rovsim.reporting.html.published_errors import tell_pitfalls, tell_standings
 from rovsim.reporting.html.sentences import summarize
 from rovsim.reporting.html.verdict import explain
@@ -129,7 +129,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["significant"] = lambda value: significant(or_nan(value))
-    environment.filters["mathml"] = lambda latex: Markup(convert(latex))
+    environment.filters["mathml"] = lambda latex: Markup(mathml(latex))
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
     return environment
 

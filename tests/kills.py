@@ -1,0 +1,121 @@
+"""Kill commands at random moments: the same command must then end as if nothing had happened.
+
+python tests/kills.py [KILLS] [WORK …]      WORK: study diagnose compare train sweep blind
+
+Each work is first done twice undisturbed; what these two agree on byte by byte (all but times and
+databases) must come out of a folder in which it was killed again and again.
+"""
+
+import hashlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+ROVSIM = [sys.executable, "-c", "from rovsim.apps.cli.main import main; main()"]
+SMALL = "tank=tiny study.residuals=[knn] study.controls=[6dof] timing.calls=50"
+WORKS = {
+    "study": [
+        sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"),
+        "--workflow-profile", str(ROOT / "profiles/default"), "--quiet", "all",
+        "--config", f"overrides={SMALL}",
+    ],
+    "diagnose": [*ROVSIM, "diagnose", "campaign=raw", "out=results"],
+    "compare": [*ROVSIM, "compare", "campaign=raw", "out=results"],
+    "train": [*ROVSIM, "train", "campaign=raw", "residual=knn", "out=results"],
+    "sweep": [*ROVSIM, "train", "-m", "campaign=raw", "residual=knn", "residual.k=5,9,15"],
+    "blind": [
+        *ROVSIM, "blind", "blind.suite=quick", "blind.seeds=development", "blind.methods=[stlsq]",
+        "blind.page=results/page.md", "out=results",
+    ],
+}  # fmt: skip
+
+
+def start(work: str, folder: Path) -> subprocess.Popen:
+    """The command in a process group of its own, so that all it started can be killed with it."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "src"), "PYTHONHASHSEED": "0"}
+    log = (folder / "log.txt").open("ab")
+    return subprocess.Popen(
+        WORKS[work], cwd=folder, env=environment, stdout=log, stderr=log, start_new_session=True
+    )
+
+
+def finish(work: str, folder: Path) -> float:
+    """Seconds to the end, which must be a good one."""
+    begin = time.monotonic()
+    if start(work, folder).wait(timeout=1800):
+        sys.exit(f"{work}: failed:\n{(folder / 'log.txt').read_text()[-3000:]}")
+    return time.monotonic() - begin
+
+
+def fresh(work: str, scratch: Path, name: str) -> Path:
+    """A folder in which the work has not begun."""
+    folder = scratch / work / name
+    folder.mkdir(parents=True)
+    if work not in ("study", "blind"):
+        shutil.copytree(scratch / "raw", folder / "raw")
+    return folder
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Of every result; what only the machine writes for itself is left out."""
+    files = [
+        p
+        for p in sorted((folder / "results").rglob("*"))
+        if p.is_file() and p.suffix not in (".db", ".log", ".lock") and "mlflow" not in p.parts
+    ]
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+
+
+def disturb(work: str, kills: int, scratch: Path) -> tuple[int, int]:
+    """Files compared, and files that differ, after so many kills."""
+    alone = [fresh(work, scratch, name) for name in ("first", "second")]
+    seconds = [finish(work, folder) for folder in alone]
+    one, other = map(digests, alone)
+    wanted = {name: one[name] for name in one if other.get(name) == one[name]}
+    folder, done, wrong = fresh(work, scratch, "killed0"), 0, 0
+    for k in range(kills):
+        process = start(work, folder)
+        try:
+            process.wait(timeout=random.uniform(0.0, 1.1 * seconds[1]))
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            done += 1
+        if process.returncode == 0 or k == kills - 1:
+            finish(work, folder)
+            found = digests(folder)
+            bad = [n for n in wanted if found.get(n) != wanted[n]]
+            bad += [n for n in found if n not in one]  # what nobody asked for lies there
+            for name in bad:
+                print(f"  {work}: {name} differs after a kill ({folder})")
+            wrong += len(bad)
+            folder = fresh(work, scratch, f"killed{k + 1}")
+    alike = f"{len(wanted)} files alike in two undisturbed runs of {seconds[1]:.0f} s"
+    other = f"{len(one) - len(wanted)} differ there"
+    print(f"{work}: {done} kills, {alike} ({other}), {wrong} wrong after kills", flush=True)
+    return done, wrong
+
+
+def main() -> None:
+    kills = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    works = sys.argv[2:] or list(WORKS)
+    random.seed(0)
+    scratch = Path(tempfile.mkdtemp(prefix="kills-"))
+    subprocess.run(
+        [*ROVSIM, "tank", "tank=tiny", f"out={scratch / 'raw'}"],
+        check=True, stdout=subprocess.DEVNULL, env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
+    )  # fmt: skip
+    wrong = sum(disturb(work, kills, scratch)[1] for work in works)
+    shutil.rmtree(scratch) if not wrong else print(f"left in {scratch}")
+    sys.exit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()
