@@ -17,7 +17,7 @@ from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 pytestmark = pytest.mark.browser
 RUN = 'x<img src=x onerror="window.hacked=1">'
-EVIL = RUN + r"<script>window.hacked=1</script>\text{<img/src=x/onerror=window.hacked=1>}"
+EVIL = RUN + r"<script>window.hacked=1</script>\text{<img/src='x'/onerror='window.hacked=1'>}"
 IDS = {"schema", "verdict", "effect", "axis", "run", "vehicle", "file", "model", "axes", "unit"}
 # What a page of another site may try: each must end in "nothing".
 TRIES = {
