@@ -6,7 +6,7 @@ from typing import Any, Literal, Sequence
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from rovsim.application.sections import SimulationSettings, TimingSettings, TrainingSettings
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, RovsimError, nearest
 from rovsim.core.schema import PathText, S, Section, checked
 from rovsim.core.shipped import conf_folders, conf_names
 from rovsim.design.settings import DesignSettings
@@ -141,15 +141,15 @@ def compose(overrides: Sequence[str]) -> Settings:
     """
     from hydra import compose as hydra_compose
     from hydra import initialize_config_dir
-    from hydra.errors import HydraException
-    from omegaconf.errors import OmegaConfBaseException
 
     from rovsim.application.conf_search import first_folder
 
     try:
         with initialize_config_dir(first_folder(), version_base="1.3"):
             return settings_of(hydra_compose("config", overrides=list(overrides)))
-    except (HydraException, OmegaConfBaseException) as error:
+    except RovsimError:
+        raise
+    except Exception as error:  # Hydra's own, and what odd words make it stumble over
         raise BadInput(
             str(error).split("\n")[0].removeprefix("LexerNoViableAltException: ").rstrip("."),
             where=f"overrides {' '.join(overrides)}",

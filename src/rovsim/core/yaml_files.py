@@ -3,6 +3,7 @@
 import copy
 import io
 from functools import lru_cache
+from itertools import accumulate
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,8 @@ from ruamel.yaml.error import YAMLError
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text, write_text
 
-LARGEST = 1 << 20  # characters; a campaign of thousands of runs has a tenth, read in seconds
+LARGEST = 1 << 18  # characters; a campaign of a thousand runs has half, and is read in seconds
+DEEPEST = 100  # brackets inside each other; the parser's time grows with the square
 MOST_NODES = 1_000_000  # with everything written out that aliases repeat
 
 
@@ -41,6 +43,8 @@ def read_yaml(path: Path) -> Any:
     text = read_text(path)
     if len(text) > LARGEST:
         raise _refused(path, f"{len(text)} characters", f"at most {LARGEST}")
+    if _depth(text) > DEEPEST:
+        raise _refused(path, "nested too deeply")
     try:
         content = _parse(text)
     except YAMLError as error:
@@ -52,6 +56,12 @@ def read_yaml(path: Path) -> Any:
     if _count(content, {}) > MOST_NODES:
         raise _refused(path, "aliases that repeat each other without end")
     return copy.deepcopy(content)
+
+
+def _depth(text: str) -> int:
+    """Brackets inside each other, at most: those in texts and comments count too."""
+    steps = (1 if c in "[{" else -1 for c in text if c in "[]{}")
+    return max(accumulate(steps), default=0)
 
 
 def _refused(where: object, found: str, expected: str = "a plain YAML file") -> BadInput:

@@ -53,7 +53,7 @@ def _checked(value: Any) -> dict[str, float]:
     for name, number in value.items():
         parse_product(str(name))
         usable = isinstance(number, (int, float)) and not isinstance(number, bool)
-        if not usable or not np.isfinite(number):
+        if not usable or not -1e300 < number < 1e300:
             raise ValueError(f"a number for {name}")
     return {str(name): float(number) for name, number in value.items()}
 
