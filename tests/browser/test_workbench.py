@@ -139,6 +139,65 @@ def test_the_horizon_changes_the_errors_and_a_run_plays(tab):
     tab.page.get_by_role("button", name="Play").wait_for()
 
 
+def test_a_link_keeps_what_a_screen_shows_through_reload_and_back(tab):
+    asked = "run=3dof-1&beside=6dof-1&axes=surge&axes=yaw&horizon=5.0&from=2.0&to=6.0"
+    tab.go(f"compare?{asked}")
+    tab.page.wait_for_selector(READY["compare"])
+
+    def shown() -> None:
+        tab.page.get_by_role("img", name="Measured and simulated, run 3dof-1, 6dof-1").wait_for()
+        tab.page.get_by_text("Horizon, corrected every 5 s").wait_for()
+        tab.page.get_by_role("rowheader", name="nominal, 6dof-1").wait_for()
+        tab.page.wait_for_function("location.search.includes('from=2.0&to=6.0')")
+        assert "6dof-1/velocity_rmse/surge" in tab.numbers()
+
+    shown()
+    tab.picture("compare-runs")
+    tab.page.reload()
+    shown()
+    tab.page.get_by_role("link", name="Where").click()
+    tab.page.get_by_role("heading", name="Where").wait_for()
+    tab.page.wait_for_function("location.search.includes('condition=')")
+    tab.page.go_back()
+    shown()
+
+
+def test_an_address_of_another_day_is_no_error(tab):
+    tab.go("compare?run=gone&models=gone&axes=warp&horizon=x&from=y")
+    tab.page.wait_for_selector(READY["compare"])
+    assert tab.page.get_by_role("rowheader", name="nominal").count() == 1
+
+
+def test_what_was_added_is_typed_undone_and_put_back(tab):
+    found(tab)
+    tab.go("add")
+    tab.page.wait_for_selector("[data-name='run/now'][data-value]")
+    first = tab.numbers("run/now")["run/now"]
+    number = tab.page.get_by_label("thruster_lag, time_constant, number")
+    kept = number.input_value()
+    number.fill("0.9")
+    number.press("Enter")
+    tab.page.wait_for_function(CHANGED, arg=["run/now", first])
+    tab.page.get_by_role("button", name="Undo").click()
+    tab.page.wait_for_function(f"!({CHANGED})({json.dumps(['run/now', first])})")
+    assert number.input_value() == kept
+    number.fill("0.9")
+    number.press("Enter")
+    tab.page.wait_for_function(CHANGED, arg=["run/now", first])
+    tab.page.get_by_role("button", name="back to where it began").click()
+    tab.page.wait_for_function(f"!({CHANGED})({json.dumps(['run/now', first])})")
+
+
+def test_notes_lie_beside_the_campaign(tab, campaign):
+    tab.go("data")
+    tab.page.get_by_label("Kept in").fill("Run 6dof-1: the tether was slack.")
+    tab.page.get_by_role("link", name="Compare").click()
+    tab.page.get_by_role("heading", name="Compare").wait_for()
+    assert (campaign / "notes.md").read_text() == "Run 6dof-1: the tether was slack."
+    tab.go("data")
+    assert "slack" in tab.page.get_by_label("Kept in").input_value()
+
+
 def test_a_bin_shows_its_samples_in_time(tab):
     tab.go("where")
     bins = tab.page.locator(".bins button")

@@ -17,6 +17,7 @@ from rovsim.apps.workbench.parts import (
     tile,
     tile_html,
 )
+from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.traces import Traces, excited, panels
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
@@ -32,11 +33,11 @@ HORIZON = 2.0  # s, that of the error shown
 class Add:
     """The screen."""
 
-    def __init__(self, bench: Workbench) -> None:
-        self.bench, self.draft = bench, bench.draft
+    def __init__(self, bench: Workbench, place: Place) -> None:
+        self.bench, self.draft, self.place = bench, bench.draft, place
         train = [r for r, m in bench.data.motions.items() if m.run.split == "train"]
         self.runs = train or list(bench.data.motions)
-        self.run = bench.choices.get("add run", self.runs[0])
+        self.run = place.choose({"run": self.runs[0]}, {"run": self.runs})["run"]
         self.wanted = self.drawing = False
         self.traces: Traces | None = None
 
@@ -72,6 +73,8 @@ class Add:
             more = ui.select(rest, label="Another effect", with_input=True).classes("control wide")
             more.props("outlined dense")
             more.on_value_change(lambda e: self._another(e.value))
+            undo = ui.button("Undo", icon="undo", on_click=self._undo).props("flat dense no-caps")
+            undo.bind_enabled_from(self.draft, "changed")
 
     def _effect(self, name: str) -> None:
         with ui.column().classes("card"):
@@ -93,17 +96,39 @@ class Add:
             ui.label(parameter.name).classes("name")
             slider = Slider(min=low, max=high, step=(high - low) / STEPS, value=value)
             slider.props(f'aria-label="{effect}, {parameter.name}"')
-            label = ui.label(f"{significant(value)} {shown}").classes("value")
+            number = ui.number(value=float(significant(value)), suffix=shown).classes("value")
+            number.props(f'dense borderless aria-label="{effect}, {parameter.name}, number"')
+            back = ui.button(icon="settings_backup_restore").classes("reset")
+            about = f"{effect}, {parameter.name}: back to where it began"
+            back.props(f'flat dense aria-label="{about}" title="{about}"')
 
         async def moved(event: Any) -> None:
-            label.text = f"{significant(event.args)} {shown}"
+            number.set_value(float(significant(event.args)))
             self.draft.move(effect, parameter.name, float(event.args))
             await self.update()
 
+        async def typed() -> None:
+            if number.value is not None:
+                slider.set_value(number.value)
+                self.draft.move(effect, parameter.name, float(number.value))
+                await self.update()
+
+        async def reset() -> None:
+            self.draft.reset(effect, parameter.name)
+            self._effects()
+            await self.update()
+
         slider.on("update:model-value", moved, throttle=0.05)
+        number.on("change", typed)
+        back.on_click(reset)
 
     async def _tick(self, name: str, yes: bool) -> None:
         self.draft.tick(name, yes)
+        self._effects()
+        await self.draw()
+
+    async def _undo(self) -> None:
+        self.draft.undo()
         self._effects()
         await self.draw()
 
@@ -112,7 +137,9 @@ class Add:
             await self._tick(name, True)
 
     async def _other(self, run: str) -> None:
-        self.run = self.bench.choices["add run"] = run
+        self.run = run
+        self.place.choose({"run": run}, {"run": self.runs})
+        self.place.tell({"run": run})
         await self.draw()
 
     def _model(self) -> Model | None:
@@ -218,6 +245,6 @@ def _sentence(before: float | None, after: float | None) -> str:
     return "Saved. On the test runs the error did not fall."
 
 
-async def show(bench: Workbench) -> None:
+async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
-    await Add(bench).show()
+    await Add(bench, place).show()

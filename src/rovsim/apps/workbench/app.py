@@ -9,13 +9,14 @@ from types import ModuleType
 from typing import Any, Callable, Mapping
 
 from fastapi.responses import FileResponse
+from nicegui import PageArguments, ui
 from nicegui import app as server
-from nicegui import ui
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from rovsim.application.settings import WorkbenchSettings, compose
 from rovsim.apps.workbench import HOST
 from rovsim.apps.workbench.gate import Gate
+from rovsim.apps.workbench.place import Place
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
@@ -154,6 +155,7 @@ class Page:
     def __init__(self, shared: App) -> None:
         self.shared, self.seen = shared, shared.version
         self.name = ""  # of the screen shown; none: choosing a campaign
+        self.kept: dict[str, dict[str, Any]] = {}  # what this tab has chosen on each screen
         self.links: dict[str, ui.link] = {}
 
     def build(self) -> None:
@@ -232,7 +234,7 @@ class Page:
         for key, link in self.links.items():
             link.classes(add="active") if key == name else link.classes(remove="active")
 
-    async def _screen(self, name: str) -> None:
+    async def _screen(self, name: str, asked: PageArguments) -> None:
         """One of the screens, once the campaign is read."""
         self._active(name)
         waiting = None
@@ -247,7 +249,7 @@ class Page:
             self._choose()
             return
         try:
-            await _module(name).show(bench)
+            await _module(name).show(bench, Place(name, asked.query_parameters, self.kept))
         except RovsimError as error:
             ui.label(str(error)).classes("warning")
 

@@ -1,10 +1,11 @@
 """Compare: measured and simulated, the difference, the path, and how far a model carries."""
 
-from typing import Any
+from typing import Any, Sequence
 
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.parts import (
     Slider,
     cell,
@@ -14,25 +15,44 @@ from rovsim.apps.workbench.parts import (
     table,
 )
 from rovsim.apps.workbench.path import Path
-from rovsim.apps.workbench.traces import HORIZONS, QUANTITIES, Traces, excited, horizon_text, panels
+from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.traces import (
+    HORIZONS,
+    QUANTITIES,
+    Span,
+    Traces,
+    beside,
+    excited,
+    horizon_text,
+    panels,
+)
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.simulation.prediction import Prediction
 
+Predicted = dict[str, dict[str, Prediction]]  # by run and model
+POSE_ERRORS = ("position_rmse_m", "attitude_rmse_rad")
 TITLE, QUESTION = "Compare", "How far is the model from the measurement?"
 
 
 class Compare:
     """The screen, with what was chosen on it."""
 
-    def __init__(self, bench: Workbench) -> None:
-        self.bench = bench
-        first = next((r for r, m in bench.data.motions.items() if m.run.split == "test"), None)
-        run = first or next(iter(bench.data.motions))
-        self.chosen: dict[str, Any] = bench.choices.setdefault(
-            "compare",
-            {"run": run, "axes": excited(bench, run), "models": [bench.base.name],
-             "quantity": "nu", "horizon": 2.0},
-        )  # fmt: skip
+    def __init__(self, bench: Workbench, place: Place) -> None:
+        self.bench, self.place = bench, place
+        runs = list(bench.data.motions)
+        tests = (run for run in runs if bench.data.motions[run].run.split == "test")
+        run = next(tests, runs[0])
+        first = {
+            "run": run, "beside": [], "models": [bench.base.name], "axes": excited(bench, run),
+            "quantity": "nu", "horizon": 2.0,
+        }  # fmt: skip
+        possible: dict[str, Sequence[Any]] = {
+            "run": runs, "beside": runs, "models": list(bench.models), "axes": AXES,
+            "quantity": list(QUANTITIES), "horizon": HORIZONS,
+        }  # fmt: skip
+        self.chosen = place.choose(first, possible)
+        self.span = (place.number("from"), place.number("to"))
         self.traces: Traces | None = None
 
     @property
@@ -54,6 +74,7 @@ class Compare:
         }
         with ui.row().classes("controls"):
             self._choice("run", ui.select(runs, label="Run"))
+            self._choice("beside", ui.select(runs, label="Beside it", multiple=True))
             self._choice(
                 "models", ui.select(list(self.bench.models), label="Models", multiple=True)
             )
@@ -73,8 +94,9 @@ class Compare:
         control.classes("control").props("outlined dense options-dense")
 
         async def changed() -> None:
-            if control.value:  # at least one of several
+            if control.value or name == "beside":  # at least one of several
                 self.chosen[name] = control.value
+                self.span = (None, None) if name == "run" else self.span
                 await self.draw()
 
         control.on_value_change(changed)
@@ -82,6 +104,7 @@ class Compare:
     async def _horizon(self, at: int) -> None:
         self.chosen["horizon"] = HORIZONS[at]
         self.horizon.text = f"Horizon, {horizon_text(HORIZONS[at])}"
+        self._tell()
         shown, predicted = await self._predicted()
         if self.chosen["horizon"] != HORIZONS[at]:  # moved on meanwhile
             return
@@ -89,48 +112,64 @@ class Compare:
             self.traces.redraw(shown)
         self._numbers(predicted)
 
-    async def _predicted(self):
-        """Panels and predictions of what is chosen."""
+    @property
+    def runs(self) -> list[str]:
+        """The run shown, and those beside it."""
+        return list(dict.fromkeys([self.chosen["run"], *self.chosen["beside"]]))
+
+    async def _predicted(self) -> tuple[list[Panel], Predicted]:
+        """Panels and predictions, by run and model, of what is chosen."""
         chosen = self.chosen
-        predicted = {
-            name: await computed(
-                self.bench.prediction, self.bench.models[name], chosen["run"], chosen["horizon"]
-            )
-            for name in chosen["models"]
-            if name in self.bench.models
-        }
+        found: Predicted = {run: {} for run in self.runs}
+        for run, predicted in found.items():
+            for name in chosen["models"]:
+                predicted[name] = await computed(
+                    self.bench.prediction, self.bench.models[name], run, chosen["horizon"]
+                )
         axes = [axis for axis in AXES if axis in chosen["axes"]]
-        return panels(self.motion, predicted, axes, chosen["quantity"]), predicted
+        first, *others = (
+            (self.bench.data.motions[run], panels(self.bench.data.motions[run], p, axes, quantity))
+            for quantity in [chosen["quantity"]]
+            for run, p in found.items()
+        )
+        return beside(first, others), found
 
     async def draw(self) -> None:
         """Everything below the controls."""
         shown, predicted = await self._predicted()
+        self._tell()
         self.area.clear()
         with self.area:
-            self.traces = Traces(
-                self.motion.time, shown, f"Measured and simulated, run {self.chosen['run']}"
-            )
+            about = f"Measured and simulated, run {', '.join(self.runs)}"
+            self.traces = Traces(self.motion.time, shown, about, self.span, self._zoomed)
             self.numbers = ui.column().classes("area")
             self._numbers(predicted)
             await self._path(self.traces)
             onward("Where does it fail?", "/where")
 
-    def _numbers(self, predicted: dict) -> None:
-        """Errors of this run and horizon, as comparison.json has them."""
+    def _zoomed(self, span: Span) -> None:
+        self.span = span
+        self._tell()
+
+    def _tell(self) -> None:
+        """Let the address say what is shown."""
+        self.place.tell({**self.chosen, "from": self.span[0], "to": self.span[1]})
+
+    def _numbers(self, found: Predicted) -> None:
+        """Errors of the runs and this horizon, as comparison.json has them."""
         self.numbers.clear()
         horizon = self.chosen["horizon"]
         with self.numbers:
             rows = []
-            for name in predicted:
-                found = self.bench.metrics(self.bench.models[name], self.chosen["run"], horizon)
-                cells = [cell(found.velocity_rmse[a], f"velocity_rmse/{a}") for a in AXES]
-                cells += [
-                    cell(getattr(found, k), k) for k in ("position_rmse_m", "attitude_rmse_rad")
-                ]
-                rows.append((name, cells))
+            for run, name in ((run, name) for run, models in found.items() for name in models):
+                errors = self.bench.metrics(self.bench.models[name], run, horizon)
+                key = "" if run == self.chosen["run"] else f"{run}/"
+                cells = [cell(errors.velocity_rmse[a], f"{key}velocity_rmse/{a}") for a in AXES]
+                cells += [cell(getattr(errors, k), f"{key}{k}") for k in POSE_ERRORS]
+                rows.append((f"{name}, {run}" if len(found) > 1 else name, cells))
             units = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
             table(
-                f"Velocity error (root mean square) on run {self.chosen['run']}, "
+                f"Velocity error (root mean square) on run {', '.join(found)}, "
                 f"{horizon_text(horizon)}",
                 ["model", *units, "position (m)", "attitude (rad)"],
                 rows,
@@ -145,11 +184,10 @@ class Compare:
                 )
             ).eta
             for name in self.chosen["models"]
-            if name in self.bench.models
         }
         self.path = Path(self.motion, predicted, traces.mark)
 
 
-async def show(bench: Workbench) -> None:
+async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
-    await Compare(bench).show()
+    await Compare(bench, place).show()

@@ -1,18 +1,25 @@
 """Data: what was recorded, what is wrong with it, and what it can tell."""
 
+from pathlib import Path
 from typing import Mapping
+
+from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
 from rovsim.apps.workbench.parts import cell, chart, heading, section, table, text, words
+from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.errors import RovsimError
+from rovsim.core.files import read_text, write_text
 from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.results.quality import Quality
 
+NOTES = "notes.md"
 TITLE, QUESTION = "Data", "Can these recordings be trusted?"
 
 
-async def show(bench: Workbench) -> None:
+async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
     heading(TITLE, QUESTION)
     quality = bench.data.quality
@@ -28,6 +35,23 @@ async def show(bench: Workbench) -> None:
             text(f"{run}: {remark}")
     if not any(report.remarks for report in quality.values()):
         text("Nothing to remark on.", "soft")
+    _notes(bench.data.campaign.file.with_name(NOTES))
+
+
+def _notes(file: Path) -> None:
+    """What people write down beside the campaign, kept when they leave the field."""
+    section("Notes")
+    known = read_text(file) if file.exists() else ""
+    box = ui.textarea(f"Kept in {file}", value=known).classes("notes")
+    box.props("outlined autogrow")
+
+    def keep() -> None:
+        try:
+            write_text(file, box.value or "")
+        except RovsimError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+
+    box.on("blur", keep)
 
 
 def _recordings(quality: Mapping[str, Quality]) -> None:

@@ -1,5 +1,6 @@
 """A model being put together: effects ticked, their values moved."""
 
+from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -27,6 +28,8 @@ class Draft:
     catalogue: Catalogue
     ticked: list[str] = field(default_factory=list)
     values: dict[str, dict[str, float]] = field(default_factory=dict)
+    _before: list[tuple[list[str], dict[str, dict[str, float]]]] = field(default_factory=list)
+    _changing: object = None  # what the last change was of
 
     def __post_init__(self) -> None:
         self.ticked = [one.effect for one in self.chosen]
@@ -46,13 +49,37 @@ class Draft:
             if name not in first
         }
 
+    def _remember(self, change: object) -> None:
+        """Keep what is there; a value that goes on moving is one change."""
+        if change is None or change != self._changing:
+            self._before.append((self.ticked, deepcopy(self.values)))
+        self._changing = change
+
+    @property
+    def changed(self) -> bool:
+        """Whether there is anything to undo."""
+        return bool(self._before)
+
+    def undo(self) -> None:
+        """Take back the last change."""
+        if self._before:
+            self.ticked, self.values = self._before.pop()
+            self._changing = None
+
     def tick(self, effect: str, yes: bool) -> None:
         """Add or leave out an effect."""
+        self._remember(None)
         self.ticked = [*(t for t in self.ticked if t != effect), *([effect] if yes else [])]
 
     def move(self, effect: str, parameter: str, value: float) -> None:
         """Change a value."""
+        self._remember((effect, parameter))
         self.values.setdefault(effect, {})[parameter] = value
+
+    def reset(self, effect: str, parameter: str) -> None:
+        """Give a value back the one it began with: the fitted one, if there is one."""
+        self._remember(None)
+        self.values.get(effect, {}).pop(parameter, None)
 
     def entry(self, effect: str) -> EffectEntry:
         """An effect with its fitted values, those moved in their place.

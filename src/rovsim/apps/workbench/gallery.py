@@ -7,6 +7,7 @@ from pathlib import Path
 from nicegui import ui
 
 from rovsim.apps.workbench.parts import computed, formula, heading, section, table, text, words
+from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.shipped import shipped
 from rovsim.dynamics.catalogue import Catalogue
@@ -18,7 +19,7 @@ TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look l
 DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`
 
 
-async def show(bench: Workbench) -> None:
+async def show(bench: Workbench, place: Place) -> None:
     """Show all effects, by where they act."""
     heading(TITLE, QUESTION)
     for chapter, effects in chaptered(bench.catalogue).items():

@@ -5,6 +5,7 @@ from nicegui import ui
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, SOFT, Options
 from rovsim.apps.workbench.parts import cell, chart, computed, heading, section, table, text
+from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.reporting.charts import chart_ladder
 from rovsim.reporting.units import VELOCITY_UNITS
@@ -16,7 +17,7 @@ TITLE, QUESTION = "Ladder", "How far down does the error go?"
 KINDS = {"knn": "nearest neighbours (KNN)", "gp": "Gaussian process (GP)"}
 
 
-async def show(bench: Workbench) -> None:
+async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
     heading(TITLE, QUESTION)
     text(

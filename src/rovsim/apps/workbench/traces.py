@@ -1,6 +1,7 @@
 """Measured and simulated over time, the difference under it: a chart that several screens use."""
 
-from typing import Any, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
 from nicegui import ui
@@ -15,6 +16,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.simulation.prediction import Prediction
 
+Span = tuple[float | None, float | None]  # s, part of a run; None: from its start, to its end
 QUANTITIES = {"nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS)}
 HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 
@@ -47,6 +49,22 @@ def panels(
     return found
 
 
+def beside(
+    first: tuple[Motion, list[Panel]], others: Sequence[tuple[Motion, list[Panel]]]
+) -> list[Panel]:
+    """The panels of a run with the curves of others in them, from the start of each."""
+    motion, shown = first
+    time = motion.time - motion.time[0]
+    curves = [dict(panel.curves) for panel in shown]
+    for other, theirs in others:
+        own = other.time - other.time[0]
+        for all_of_it, panel in zip(curves, theirs, strict=True):
+            for name, values in panel.curves.items():
+                same = np.interp(time, own, values, right=np.nan)
+                all_of_it[f"{name}, {other.run.id}"] = same
+    return [replace(p, curves=c) for p, c in zip(shown, curves, strict=True)]
+
+
 # Quasar says "0|12" where the standard wants one number; each end can be reached with the keyboard.
 NOT_ONE_VALUE = "role=group " + " ".join(
     f":aria-{name}=null" for name in ("valuenow", "valuemin", "valuemax", "orientation")
@@ -56,8 +74,11 @@ NOT_ONE_VALUE = "role=group " + " ".join(
 class Traces:
     """The chart on the page, with a range slider that zooms all its panels."""
 
-    def __init__(self, time: Array, shown: Sequence[Panel], about: str) -> None:
-        self.time, self.shown = time, list(shown)
+    def __init__(
+        self, time: Array, shown: Sequence[Panel], about: str, span: Span = (None, None),
+        zoomed: Callable[[Span], None] = lambda span: None,
+    ) -> None:  # fmt: skip
+        self.time, self.shown, self.told = time, list(shown), zoomed
         names = list(dict.fromkeys(n for panel in shown for n in panel.curves))
         self.chart = chart(time_series(time, shown, styles(names)), about, height(shown))
         first, last = float(time[0]), float(time[-1])
@@ -69,6 +90,11 @@ class Traces:
             self.range.on("update:model-value", self._zoom, throttle=0.05)
             ui.button("whole run", on_click=self._whole).props("flat dense no-caps")
         self.chart.on("chart:datazoom", self._zoomed, js_handler=WINDOW)
+        low = first if span[0] is None else max(span[0], first)
+        high = last if span[1] is None else min(span[1], last)
+        if (first, last) != (low, high) and low < high:
+            self.range.value = {"min": low, "max": high}
+            self.chart.options["dataZoom"][0] |= {"startValue": low, "endValue": high}
 
     def _zoom(self) -> None:
         at = self.range.value
@@ -76,6 +102,13 @@ class Traces:
             "dispatchAction",
             {"type": "dataZoom", "startValue": at["min"], "endValue": at["max"]},
         )
+        self._tell()
+
+    def _tell(self) -> None:
+        """Say what part is shown; the whole is nothing to say."""
+        at = (float(self.range.value["min"]), float(self.range.value["max"]))
+        whole = at == (float(self.time[0]), float(self.time[-1]))
+        self.told((None, None) if whole else at)
 
     def _whole(self) -> None:
         self.range.value = {"min": float(self.time[0]), "max": float(self.time[-1])}
@@ -90,6 +123,7 @@ class Traces:
                 "min": round(first + span * start / 100, 1),
                 "max": round(first + span * end / 100, 1),
             }
+            self._tell()
 
     def redraw(self, shown: Sequence[Panel]) -> None:
         """New values of the same curves: only these travel to the browser."""

@@ -1,7 +1,7 @@
 """Where: the error by condition; a bin shows its samples in time."""
 
 from contextlib import nullcontext
-from typing import Any, Sequence
+from typing import Sequence
 
 import numpy as np
 from nicegui import ui
@@ -9,6 +9,7 @@ from nicegui import ui
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.parts import chart, computed, heading, onward, section, text
+from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.evaluation.error_conditions.entries import list_conditions
@@ -27,21 +28,25 @@ FIRST = 4  # sentences that are not folded away
 class Where:
     """The screen, with what was chosen on it."""
 
-    def __init__(self, bench: Workbench) -> None:
-        self.bench = bench
-        self.chosen: dict[str, Any] = bench.choices.setdefault("where", {"model": bench.base.name})
+    def __init__(self, bench: Workbench, place: Place) -> None:
+        self.bench, self.place = bench, place
+        self.physical = [n for n, m in bench.models.items() if not m.inert]
+        first = {"model": bench.base.name, "axis": None, "condition": None}
+        self.chosen = place.choose(first, {"model": self.physical})
+        for name in ("axis", "condition"):
+            self.chosen[name] = place.query.get(name, self.chosen[name])
 
     async def show(self) -> None:
         """Build the screen."""
         heading(TITLE, QUESTION)
-        physical = [n for n, m in self.bench.models.items() if not m.inert]
-        choice = ui.select(physical, label="Model", value=self.chosen["model"]).classes("control")
+        choice = ui.select(self.physical, label="Model", value=self.chosen["model"]).classes(
+            "control"
+        )
         choice.props("outlined dense")
         self.area = ui.row().classes("halves")
 
         async def changed() -> None:
-            self.chosen.clear()
-            self.chosen["model"] = choice.value
+            self.chosen |= {"model": choice.value, "axis": None, "condition": None}
             await self.draw()
 
         choice.on_value_change(changed)
@@ -60,9 +65,11 @@ class Where:
             with ui.column().classes("half equal side"):
                 self.bins = ui.column().classes("area")
                 onward("Why does it fail?", "/why")
-        at = self.chosen.get("at") or self._largest()
-        if at:
-            self.choose(*at)
+        at = (self.chosen["axis"], self.chosen["condition"])
+        known = at[1] in self.searched.explanation.tables.get(at[0], ())
+        wanted = at if known else self._largest()
+        if wanted:
+            self.choose(*wanted)
 
     def _largest(self) -> tuple[str, str] | None:
         """Axis and condition of the first finding, else of the largest share."""
@@ -131,7 +138,8 @@ class Where:
 
     def choose(self, axis: str, condition: str) -> None:
         """Show the bins of one condition."""
-        self.chosen["at"] = (axis, condition)
+        self.chosen |= {"axis": axis, "condition": condition}
+        self.place.tell(self.chosen)
         found: Table = self.searched.explanation.tables[axis][condition]
         unit = ACCELERATION_UNITS[AXES.index(axis)]
         self.bins.clear()
@@ -234,6 +242,6 @@ def samples_chart(time, error, inside, run: str, axis: str) -> Options:
     }  # fmt: skip
 
 
-async def show(bench: Workbench) -> None:
+async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
-    await Where(bench).show()
+    await Where(bench, place).show()

@@ -20,6 +20,7 @@ from rovsim.apps.workbench.parts import (
     tile,
     words,
 )
+from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.reporting.html.verdict import Missing, explain, interval, percent
@@ -29,7 +30,7 @@ TITLE, QUESTION = "Why", "Which physics is missing?"
 SHOWN = 8  # effects of the ranking
 
 
-async def show(bench: Workbench) -> None:
+async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
     heading(TITLE, QUESTION)
     if bench.diagnosis is None:

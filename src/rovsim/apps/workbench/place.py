@@ -1,0 +1,51 @@
+"""What a screen shows stands in its address: a link opens it, reload and *back* keep it."""
+
+from dataclasses import dataclass, field
+from typing import Any, Mapping, Sequence
+from urllib.parse import urlencode
+
+from nicegui import ui
+from starlette.datastructures import QueryParams
+
+
+@dataclass(eq=False)
+class Place:
+    """A screen in one browser tab.
+
+    `query` is what its address asks for; `kept` what this tab has chosen on each screen.
+    """
+
+    screen: str
+    query: QueryParams = field(default_factory=QueryParams)
+    kept: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    def choose(
+        self, first: Mapping[str, Any], possible: Mapping[str, Sequence[Any]]
+    ) -> dict[str, Any]:
+        """What is shown: as the address asks, else as it was left, else `first`.
+
+        `possible` values of each choice that an address may name; of lists, several. What cannot
+        be had is passed over: an address may be of another day.
+        """
+        found = {**first, **self.kept.get(self.screen, {})}
+        for name, values in possible.items():
+            several = isinstance(first[name], list)
+            known = {str(value): value for value in values}
+            asked = [known[text] for text in self.query.getlist(name) if text in known]
+            left = found[name] if several else [found[name]]
+            there = asked or [value for value in left if value in known.values()]
+            found[name] = there if several else (there or [first[name]])[0]
+        self.kept[self.screen] = found
+        return found
+
+    def number(self, name: str) -> float | None:
+        """A number that the address gives, None if it gives none."""
+        try:
+            return float(self.query[name])
+        except (KeyError, ValueError):
+            return None
+
+    def tell(self, chosen: Mapping[str, Any]) -> None:
+        """Write what is shown into the address; what is None is left out."""
+        pairs = {name: value for name, value in chosen.items() if value is not None}
+        ui.navigate.history.replace(f"/{self.screen}?{urlencode(pairs, doseq=True)}")
