@@ -2,6 +2,7 @@
 
 import socket
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import charts, path, tasks
 from rovsim.apps.workbench.draft import Draft, reach
+from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.work import Work
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
@@ -145,6 +147,35 @@ def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, monkeypatch,
     with pytest.raises(BadInput, match=found):
         bench.save(path)
     assert path.read_text() == "name: mine\n"
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [(3.0, "13.7 + 3.00 = 16.7"), (-20.0, "13.7 − 20.0 = -6.30: water would push, not brake")],
+)
+def test_a_coefficient_is_told_with_what_it_comes_to(bench, value, told):
+    body = replace(bench.base.body, linear=np.array([13.7, 0, 33, 0, 0.8, 0]))
+    assert tell_total(body, "linear_damping", "surge", value) == told
+    assert tell_total(body, "thruster_lag", "time_constant", value) == ""
+
+
+def test_a_change_is_undone_and_a_drag_of_a_slider_is_one():
+    draft = Draft(model(), diagnosis(), built_in())
+    assert not draft.changed
+    for value in (0.2, 0.3, 0.4):
+        draft.move("thruster_lag", "time_constant", value)
+    draft.tick("lift", True)
+    assert draft.ticked == ["thruster_lag", "lift"]
+    draft.undo()
+    assert draft.ticked == ["thruster_lag"]
+    assert draft.entry("thruster_lag").values == {"time_constant": 0.4}
+    draft.undo()
+    assert draft.entry("thruster_lag").values == {"time_constant": 0.18}
+    draft.move("thruster_lag", "time_constant", 0.5)
+    draft.reset("thruster_lag", "time_constant")
+    assert draft.entry("thruster_lag").values == {"time_constant": 0.18}
+    draft.undo()
+    assert draft.entry("thruster_lag").values == {"time_constant": 0.5}
 
 
 def test_saving_stays_where_the_workbench_is(bench, tmp_path, monkeypatch):

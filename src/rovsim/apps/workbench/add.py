@@ -18,6 +18,7 @@ from rovsim.apps.workbench.parts import (
     tile_html,
 )
 from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.traces import Traces, excited, panels
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
@@ -101,15 +102,18 @@ class Add:
             back = ui.button(icon="settings_backup_restore").classes("reset")
             about = f"{effect}, {parameter.name}: back to where it began"
             back.props(f'flat dense aria-label="{about}" title="{about}"')
+            total = ui.label(self._total(effect, parameter.name, value)).classes("total")
 
         async def moved(event: Any) -> None:
             number.set_value(float(significant(event.args)))
+            total.text = self._total(effect, parameter.name, float(event.args))
             self.draft.move(effect, parameter.name, float(event.args))
             await self.update()
 
         async def typed() -> None:
             if number.value is not None:
                 slider.set_value(number.value)
+                total.text = self._total(effect, parameter.name, float(number.value))
                 self.draft.move(effect, parameter.name, float(number.value))
                 await self.update()
 
@@ -121,6 +125,9 @@ class Add:
         slider.on("update:model-value", moved, throttle=0.05)
         number.on("change", typed)
         back.on_click(reset)
+
+    def _total(self, effect: str, parameter: str, value: float) -> str:
+        return tell_total(self.bench.base.body, effect, parameter, value)
 
     async def _tick(self, name: str, yes: bool) -> None:
         self.draft.tick(name, yes)

@@ -1,0 +1,31 @@
+"""What a coefficient comes to: that of the base, the change, and whether such a vehicle brakes."""
+
+from typing import Callable
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.dynamics.body import Body
+from rovsim.reporting.wording import significant
+
+# Effects whose values are changes of a coefficient of the vehicle file, one an axis.
+TOTALS: dict[str, Callable[[Body], Array]] = {
+    "linear_damping": lambda body: body.linear,
+    "quadratic_damping": lambda body: body.quadratic,
+    "added_mass": lambda body: np.diag(body.M_A),
+}
+
+
+def tell_total(body: Body, effect: str, parameter: str, value: float) -> str:
+    """The sum of what the base has and a change of it, in words; empty where there is no sum."""
+    if effect not in TOTALS or parameter not in AXES:
+        return ""
+    before = float(TOTALS[effect](body)[AXES.index(parameter)])
+    total = before + value
+    sign = "+" if value >= 0.0 else "−"
+    told = f"{significant(before)} {sign} {significant(abs(value))} = {significant(total)}"
+    if total >= 0.0:
+        return told
+    pushes = "water would push, not brake" if effect != "added_mass" else "no water weighs less"
+    return f"{told}: {pushes}"
