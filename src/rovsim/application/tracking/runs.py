@@ -9,6 +9,7 @@ from filelock import FileLock
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.core.extras import require
+from rovsim.core.files import appearing
 from rovsim.results.base import ByAxis
 from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
 
@@ -94,27 +95,48 @@ def _client(settings: TrackingSettings):
 
     logging.getLogger("alembic").setLevel(logging.WARNING)
     logging.getLogger("mlflow").setLevel(logging.WARNING)
+    if (path := _local(settings.uri)) and not path.exists():
+        _create(path)
     return MlflowClient(tracking_uri=_absolute(settings.uri))
+
+
+def _create(path: Path) -> None:
+    """A new local database, whole or not at all.
+
+    MLflow makes its tables one by one; killed half-way, no later start gets beyond them.
+    """
+    from mlflow.store.tracking import DEFAULT_LOCAL_FILE_AND_ARTIFACT_PATH
+    from mlflow.store.tracking.sqlalchemy_store import SqlAlchemyStore
+
+    with appearing(path) as temporary:
+        store = SqlAlchemyStore(f"sqlite:///{temporary}", DEFAULT_LOCAL_FILE_AND_ARTIFACT_PATH)
+        store.engine.dispose()
+
+
+def _local(uri: str) -> Path | None:
+    """File of a local database, None for a server."""
+    prefix = "sqlite:///"
+    return Path(uri.removeprefix(prefix)).absolute() if uri.startswith(prefix) else None
 
 
 def _absolute(uri: str) -> str:
     """A local database by its whole path: MLflow keeps open what it knows by this name."""
-    local = uri.removeprefix("sqlite:///") if uri.startswith("sqlite:///") else ""
-    return f"sqlite:///{Path(local).absolute()}" if local else uri
+    path = _local(uri)
+    return f"sqlite:///{path}" if path else uri
 
 
 def _experiment(client, settings: TrackingSettings, name: str) -> str:
     known = client.get_experiment_by_name(name)
     if known is not None:
         return known.experiment_id
-    local = settings.uri.startswith("sqlite:")
+    local = _local(settings.uri) is not None
     place = Path(settings.artifacts, name).absolute().as_uri() if local else None
     return client.create_experiment(name, artifact_location=place)
 
 
 def _lock(uri: str) -> Path:
     """Beside a local database; for a server, one lock a user is enough."""
-    path = Path(uri.removeprefix("sqlite:///")) if uri.startswith("sqlite:///") else None
+    path = _local(uri)
     place = path.with_suffix(".lock") if path else Path(".rovsim-tracking.lock")
     place.parent.mkdir(parents=True, exist_ok=True)
     return place
