@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study thesis test test-ui fuzz wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
+.PHONY: help setup study thesis test test-ui fuzz kills test-slurm wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -14,6 +14,8 @@ help:
 	@echo "make test    every test"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
 	@echo "make fuzz    hostile input at every door: TRIES=2000"
+	@echo "make kills   commands killed at random moments: KILLS=20 each"
+	@echo "make test-slurm   the study and a sweep through a real Slurm on this machine (root, slurm-wlm)"
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
@@ -52,6 +54,15 @@ ui: setup
 TRIES ?= 2000
 fuzz: setup
 	ROVSIM_FUZZ=$(TRIES) ROVSIM_FUZZ_FIRST=1000 ROVSIM_MUTATIONS=500 $(BIN)/python -m pytest -n $(CORES) tests/fuzz tests/contracts/test_damaged_recordings.py
+
+# Each command killed that often, at random moments: it must end as if nothing had happened.
+KILLS ?= 20
+kills: setup
+	$(BIN)/python tests/kills.py $(KILLS)
+
+# As root, with Debian's slurm-wlm: a cluster of one node on this machine.
+test-slurm: setup
+	ROVSIM_SLURM=1 $(BIN)/python -m pytest tests/cluster
 
 test-ui: setup chromium
 	$(BIN)/python -m pytest tests/browser

@@ -1,0 +1,150 @@
+"""The study and a sweep through a real Slurm: controller and node on this machine.
+
+`make test-slurm` runs it, as root: Slurm's own job steps read nothing but /etc/slurm/slurm.conf.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CONF = Path("/etc/slurm/slurm.conf")
+DAEMONS = ("munged", "slurmctld", "slurmd")
+SMALL = "tank=tiny study.residuals=[knn] study.controls=[6dof] timing.calls=50"
+WRITTEN = """
+ClusterName=test
+SlurmctldHost={host}(127.0.0.1)
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge/socket
+CredType=cred/munge
+SlurmUser=root
+SlurmdUser=root
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd.log
+SlurmctldPort=16817
+SlurmdPort=16818
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+ReturnToService=2
+JobAcctGatherType=jobacct_gather/none
+MpiDefault=none
+AccountingStorageType=accounting_storage/none
+JobCompType=jobcomp/filetxt
+JobCompLoc={folder}/completed.txt
+NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} RealMemory=6000
+PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP
+"""
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif("ROVSIM_SLURM" not in os.environ, reason="make test-slurm runs it"),
+]
+
+
+@pytest.fixture(scope="module")
+def slurm(tmp_path_factory):
+    """A cluster of one node; yields the file that lists its finished jobs."""
+    lacking = [name for name in DAEMONS if shutil.which(name) is None]
+    if lacking or os.geteuid() != 0:
+        pytest.skip(f"needs root, and {', '.join(lacking) or 'nothing else'} (Debian: slurm-wlm)")
+    if CONF.exists():
+        pytest.skip(f"{CONF} is there: this machine is part of a cluster")
+    folder = Path(os.environ.get("TMPDIR", "/tmp")) / f"slurm-{os.getpid()}"  # short: sockets
+    for name in ("munge", "state", "spool"):
+        (folder / name).mkdir(parents=True, mode=0o700)
+    host = os.uname().nodename.partition(".")[0]
+    CONF.parent.mkdir(exist_ok=True)
+    CONF.write_text(WRITTEN.format(host=host, folder=folder, cores=os.cpu_count()))
+    daemons = [
+        subprocess.Popen(command)
+        for command in (
+            _munge(folder / "munge"), ["slurmctld", "-D"], ["slurmd", "-D"],
+        )
+    ]  # fmt: skip
+    try:
+        _wait(lambda: "idle" in subprocess.run(["sinfo"], capture_output=True, text=True).stdout)
+        yield folder / "completed.txt"
+    finally:
+        for daemon in reversed(daemons):
+            daemon.terminate()
+            daemon.wait(30)
+        CONF.unlink()
+        shutil.rmtree(folder)
+
+
+def _munge(folder: Path) -> list[str]:
+    key = folder / "key"
+    key.write_bytes(os.urandom(1024))
+    key.chmod(0o600)
+    names = {"key-file": key, "socket": folder / "socket", "pid-file": folder / "pid"}
+    names |= {"log-file": folder / "log", "seed-file": folder / "seed"}
+    return ["munged", "--foreground", "--force", *(f"--{k}={v}" for k, v in names.items())]
+
+
+def _wait(ready, seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not ready():
+        assert time.monotonic() < end, "Slurm does not answer"
+        time.sleep(0.5)
+
+
+def call(folder: Path, *command: str) -> subprocess.Popen:
+    log = (folder / "log.txt").open("ab")
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
+    return subprocess.Popen(command, cwd=folder, stdout=log, stderr=log, env=environment)
+
+
+def jobs(completed: Path, state: str) -> int:
+    return completed.read_text().count(f"JobState={state}") if completed.exists() else 0
+
+
+def test_the_study_runs_job_by_job_and_a_cancelled_job_is_tried_again(slurm, tmp_path):
+    for name in ("Snakefile", "conf", "workflow", "profiles", "src"):
+        source = ROOT / name
+        shutil.copytree(source, tmp_path / name) if source.is_dir() else shutil.copy(
+            source, tmp_path
+        )
+    quick = ("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "3")
+    study = call(
+        tmp_path, sys.executable, "-m", "snakemake", "--profile", "workflow/profiles/slurm", *quick,
+        "--seconds-between-status-checks", "3", "--default-resources", "mem_mb=1500", "runtime=20",
+        "--config", f"overrides={SMALL}",
+    )  # fmt: skip
+    _wait(lambda: jobs(slurm, "COMPLETED") > 3 or study.poll() is not None, 600)
+    subprocess.run(["scancel", "--state=RUNNING"], check=True)
+    said = (tmp_path / "log.txt").read_text
+    assert study.wait(3600) == 0, said()[-3000:]
+    results = tmp_path / "results" / "tank-tiny"
+    found = json.loads((results / "diagnosis.json").read_text())
+    assert [one["effect"] for one in found["selected"]] == ["thruster_lag"]
+    assert (results / "report.html").stat().st_size > 500
+    assert jobs(slurm, "CANCELLED") >= 1
+    assert jobs(slurm, "COMPLETED") > 40
+    assert list((tmp_path / ".snakemake" / "slurm_logs").rglob("*.log"))
+
+
+def test_a_sweep_runs_over_submitit(slurm, tmp_path):
+    code = "from rovsim.apps.cli.main import main; main()"
+    rovsim = (sys.executable, "-c", code)
+    assert call(tmp_path, *rovsim, "tank", "tank=tiny", "out=raw").wait(600) == 0
+    before = jobs(slurm, "COMPLETED")
+    sweep = call(
+        tmp_path, *rovsim, "train", "-m", "hydra/launcher=submitit_slurm",
+        "hydra.launcher.partition=main", "hydra.launcher.mem_gb=2", "hydra.launcher.timeout_min=20",
+        "campaign=raw", "residual=knn", "residual.k=5,9",
+    )  # fmt: skip
+    assert sweep.wait(1800) == 0, (tmp_path / "log.txt").read_text()[-3000:]
+    _wait(lambda: jobs(slurm, "COMPLETED") >= before + 2)
+    assert len(list((tmp_path / "results" / "multirun").rglob("model.yaml"))) == 2
