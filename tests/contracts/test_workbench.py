@@ -178,6 +178,16 @@ def test_a_change_is_undone_and_a_drag_of_a_slider_is_one():
     assert draft.entry("thruster_lag").values == {"time_constant": 0.5}
 
 
+def test_a_value_moved_again_later_is_another_change(monkeypatch):
+    draft = Draft(model(), diagnosis(), built_in())
+    draft.move("thruster_lag", "time_constant", 0.2)
+    now = time.monotonic()
+    monkeypatch.setattr("time.monotonic", lambda: now + 60.0)
+    draft.move("thruster_lag", "time_constant", 0.3)
+    draft.undo()
+    assert draft.entry("thruster_lag").values == {"time_constant": 0.2}
+
+
 def test_saving_stays_where_the_workbench_is(bench, tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")

@@ -39,11 +39,9 @@ async def show(bench: Workbench, place: Place) -> None:
 
 
 def _notes(file: Path) -> None:
-    """What people write down beside the campaign, kept when they leave the field."""
+    """What people write down beside the campaign, kept as they type: a page may be left at once."""
     section("Notes")
     known = read_text(file) if file.exists() else ""
-    box = ui.textarea(f"Kept in {file}", value=known).classes("notes")
-    box.props("outlined autogrow")
 
     def keep() -> None:
         try:
@@ -51,7 +49,8 @@ def _notes(file: Path) -> None:
         except RovsimError as error:
             ui.notify(str(error), type="warning", multi_line=True)
 
-    box.on("blur", keep)
+    box = ui.textarea(f"Kept in {file}", value=known, on_change=keep).classes("notes")
+    box.props("outlined autogrow")
 
 
 def _recordings(quality: Mapping[str, Quality]) -> None:

@@ -1,5 +1,6 @@
 """A model being put together: effects ticked, their values moved."""
 
+import time
 from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,7 @@ from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import EffectEntry, Value, build_effect
 from rovsim.results.diagnosis import Diagnosis, FittedEffect
 
+MOVING = 1.0  # s between two values of one hand that goes on moving
 SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
 
 
@@ -29,7 +31,7 @@ class Draft:
     ticked: list[str] = field(default_factory=list)
     values: dict[str, dict[str, float]] = field(default_factory=dict)
     _before: list[tuple[list[str], dict[str, dict[str, float]]]] = field(default_factory=list)
-    _changing: object = None  # what the last change was of
+    _changing: tuple[object, float] = (None, 0.0)  # what the last change was of, and when
 
     def __post_init__(self) -> None:
         self.ticked = [one.effect for one in self.chosen]
@@ -51,9 +53,11 @@ class Draft:
 
     def _remember(self, change: object) -> None:
         """Keep what is there; a value that goes on moving is one change."""
-        if change is None or change != self._changing:
+        now = time.monotonic()
+        last, moved = self._changing
+        if change is None or change != last or now - moved > MOVING:
             self._before.append((self.ticked, deepcopy(self.values)))
-        self._changing = change
+        self._changing = change, now
 
     @property
     def changed(self) -> bool:
@@ -64,7 +68,7 @@ class Draft:
         """Take back the last change."""
         if self._before:
             self.ticked, self.values = self._before.pop()
-            self._changing = None
+            self._changing = None, 0.0
 
     def tick(self, effect: str, yes: bool) -> None:
         """Add or leave out an effect."""
