@@ -6,6 +6,7 @@ from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.runs import track
+from rovsim.core.errors import BadInput
 
 
 def tracked(name):
@@ -31,3 +32,27 @@ def test_a_database_that_was_being_made_is_made_anew(tmp_path, monkeypatch):
     (run,) = client.search_runs([experiment.experiment_id])
     assert (run.info.run_name, run.data.params) == ("second", {"k": "5"})
     assert settings.artifacts in experiment.artifact_location
+
+
+@pytest.mark.parametrize("uri", ["http://127.0.0.1:9", "sqlite:///text.db", "file:mlruns"])
+def test_a_place_that_keeps_nothing_is_one_message(uri, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MLFLOW_HTTP_REQUEST_MAX_RETRIES", "0")
+    (tmp_path / "text.db").write_text("no database\n" * 100)
+    settings = TrackingSettings(uri=uri, artifacts="results/mlflow")
+    with pytest.raises(BadInput, match="MLflow cannot keep"):
+        track(settings, experiment="a", name="b", tags={}, params={}, scores={}, files=[])
+
+
+def test_an_experiment_that_another_machine_makes_meanwhile_is_taken(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    tracked("first")
+    known, asked = MlflowClient.get_experiment_by_name, []
+
+    def unknown_at_first(self, name):
+        asked.append(name)
+        return known(self, name) if len(asked) > 1 else None
+
+    monkeypatch.setattr(MlflowClient, "get_experiment_by_name", unknown_at_first)
+    tracked("second")
+    assert len(asked) == 2

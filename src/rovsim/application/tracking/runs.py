@@ -1,19 +1,25 @@
 """One MLflow run: its tags, parameters, metrics and files."""
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Iterable, Mapping
+from typing import Any, Iterable, Iterator, Mapping
 
 import numpy as np
 from filelock import FileLock
 
 from rovsim.application.settings import TrackingSettings
+from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.core.files import appearing
 from rovsim.results.base import ByAxis
 from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
 
 HORIZONS = (OPEN_LOOP, "0.5", "2", "5")
+PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes for each call
+    "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",
+    "MLFLOW_HTTP_REQUEST_TIMEOUT": "60",
+}
 
 
 def track(
@@ -40,8 +46,11 @@ def track(
         files: kept as artifacts.
         parent: id of the run this one belongs to.
         metrics: further numbers.
+
+    Raises:
+        BadInput: nothing can be kept there.
     """
-    with FileLock(_lock(settings.uri)):
+    with _told(settings.uri), FileLock(_lock(settings.uri)):
         client = _client(settings)
         number = _experiment(client, settings, experiment)
         labels = {**tags, "mlflow.runName": name}
@@ -86,9 +95,27 @@ def _log(client, run_id: str, params: Mapping, metrics: Mapping, files: Iterable
         client.log_artifact(run_id, str(file))
 
 
-def _client(settings: TrackingSettings):
+@contextmanager
+def _told(uri: str) -> Iterator[None]:
+    """MLflow's errors as one message."""
     require("tracking", by="tracking.uri")
-    os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")
+    for name, value in {"MLFLOW_DISABLE_TELEMETRY": "true", **PATIENCE}.items():
+        os.environ.setdefault(name, value)
+    from mlflow.exceptions import MlflowException
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except (MlflowException, SQLAlchemyError) as error:
+        raise BadInput(
+            f"MLflow cannot keep the run: {str(error).splitlines()[0]}",
+            where=f"tracking.uri={uri}",
+            expected="a local database (sqlite:///FILE) or a server that answers",
+            remedy="Start the server, or set tracking.uri. What was computed is kept in its files.",
+        ) from None
+
+
+def _client(settings: TrackingSettings):
     import logging
 
     from mlflow.tracking import MlflowClient
@@ -131,7 +158,15 @@ def _experiment(client, settings: TrackingSettings, name: str) -> str:
         return known.experiment_id
     local = _local(settings.uri) is not None
     place = Path(settings.artifacts, name).absolute().as_uri() if local else None
-    return client.create_experiment(name, artifact_location=place)
+    from mlflow.exceptions import MlflowException
+
+    try:
+        return client.create_experiment(name, artifact_location=place)
+    except MlflowException:  # another machine was first: a lock of files ends at its own
+        known = client.get_experiment_by_name(name)
+        if known is None:
+            raise
+        return known.experiment_id
 
 
 def _lock(uri: str) -> Path:
