@@ -90,7 +90,7 @@ bench: setup
 	$(BIN)/rovsim bench
 
 benchmark-blind: setup
-	$(BIN)/rovsim blind blind.suite=$(SUITE) blind.cores=$(CORES)
+	$(BIN)/snakemake -s workflow/blind.smk --cores $(CORES) --quiet rules --config overrides="blind.suite=$(SUITE)"
 
 catalogue: setup
 	$(BIN)/python -m rovsim.reporting.catalogue

@@ -27,8 +27,7 @@ def free_port() -> int:
 def started(folder: Path, *words: str) -> tuple[subprocess.Popen, str]:
     """The workbench, started in a folder, and its address, once it answers."""
     port = free_port()
-    code = "from rovsim.apps.cli.main import main; main()"
-    command = [sys.executable, "-c", code, "ui", "open=false", f"port={port}", *words]
+    command = [sys.executable, "-m", "rovsim", "ui", "open=false", f"port={port}", *words]
     # NiceGUI behaves differently where it sees that pytest runs
     clean = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
     process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, env=clean)

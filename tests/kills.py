@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-ROVSIM = [sys.executable, "-c", "from rovsim.apps.cli.main import main; main()"]
+ROVSIM = [sys.executable, "-m", "rovsim"]
 SMALL = "tank=tiny study.residuals=[knn] study.controls=[6dof] timing.calls=50"
 WORKS = {
     "study": [

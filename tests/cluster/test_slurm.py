@@ -136,8 +136,7 @@ def test_the_study_runs_job_by_job_and_a_cancelled_job_is_tried_again(slurm, tmp
 
 
 def test_a_sweep_runs_over_submitit(slurm, tmp_path):
-    code = "from rovsim.apps.cli.main import main; main()"
-    rovsim = (sys.executable, "-c", code)
+    rovsim = (sys.executable, "-m", "rovsim")
     assert call(tmp_path, *rovsim, "tank", "tank=tiny", "out=raw").wait(600) == 0
     before = jobs(slurm, "COMPLETED")
     sweep = call(

@@ -12,7 +12,7 @@ from rovsim.benchmarks.blind.methods import Method
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.benchmarks.blind.recordings import KINDS
-from rovsim.benchmarks.blind.run import place, read_answers, run
+from rovsim.benchmarks.blind.run import pending, place, read_answers, run
 from rovsim.benchmarks.blind.score import matching, score
 from rovsim.benchmarks.blind.suites import APART, FAMILIES, suite
 from rovsim.benchmarks.blind.summary import detection_limit, summarize
@@ -351,17 +351,22 @@ def asked(tmp_path):
     return lambda: len(trace.read_text()) if trace.exists() else 0
 
 
+def ask(cases, method, folder):
+    """What is missing, or was answered by other code."""
+    run(list(pending(cases, [method], folder)))
+
+
 def test_what_was_answered_is_not_asked_again(tmp_path, asked):
     cases = [case(LAG, tank=SHORT, id=f"single/{k}", seed=k) for k in range(2)]
     method = Method("stub", stub, ("rovsim.core.errors",))
-    run(cases[:1], [method], tmp_path / "r", 1)
+    ask(cases[:1], method, tmp_path / "r")
     assert asked() == 1
-    run(cases, [method], tmp_path / "r", 1)
+    ask(cases, method, tmp_path / "r")
     assert asked() == 2
-    run(cases, [method], tmp_path / "r", 1)
+    ask(cases, method, tmp_path / "r")
     assert asked() == 2
     changed = Method("stub", stub, ("rovsim.core.errors", "rovsim.evaluation.latency"))
-    run(cases[:1], [changed], tmp_path / "r", 1)
+    ask(cases[:1], changed, tmp_path / "r")
     assert asked() == 3
     found = summarize(read_answers(cases, method, tmp_path / "r"))
     assert found.kinds["single"].exact == 1.0
@@ -370,7 +375,7 @@ def test_what_was_answered_is_not_asked_again(tmp_path, asked):
 def test_a_crash_is_a_wrong_answer_and_is_told(tmp_path, asked):
     STATE["crash"] = True
     one, method = case(LAG, tank=SHORT), Method("stub", stub, ("rovsim.core.errors",))
-    run([one], [method], tmp_path, 1)
+    ask([one], method, tmp_path)
     assert "no idea" in read_json(place(tmp_path, method, one))["error"]
     found = summarize(read_answers([one], method, tmp_path))
     assert found.failed == (one.id,)

@@ -56,13 +56,12 @@ class BenchSettings(Section):
 
 
 class BlindSettings(Section):
-    """The blind benchmark: which cases, who flies and who answers, on how many cores."""
+    """The blind benchmark: which cases, who flies and who answers."""
 
     simulator: Literal["tank", "independent"] = "tank"
     suite: Literal["quick", "standard", "full", "recordings", "equations"] = "quick"
     seeds: Literal["development", "reporting"] = "reporting"
     methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")
-    cores: PositiveInt = 2
     page: str = "docs/benchmark_blind.md"
 
 

@@ -1,27 +1,26 @@
-"""Run cases: in parallel, resumable, one JSON per case and method."""
+"""Run cases: resumable, one JSON per case and method."""
 
 import hashlib
 import json
-import multiprocessing
-import os
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Iterator, Sequence
 
 from rovsim.application.provenance import digest
+from rovsim.application.settings import BlindSettings
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import Case
 from rovsim.benchmarks.blind.flight import SIMULATORS, fly
-from rovsim.benchmarks.blind.methods import Method
+from rovsim.benchmarks.blind.methods import Method, chosen
+from rovsim.benchmarks.blind.suites import suite
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json
 from rovsim.results.diagnosis import Answer, Diagnosis
 
 FLIGHT = "rovsim.benchmarks.blind.flight"
-ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+_ASIDE = {"tank": (), "independent": ("independent",)}  # folders that keep answers apart
 Progress = Callable[[int, int], None]
 
 
@@ -32,6 +31,37 @@ class Job:
     case: Case
     methods: tuple[tuple[Method, Path, str], ...]
     simulator: str
+
+    @property
+    def mark(self) -> str:
+        """Digest of the answers it will give."""
+        return hashlib.sha256(repr([w[1:] for w in self.methods]).encode()).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """What was asked for: the cases, who answers, and the folder that keeps the answers."""
+
+    asked: BlindSettings
+    out: Path
+    cases: tuple[Case, ...]
+    methods: tuple[Method, ...]
+
+    @staticmethod
+    def of(asked: BlindSettings, out: str | None) -> "Benchmark":
+        """As the settings say; `out` is results/blind unless said."""
+        folder = Path(out or Path("results/blind", *_ASIDE[asked.simulator]))
+        cases = suite(asked.suite, asked.seeds)
+        return Benchmark(asked, folder, tuple(cases), tuple(chosen(asked.methods)))
+
+    @property
+    def answers(self) -> Path:
+        """Folder of the answers to these seeds."""
+        return self.out / self.asked.seeds
+
+    def pending(self) -> list[Job]:
+        """What is missing or was answered by other code."""
+        return list(pending(self.cases, self.methods, self.answers, self.asked.simulator))
 
 
 def place(folder: Path, method: Method, case: Case) -> Path:
@@ -90,38 +120,12 @@ def _ask(method: Method, campaign: Path, out: Path) -> tuple[Diagnosis | Answer 
         return None, f"{type(error).__name__}: {error}"
 
 
-def run(
-    cases: Sequence[Case],
-    methods: Sequence[Method],
-    folder: Path,
-    cores: int,
-    progress: Progress = lambda done, total: None,
-    simulator: str = "tank",
-) -> None:
-    """Answer all cases by all methods; what is there already is not asked again."""
-    jobs = list(pending(cases, methods, folder, simulator))
-    if cores == 1:
-        for done, job in enumerate(jobs):
-            progress(done, len(jobs))
-            work(job)
-    elif jobs:
-        _in_parallel(jobs, cores, progress)
+def run(jobs: Sequence[Job], progress: Progress = lambda done, total: None) -> None:
+    """Work off jobs, one after the other."""
+    for done, job in enumerate(jobs):
+        progress(done, len(jobs))
+        work(job)
     progress(len(jobs), len(jobs))
-
-
-def _in_parallel(jobs: Sequence[Job], cores: int, progress: Progress) -> None:
-    """One process a core, one thread each: seconds are then those of one core."""
-    os.environ.update(ONE_THREAD)
-    context = multiprocessing.get_context("spawn")  # threads do not survive a fork
-    with ProcessPoolExecutor(cores, mp_context=context) as pool:
-        waiting = [pool.submit(work, job) for job in jobs]
-        try:
-            for done, future in enumerate(as_completed(waiting)):
-                future.result()
-                progress(done + 1, len(jobs))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
 
 
 def read_answers(cases: Sequence[Case], method: Method, folder: Path) -> list[KeptAnswer]:

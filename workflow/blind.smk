@@ -1,0 +1,53 @@
+"""The blind benchmark, case by case, on the cores of a machine or over a cluster.
+
+snakemake -s workflow/blind.smk --cores 2 [--config overrides="blind.suite=standard"]
+
+Cases that this code has answered are left out; in the end `rovsim blind` scores them all.
+"""
+
+import sys
+
+from rovsim.application.settings import compose
+from rovsim.benchmarks.blind.run import Benchmark
+from rovsim.core.errors import RovsimError
+
+try:
+    words = config.get("overrides", "").split()
+    settings = compose(words)
+    benchmark = Benchmark.of(settings.blind, settings.out)
+    jobs = {job.mark: job for job in benchmark.pending()}
+except RovsimError as error:
+    print(f"rovsim: {error}", file=sys.stderr)
+    sys.exit(2)
+
+ASKED = f"{benchmark.out}/.asked/{{mark}}"
+
+
+localrules:
+    score,
+
+
+rule score:
+    "Score every answer, and write the tables."
+    input:
+        expand(ASKED, mark=jobs),
+    params:
+        python=sys.executable,
+        words=[*words, f"out={benchmark.out}"],
+    shell:
+        "{params.python:q} -m rovsim blind {params.words:q}"
+
+
+rule case:
+    "Fly a case, and ask every method."
+    output:
+        temp(touch(ASKED)),
+    log:
+        f"{benchmark.out}/logs/{{mark}}.log",
+    resources:
+        mem_mb=2000,
+    params:
+        settings=settings.blind.model_dump_json(),
+        out=str(benchmark.out),
+    script:
+        "scripts/blind_case.py"
