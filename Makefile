@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study thesis test test-ui fuzz kills test-slurm wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
+.PHONY: help setup study thesis test test-ui fuzz kills crowd soak test-slurm wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -15,6 +15,8 @@ help:
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
 	@echo "make fuzz    hostile input at every door: TRIES=2000"
 	@echo "make kills   commands killed at random moments: KILLS=20 each"
+	@echo "make crowd   two studies, two sweeps and a workbench at once on one database"
+	@echo "make soak    a long day at the workbench: 1,000 replays, 20 campaigns"
 	@echo "make test-slurm   the study and a sweep through a real Slurm on this machine (root, slurm-wlm)"
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
@@ -60,9 +62,15 @@ KILLS ?= 20
 kills: setup
 	$(BIN)/python tests/kills.py $(KILLS)
 
+crowd: setup
+	$(BIN)/python tests/crowd.py
+
+soak: setup chromium
+	PYTHONPATH=tests $(BIN)/python tests/browser/soak.py
+
 # As root, with Debian's slurm-wlm: a cluster of one node on this machine.
 test-slurm: setup
-	ROVSIM_SLURM=1 $(BIN)/python -m pytest tests/cluster
+	ROVSIM_SLURM=1 $(BIN)/python -m pytest -rP tests/cluster
 
 test-ui: setup chromium
 	$(BIN)/python -m pytest tests/browser

@@ -40,10 +40,10 @@ WORKS = {
 def start(work: str, folder: Path) -> subprocess.Popen:
     """The command in a process group of its own, so that all it started can be killed with it."""
     environment = os.environ | {"PYTHONPATH": str(ROOT / "src"), "PYTHONHASHSEED": "0"}
-    log = (folder / "log.txt").open("ab")
-    return subprocess.Popen(
-        WORKS[work], cwd=folder, env=environment, stdout=log, stderr=log, start_new_session=True
-    )
+    with (folder / "log.txt").open("ab") as log:
+        return subprocess.Popen(
+            WORKS[work], cwd=folder, env=environment, stdout=log, stderr=log, start_new_session=True
+        )
 
 
 def finish(work: str, folder: Path) -> float:

@@ -80,6 +80,7 @@ def slurm(tmp_path_factory):
         for daemon in reversed(daemons):
             daemon.terminate()
             daemon.wait(30)
+        print((folder / "completed.txt").read_text())
         CONF.unlink()
         shutil.rmtree(folder)
 
@@ -101,9 +102,9 @@ def _wait(ready, seconds: float = 60.0) -> None:
 
 
 def call(folder: Path, *command: str) -> subprocess.Popen:
-    log = (folder / "log.txt").open("ab")
     environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
-    return subprocess.Popen(command, cwd=folder, stdout=log, stderr=log, env=environment)
+    with (folder / "log.txt").open("ab") as log:
+        return subprocess.Popen(command, cwd=folder, stdout=log, stderr=log, env=environment)
 
 
 def jobs(completed: Path, state: str) -> int:
