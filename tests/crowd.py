@@ -79,7 +79,8 @@ def run(scratch: Path) -> None:
     print(
         f"{len(compared)} result files, {len(differ)} differ {differ}; runs kept: {states(crowd)}"
     )
-    assert compared and not differ
+    assert compared
+    assert not differ
     assert states(crowd) == states(alone)
     assert set(states(crowd)) == {"FINISHED"}
 

@@ -94,7 +94,7 @@ def run(folder: Path, replays: int, count: int) -> None:
         page = browser.new_page(viewport={"width": DESK[0], "height": DESK[1]})
         page.set_default_timeout(60_000)
         tab, held = Tab(page, address), []
-        for k, place in enumerate(places):
+        for place in places:
             day(tab, server.pid, place, replays // count)
             held.append(memory(server.pid))
             print(
