@@ -28,7 +28,7 @@ def commands() -> dict[str, list[str]]:
             "campaign=raw",
             "residual=knn",
             f"residual.k={values}",
-            f"hydra.sweep.dir=sweep-{k}",
+            f"hydra.sweep.dir=results/sweep-{k}",
         ]
         found[f"sweep-{k}"] = [*ROVSIM, "train", "-m", *words]
     return found

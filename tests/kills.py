@@ -29,7 +29,9 @@ WORKS = {
     "diagnose": [*ROVSIM, "diagnose", "campaign=raw", "out=results"],
     "compare": [*ROVSIM, "compare", "campaign=raw", "out=results"],
     "train": [*ROVSIM, "train", "campaign=raw", "residual=knn", "out=results"],
-    "sweep": [*ROVSIM, "train", "-m", "campaign=raw", "residual=knn", "residual.k=5,9,15"],
+    "sweep": [*ROVSIM, "train", "-m", "campaign=raw", "residual=knn", "residual.k=5,9,15",
+        "hydra.sweep.dir=results/sweep",
+    ],
     "blind": [
         *ROVSIM, "blind", "blind.suite=quick", "blind.seeds=development", "blind.methods=[stlsq]",
         "blind.page=results/page.md", "out=results",

@@ -167,7 +167,11 @@ def test_compare_writes_the_contract(campaign, tmp_path, capsys):
 def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     arguments = [f"campaign={campaign}", "residual=knn", "control=6dof", f"out={tmp_path / 'knn'}"]
+    (tmp_path / "knn").mkdir()
+    (tmp_path / "knn" / "of_others.db").touch()
     main(["train", *arguments])
+    kept = {p.name for p in (tmp_path / "results" / "mlflow").rglob("*") if p.is_file()}
+    assert kept == {"model.yaml", "residual.npz", "comparison.json"}
     model = tmp_path / "knn" / "model.yaml"
     first = (tmp_path / "knn" / "residual.npz").read_bytes()
     main(["compare", f"campaign={campaign}", f"model=[nominal,{model}]", f"out={tmp_path / 'c'}"])

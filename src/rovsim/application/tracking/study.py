@@ -61,7 +61,7 @@ def _described(name: str, path: Path | None) -> dict[str, Any]:
     residual = content.get("residual") or {}
     base = content["provenance"]["base"] if residual else name
     tags = {"model": base, "residual": residual.get("kind", "none")}
-    arrays = [path.with_name("residual.npz")] if path and residual else []
+    arrays = [path.with_name(residual["file"])] if path and residual else []
     return {
         "tags": tags | {"control": residual.get("control", "none")},
         "params": residual.get("settings", {}),

@@ -20,6 +20,7 @@ from rovsim.dynamics.learned.predictor import evaluate_many
 
 Control = Literal["3dof", "6dof", "all"]  # runs a residual learns from
 LIBRARY = "library."  # prefix of the arrays from which the library's own model is rebuilt
+ARRAYS = "residual.npz"  # file of the arrays, beside the model file
 
 
 class StoredResidual(Section):
@@ -65,7 +66,7 @@ class Residual:
         return posterior(self.data, X, self.features)
 
 
-def write_residual(folder: Path, residual: Residual, name: str = "residual.npz") -> StoredResidual:
+def write_residual(folder: Path, residual: Residual, name: str = ARRAYS) -> StoredResidual:
     """Write the arrays to `folder/name`; returns the description for the model file."""
     library = {LIBRARY + key: array for key, array in residual.arrays.items()}
     write_arrays(folder / name, data=residual.data, **library)

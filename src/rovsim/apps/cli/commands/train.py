@@ -19,6 +19,7 @@ from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import require
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.learned.residual import ARRAYS
 from rovsim.evaluation.scores import score_all
 from rovsim.reporting.html.terminal import tell_comparison
 from rovsim.results.error_conditions import ErrorConditions
@@ -54,7 +55,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
             scores=found.models["model"].runs,
-            files=sorted(p for p in out.iterdir() if p.is_file()),
+            files=[file, out / ARRAYS, out / "comparison.json"],
         )
     steps = climb(motions, replays)
     tested = any(motion.run.split == "test" for motion in motions)

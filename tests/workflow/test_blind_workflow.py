@@ -1,0 +1,46 @@
+"""The blind benchmark as a workflow: a case is a job, and what is answered is none."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rovsim.application.settings import compose
+from rovsim.benchmarks.blind.run import Benchmark
+
+pytest.importorskip("pysindy")
+ROOT = Path(__file__).parents[2]
+WORDS = ["blind.suite=quick", "blind.seeds=development", "blind.methods=[stlsq]"]
+
+
+def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.CompletedProcess[str]:
+    """One call of the workflow."""
+    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "workflow/blind.smk")]
+    return subprocess.run(
+        [*command, "--cores", "1", *words, "--config", f"overrides={overrides}"],
+        cwd=folder, capture_output=True, text=True, timeout=500,
+        env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
+    )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_case_is_a_job_and_is_not_asked_again(tmp_path):
+    out = tmp_path / "answers"
+    benchmark = Benchmark.of(compose(WORDS).blind, str(out))
+    jobs = benchmark.pending()
+    assert len(jobs) == len(benchmark.cases)
+    one = next(job for job in jobs if job.case.id.startswith("none/"))
+    done = snakemake(tmp_path, " ".join([*WORDS, f"out={out}"]), f"{out}/.asked/{one.mark}")
+    assert done.returncode == 0, done.stderr[-3000:]
+    left = benchmark.pending()
+    assert {job.case.id for job in jobs} - {job.case.id for job in left} == {one.case.id}
+
+
+@pytest.mark.slow
+def test_a_suite_that_is_not_there_is_one_message(tmp_path):
+    done = snakemake(tmp_path, "blind.suite=hidden", "-n")
+    assert done.returncode == 2
+    assert "blind.suite" in done.stderr
+    assert "Traceback" not in done.stderr
