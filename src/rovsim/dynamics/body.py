@@ -77,9 +77,10 @@ class Body:
     def least_inertia(self) -> float:
         """Smallest eigenvalue of the inertia that moves: positive if such a body can exist."""
         M = (self.M_RB + self.M_A)[np.ix_(self.free, self.free)]
-        if not np.isfinite(M).all():
+        symmetric = 0.5 * (M + M.T)
+        if not np.isfinite(symmetric).all():  # two numbers near the largest have no sum
             return -inf
-        return float(np.linalg.eigvalsh(0.5 * (M + M.T))[0])
+        return float(np.linalg.eigvalsh(symmetric)[0])
 
     @property
     def M(self) -> Array:
