@@ -13,7 +13,8 @@ EFFECTS, NOISE_FLOOR = "effects", "noise_floor"
 class Step(Section):
     """Errors of one model in 2 s windows, all runs of the split pooled; None where unknown.
 
-    `windows_2s` is the velocity RMSE in units of the measured velocity's spread, mean over axes.
+    `windows_2s` is the velocity RMSE in units of the measured velocity's standard deviation, mean
+    over axes.
     """
 
     model: str

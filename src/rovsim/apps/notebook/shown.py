@@ -86,7 +86,7 @@ class ShownComparison(Figures):
 
     @property
     def errors(self) -> Series:
-        """The error by model: velocity in 2 s windows on the test runs, in units of its spread."""
+        """The error by model: velocity in 2 s windows, in standard deviations, on the test runs."""
         values = {step.model: or_nan(step.windows_2s) for step in self.ladder.steps}
         return Series(values, name="error", dtype=float)
 

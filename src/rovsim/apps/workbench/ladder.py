@@ -22,7 +22,8 @@ async def show(bench: Workbench, place: Place) -> None:
     heading(TITLE, QUESTION)
     text(
         "Each step on the test runs, which nothing was fitted to: velocity error after being set "
-        "to the measured state every 2 s, in units of the measured velocity's spread."
+        "to the measured state every 2 s, in units of the measured velocity's standard "
+        "deviation."
     )
     ladder = await computed(bench.ladder)
     about = "Error of each step, the noise floor as a line"

@@ -77,7 +77,7 @@ def _errors(error: DiagnosisErrors) -> None:
         tile("Noise floor", error.noise_floor, "error/noise_floor", "of a perfect model, about")
     text(
         "Velocity error after being set to the measured state every 2 s, in units of the measured "
-        "velocity's spread.", "soft",
+        "velocity's standard deviation.", "soft",
     )  # fmt: skip
 
 

@@ -39,7 +39,7 @@ class AddedMassCoupling(Coefficients):
     """Water accelerated along one axis pushes along another; its Coriolis terms follow."""
 
     id = "added_mass_coupling"
-    equation = r"M_{A,ij} = M_{A,ji} \mathrel{+}= m_{ij}"
+    equation = r"M_{A,ij} = M_{A,ji} \to M_{A,ij} + m_{ij}"
     neglects = "frequency dependence"
     source = "Fossen 2021, sec. 6.3 (M_A is symmetric)"
     cause = (

@@ -9,7 +9,7 @@ class NetBuoyancy(Coefficients):
     """Extra buoyancy at the (moved) centre of buoyancy: foam, trapped air, salt."""
 
     id = "net_buoyancy"
-    equation = r"B \mathrel{+}= \Delta B"
+    equation = r"B \to B + \Delta B"
     neglects = "the mass of what floats"
     source = "Fossen 2021, sec. 4.1"
     cause = "Foam was added, air is trapped, or the water is denser than the vehicle file says."
@@ -30,7 +30,7 @@ class BuoyancyCenter(Coefficients):
     """The centre of buoyancy is elsewhere: it sets how stiffly the vehicle rights itself."""
 
     id = "buoyancy_center"
-    equation = r"r_B \mathrel{+}= \Delta r_B"
+    equation = r"r_B \to r_B + \Delta r_B"
     neglects = "compression with depth"
     source = "Fossen 2021, sec. 4.1"
     cause = (

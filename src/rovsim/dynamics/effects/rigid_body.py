@@ -42,7 +42,7 @@ class Payload(Coefficients):
     """A point mass without volume, carried along."""
 
     id = "payload"
-    equation = r"M_{RB} \mathrel{+}= m H^\top(r) H(r),\quad \text{weight } m g \text{ at } r"
+    equation = r"M_{RB} \to M_{RB} + m H^\top(r) H(r),\quad \text{weight } m g \text{ at } r"
     neglects = "its displaced water and its drag"
     source = "Fossen 2021, sec. 3.3 (parallel-axis theorem)"
     cause = (

@@ -179,7 +179,7 @@ class PropellerTorque(Coefficients):
 
     id = "propeller_torque"
     through = "thrusters"
-    equation = r"\tau_\text{rotation} \mathrel{+}= q\,s_i F_i d_i"
+    equation = r"\tau_\text{rotation} \to \tau_\text{rotation} + q\,s_i F_i d_i"
     neglects = "the torque of spinning up"
     source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"
     cause = (

@@ -17,7 +17,8 @@ from rovsim.results.ladder import NOISE_FLOOR, Ladder
 SECTION = "ladder"
 CAPTION = (
     "Error of every step on runs none of them was fitted to: the velocity error of 2 s windows "
-    "in units of the measured velocity's spread, averaged over the excited axes. Lower is better."
+    "in units of the measured velocity's standard deviation, averaged over the excited axes. Lower "
+    "is better."
 )
 ROOM = 1.14  # for the values behind the bars
 BASELINE = "zero_acceleration"
@@ -41,7 +42,7 @@ def draw(*, ladder: Ladder) -> Figure:
     axes.set_xlim(0, top)
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
-    axes.set_xlabel("velocity RMSE of 2 s windows / spread of the measured velocity (–)")
+    axes.set_xlabel("velocity RMSE of 2 s windows / standard deviation (–)")
     if not steps:
         nothing(axes, "no steps")
     if np.isfinite(floor):

@@ -117,7 +117,7 @@ def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
         return NO_TEST
     now = f"falls from {significant(before)} to {significant(after)}"
     text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
-    text += " (velocity in 2 s windows, in units of its spread)."
+    text += " (velocity in 2 s windows, in units of its standard deviation)."
     if not math.isfinite(floor):
         why = "not all is noise, or poses were measured in part only"
         return f"{text} What a perfect model would show cannot be estimated: {why}."
