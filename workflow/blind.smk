@@ -8,19 +8,25 @@ Cases that this code has answered are left out; in the end `rovsim blind` scores
 import sys
 
 from rovsim.application.settings import compose
-from rovsim.benchmarks.blind.run import Benchmark
+from rovsim.benchmarks.blind.run import Benchmark, file_name
 from rovsim.core.errors import RovsimError
 
 try:
     words = config.get("overrides", "").split()
     settings = compose(words)
     benchmark = Benchmark.of(settings.blind, settings.out)
-    jobs = {job.mark: job for job in benchmark.pending()}
+    jobs = benchmark.pending()
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)
 
-ASKED = f"{benchmark.out}/.asked/{{mark}}"
+ASKED = (
+    f"{benchmark.out}/.asked/{{case}}.{{mark}}"  # mark: of what the answers depend on
+)
+
+
+wildcard_constraints:
+    mark="[0-9a-f]+",
 
 
 localrules:
@@ -30,7 +36,7 @@ localrules:
 rule score:
     "Score every answer, and write the tables."
     input:
-        expand(ASKED, mark=jobs),
+        [ASKED.format(case=file_name(job.case), mark=job.mark) for job in jobs],
     params:
         python=sys.executable,
         words=[*words, f"out={benchmark.out}"],
@@ -43,7 +49,7 @@ rule case:
     output:
         temp(touch(ASKED)),
     log:
-        f"{benchmark.out}/logs/{{mark}}.log",
+        f"{benchmark.out}/logs/{{case}}.{{mark}}.log",
     resources:
         mem_mb=2000,
     params:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from rovsim.application.settings import compose
-from rovsim.benchmarks.blind.run import Benchmark
+from rovsim.benchmarks.blind.run import Benchmark, file_name
 
 pytest.importorskip("pysindy")
 ROOT = Path(__file__).parents[2]
@@ -32,7 +32,8 @@ def test_a_case_is_a_job_and_is_not_asked_again(tmp_path):
     jobs = benchmark.pending()
     assert len(jobs) == len(benchmark.cases)
     one = next(job for job in jobs if job.case.id.startswith("none/"))
-    done = snakemake(tmp_path, " ".join([*WORDS, f"out={out}"]), f"{out}/.asked/{one.mark}")
+    asked = f"{out}/.asked/{file_name(one.case)}.{one.mark}"
+    done = snakemake(tmp_path, " ".join([*WORDS, f"out={out}"]), asked)
     assert done.returncode == 0, done.stderr[-3000:]
     left = benchmark.pending()
     assert {job.case.id for job in jobs} - {job.case.id for job in left} == {one.case.id}

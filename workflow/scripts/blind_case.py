@@ -11,4 +11,4 @@ from rovsim.benchmarks.blind.run import Benchmark, run
 if __name__ == "__main__":
     with job(snakemake) as rule:
         benchmark = Benchmark.of(rule.section(BlindSettings), rule.params.out)
-        run([one for one in benchmark.pending() if one.mark == rule.wildcards.mark])
+        run(benchmark.only(rule.wildcards.case).pending())

@@ -4,7 +4,7 @@ import hashlib
 import json
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Callable, Iterator, Sequence
 
@@ -59,14 +59,23 @@ class Benchmark:
         """Folder of the answers to these seeds."""
         return self.out / self.asked.seeds
 
+    def only(self, name: str) -> "Benchmark":
+        """The same with one case alone, by the name of its files."""
+        return replace(self, cases=tuple(case for case in self.cases if file_name(case) == name))
+
     def pending(self) -> list[Job]:
         """What is missing or was answered by other code."""
         return list(pending(self.cases, self.methods, self.answers, self.asked.simulator))
 
 
+def file_name(case: Case) -> str:
+    """The id of a case, as the name of a file."""
+    return case.id.replace("/", "__").replace(" ", "_")
+
+
 def place(folder: Path, method: Method, case: Case) -> Path:
     """Where the answer of a method to a case is kept."""
-    return folder / method.name / f"{case.id.replace('/', '__').replace(' ', '_')}.json"
+    return folder / method.name / f"{file_name(case)}.json"
 
 
 def fingerprint(case: Case, code: str) -> str:
