@@ -274,8 +274,9 @@ class Page:
 
 def _keep_loaded() -> None:
     """Collect what the last campaign left; never look through what is loaded now, for 0.2 s."""
-    gc.unfreeze()
-    gc.collect()
+    if gc.get_freeze_count():
+        gc.unfreeze()
+        gc.collect()
     gc.freeze()
 
 
