@@ -1,6 +1,7 @@
 """A workbench in a process of its own, and tabs of a real Chromium that look at it."""
 
 import os
+import shutil
 import socket
 import subprocess
 import sys
@@ -15,6 +16,11 @@ FLAGS = (
 )  # fmt: skip
 DESK, PHONE = (1280, 720), (390, 844)
 PICTURES = os.environ.get("ROVSIM_SCREENSHOTS")  # a folder: `make screenshots`
+
+
+def installed() -> str | None:
+    """Path of a Chromium on this machine; None: only Playwright's own, if any."""
+    return next((path for name in NAMES if (path := shutil.which(name))), None)
 
 
 def free_port() -> int:

@@ -7,13 +7,13 @@ What each writes must be what it writes alone, and every run must be in the data
 
 import sqlite3
 import subprocess
-import sys
 import tempfile
 from collections import Counter
 from pathlib import Path
 
 from chromium import started
-from kills import ROVSIM, SMALL, WORKS, digests
+from kills import ROVSIM, WORKS, digests, end, start
+from small_study import SMALL
 
 STUDIES = ("one", "two")
 SWEEPS = ("5,9", "7,15")
@@ -34,23 +34,11 @@ def commands() -> dict[str, list[str]]:
     return found
 
 
-def start(folder: Path, command: list[str], name: str) -> subprocess.Popen:
-    """One of them, its output in a file of its own."""
-    with (folder / f"{name}.txt").open("wb") as log:
-        return subprocess.Popen(command, cwd=folder, stdout=log, stderr=log)
-
-
 def prepared(folder: Path) -> Path:
     """A folder with a campaign."""
     folder.mkdir()
     subprocess.run([*ROVSIM, "tank", "tank=tiny", "out=raw", "--quiet"], cwd=folder, check=True)
     return folder
-
-
-def finish(folder: Path, name: str, process: subprocess.Popen) -> None:
-    """It must end well."""
-    if process.wait(3600):
-        sys.exit(f"{name}: failed:\n{(folder / f'{name}.txt').read_text()[-3000:]}")
 
 
 def states(folder: Path) -> Counter[str]:
@@ -63,11 +51,11 @@ def run(scratch: Path) -> None:
     """First one after the other, then all at once."""
     alone, crowd = (prepared(scratch / name) for name in ("alone", "crowd"))
     for name, command in commands().items():
-        finish(alone, name, start(alone, command, name))
+        end(start(command, alone, f"{name}.txt"), alone / f"{name}.txt")
     workbench, _ = started(crowd, "campaign=raw")
-    at_once = {name: start(crowd, command, name) for name, command in commands().items()}
+    at_once = {name: start(command, crowd, f"{name}.txt") for name, command in commands().items()}
     for name, process in at_once.items():
-        finish(crowd, name, process)
+        end(process, crowd / f"{name}.txt")
     assert workbench.poll() is None
     workbench.terminate()
     wanted, found = digests(alone), digests(crowd)

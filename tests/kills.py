@@ -17,9 +17,9 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+from small_study import ROOT, SMALL
+
 ROVSIM = [sys.executable, "-m", "rovsim"]
-SMALL = "tank=tiny study.residuals=[knn] study.controls=[6dof] timing.calls=50"
 WORKS = {
     "study": [
         sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"),
@@ -39,20 +39,25 @@ WORKS = {
 }  # fmt: skip
 
 
-def start(work: str, folder: Path) -> subprocess.Popen:
-    """The command in a process group of its own, so that all it started can be killed with it."""
+def start(command: list[str], folder: Path, log: str = "log.txt") -> subprocess.Popen:
+    """A command in a process group of its own, so that all it started can be killed with it."""
     environment = os.environ | {"PYTHONPATH": str(ROOT / "src"), "PYTHONHASHSEED": "0"}
-    with (folder / "log.txt").open("ab") as log:
+    with (folder / log).open("ab") as said:
         return subprocess.Popen(
-            WORKS[work], cwd=folder, env=environment, stdout=log, stderr=log, start_new_session=True
+            command, cwd=folder, env=environment, stdout=said, stderr=said, start_new_session=True
         )
 
 
+def end(process: subprocess.Popen, log: Path) -> None:
+    """It must be a good one."""
+    if process.wait(timeout=1800):
+        sys.exit(f"failed, {log}:\n{log.read_text()[-3000:]}")
+
+
 def finish(work: str, folder: Path) -> float:
-    """Seconds to the end, which must be a good one."""
+    """Seconds to the end."""
     begin = time.monotonic()
-    if start(work, folder).wait(timeout=1800):
-        sys.exit(f"{work}: failed:\n{(folder / 'log.txt').read_text()[-3000:]}")
+    end(start(WORKS[work], folder), folder / "log.txt")
     return time.monotonic() - begin
 
 
@@ -83,7 +88,7 @@ def disturb(work: str, kills: int, scratch: Path) -> tuple[int, int]:
     wanted = {name: one[name] for name in one if other.get(name) == one[name]}
     folder, done, wrong = fresh(work, scratch, "killed0"), 0, 0
     for k in range(kills):
-        process = start(work, folder)
+        process = start(WORKS[work], folder)
         try:
             process.wait(timeout=random.uniform(0.0, 1.1 * seconds[1]))
         except subprocess.TimeoutExpired:

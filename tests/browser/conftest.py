@@ -1,11 +1,10 @@
 """The workbench and a real Chromium that looks at it, once for all tests."""
 
-import shutil
 from pathlib import Path
 
 import pytest
 
-from chromium import DESK, FLAGS, NAMES, PHONE, PICTURES, Tab, started
+from chromium import DESK, FLAGS, PHONE, PICTURES, Tab, installed, started
 from rovsim.apps.cli.main import main
 
 
@@ -13,7 +12,7 @@ from rovsim.apps.cli.main import main
 def chromium():
     """A running Chromium; the test is skipped, with the reason, where there is none."""
     api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    found = next((path for name in NAMES if (path := shutil.which(name))), None)
+    found = installed()
     with api.sync_playwright() as driver:
         if found is None and not Path(driver.chromium.executable_path).exists():
             pytest.skip("no Chromium is installed: `make test-ui` installs one")

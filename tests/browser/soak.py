@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import sync_playwright
 
-from chromium import DESK, FLAGS, NAMES, Tab, started
+from chromium import DESK, FLAGS, Tab, installed, started
 from rovsim.apps.cli.main import main
 
 SCREENS = ("compare", "where", "why", "add", "ladder", "data", "gallery")
@@ -87,10 +87,9 @@ def day(tab: Tab, pid: int, campaign: Path, replays: int) -> None:
 def run(folder: Path, replays: int, count: int) -> None:
     """Print a line a campaign, then what must hold."""
     places = campaigns(folder, count)
-    chromium = next((path for name in NAMES if (path := shutil.which(name))), None)
     server, address = started(folder, f"campaign={places[0]}")
     with sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        browser = driver.chromium.launch(executable_path=installed(), args=list(FLAGS))
         page = browser.new_page(viewport={"width": DESK[0], "height": DESK[1]})
         page.set_default_timeout(60_000)
         tab, held = Tab(page, address), []

@@ -4,7 +4,6 @@ From the start of the process to the first screen; from the key that moves a sli
 the drawing of the replay, for a run of 60 s; from a horizon chosen to its drawing.
 """
 
-import shutil
 import tempfile
 import time
 from pathlib import Path
@@ -12,7 +11,7 @@ from statistics import median
 
 from playwright.sync_api import sync_playwright
 
-from chromium import DESK, FLAGS, NAMES, started
+from chromium import DESK, FLAGS, installed, started
 from rovsim.apps.cli.main import main
 from rovsim.benchmarks.speed.machine import machine
 from rovsim.core.files import write_json
@@ -67,9 +66,8 @@ def run(folder: Path) -> dict:
     """Measure all of it."""
     campaign = folder / "raw"
     main(["tank", "tank=lag", f"out={campaign}", "--quiet"])
-    chromium = next((path for name in NAMES if (path := shutil.which(name))), None)
     with sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        browser = driver.chromium.launch(executable_path=installed(), args=list(FLAGS))
         starts = first_screens(browser, campaign, folder)
         process, address = started(folder, f"campaign={campaign}")
         page = browser.new_page(viewport={"width": DESK[0], "height": DESK[1]})

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from small_study import ROOT, SMALL, copy_of
+
 CONF = Path("/etc/slurm/slurm.conf")
 DAEMONS = ("munged", "slurmctld", "slurmd")
-SMALL = "tank=tiny study.residuals=[knn] study.controls=[6dof] timing.calls=50"
 WRITTEN = """
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -54,7 +54,7 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def slurm(tmp_path_factory):
+def slurm():
     """A cluster of one node; yields the file that lists its finished jobs."""
     lacking = [name for name in DAEMONS if shutil.which(name) is None]
     if lacking or os.geteuid() != 0:
@@ -112,11 +112,8 @@ def jobs(completed: Path, state: str) -> int:
 
 
 def test_the_study_runs_job_by_job_and_a_cancelled_job_is_tried_again(slurm, tmp_path):
-    for name in ("Snakefile", "conf", "workflow", "profiles", "src"):
-        source = ROOT / name
-        shutil.copytree(source, tmp_path / name) if source.is_dir() else shutil.copy(
-            source, tmp_path
-        )
+    copy_of(ROOT, tmp_path)
+    shutil.copytree(ROOT / "profiles", tmp_path / "profiles")
     quick = ("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "3")
     study = call(
         tmp_path, sys.executable, "-m", "snakemake", "--profile", "workflow/profiles/slurm", *quick,

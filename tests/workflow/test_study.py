@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -11,20 +10,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-OVERRIDES = "tank=tiny study.residuals=[knn] study.controls=[6dof] timing.calls=50"
-
-
-def copy_of(repository: Path, folder: Path) -> Path:
-    """A working copy without results, so that a test may edit it."""
-    for name in ("Snakefile", "conf", "workflow", "src", "pyproject.toml"):
-        source = repository / name
-        if source.is_dir():
-            ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
-            shutil.copytree(source, folder / name, ignore=ignored)
-        else:
-            shutil.copy(source, folder / name)
-    return folder
+from small_study import ROOT, SMALL, copy_of
 
 
 def snakemake(folder: Path, *words: str, source: Path = ROOT / "src") -> str:
@@ -44,7 +30,7 @@ def snakemake(folder: Path, *words: str, source: Path = ROOT / "src") -> str:
 
 def to_run(folder: Path) -> set[str]:
     """Rules a dry run would run."""
-    text = snakemake(folder, "-n", "--config", f"overrides={OVERRIDES}", source=folder / "src")
+    text = snakemake(folder, "-n", "--config", f"overrides={SMALL}", source=folder / "src")
     return set(re.findall(r"^(?:local)?rule (\w+):", text, re.MULTILINE))
 
 
@@ -52,7 +38,7 @@ def to_run(folder: Path) -> set[str]:
 def study(tmp_path_factory):
     """A finished study."""
     folder = copy_of(ROOT, tmp_path_factory.mktemp("study"))
-    snakemake(folder, "--config", f"overrides={OVERRIDES}")
+    snakemake(folder, "--config", f"overrides={SMALL}")
     return folder
 
 
@@ -100,7 +86,7 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
 @pytest.mark.slow
 def test_a_fold_that_holds_out_the_test_run_finds_what_the_study_found(study):
     results = study / "results" / "tank-tiny"
-    folds = f"{OVERRIDES} folds.leave_one_run_out=true folds.residuals=[knn] folds.controls=[6dof]"
+    folds = f"{SMALL} folds.leave_one_run_out=true folds.residuals=[knn] folds.controls=[6dof]"
     held_out = results / "folds" / "6dof-2"
     target = str((held_out / "comparison.json").relative_to(study))
     snakemake(study, target, "--config", f"overrides={folds}")
