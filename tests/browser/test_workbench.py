@@ -18,8 +18,8 @@ pytestmark = pytest.mark.browser
 DARK = "document.body.classList.contains('body--dark')"
 READY = {  # what is there once a screen is drawn
     "compare": ".chart canvas", "where": ".chart canvas", "why": ".verdict",
-    "add": "[data-name='run/now'][data-value]", "ladder": ".chart canvas", "data": ".chart canvas",
-    "gallery": "h1",
+    "add": "[data-name='run/now'][data-value]", "ladder": ".chart canvas",
+    "models": ".chart canvas", "data": ".chart canvas", "gallery": "h1",
 }  # fmt: skip
 SCREENS = tuple(READY)
 
@@ -28,6 +28,18 @@ CHANGED = (
     "([name, v]) => Number(document.querySelector(`[data-name='${name}']`).dataset.value) != v"
 )
 NUMBER = "document.querySelector(\"input[aria-label='thruster_lag, time_constant, number']\")"
+# Least distance in px between the lower edge of a chart's legend and its icons.
+APART = """Math.min(1e6, ...[...document.querySelectorAll('.chart')].flatMap(div => {
+  const of = type => getElement(div.id.slice(1)).chart._componentsViews.find(v => v.type == type);
+  const box = view => {
+    const rect = view.group.getBoundingRect().clone();
+    rect.applyTransform(view.group.transform ?? [1, 0, 0, 1, 0, 0]);
+    return rect;
+  };
+  const [legend, icons] = [of("legend.scroll"), of("toolbox")];
+  const middle = icons && box(icons).y + 0.5 * box(icons).height;  // room for labels is around
+  return legend && icons ? [middle - 8 - box(legend).y - box(legend).height] : [];
+}))"""
 LATER = (
     "([name, v]) => Number(document.querySelector(`[role=slider][aria-label='${name}']`)"
     ".getAttribute('aria-valuenow')) > v"
@@ -103,6 +115,32 @@ def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbenc
     assert compared["position_rmse_m"] == run["position_rmse_m"]
     errors = comparison["repaired"]["runs"][shown]["windows"]["2"]["velocity_rmse"]
     assert errors["surge"] < 0.5 * run["velocity_rmse"]["surge"]
+    both_models_stand_beside_each_other(tab, comparison, shown, file)
+
+
+def both_models_stand_beside_each_other(tab, comparison, run, file) -> None:
+    """The numbers of the comparison, after a reload too; a link may name what is gone."""
+    tab.go(f"models?left=nominal&right=repaired&run={run}&axes=surge&horizon=5.0&from=1.0&to=4.0")
+    for again in (False, True):
+        if again:
+            tab.page.reload()
+        tab.page.wait_for_selector(READY["models"])
+        tab.page.wait_for_function("location.search.includes('from=1.0&to=4.0')")
+        numbers = tab.numbers()
+        for name, found in comparison.items():
+            scores = found["runs"][run]
+            for at, metrics in {**scores["windows"], "open_loop": scores["open_loop"]}.items():
+                for axis in AXES:
+                    assert numbers[f"{name}/{at}/{axis}"] == metrics["velocity_rmse"][axis]
+    assert tab.page.get_by_role("rowheader", name="thruster_lag, time_constant").count() == 1
+    tab.picture("models")
+    other = file.with_name("other.yaml")
+    shutil.copy(file, other)
+    tab.page.get_by_label("Another model file").fill(str(other))
+    tab.page.get_by_role("button", name="Open it on the right").click()
+    tab.page.get_by_role("columnheader", name="other").first.wait_for()
+    tab.go("models?left=nominal&right=gone")
+    tab.page.wait_for_selector(READY["models"])
 
 
 def test_a_slider_moves_the_replay_and_keys_alone_suffice(tab):
@@ -241,6 +279,8 @@ def test_every_screen_fits_a_desk_and_a_phone(tab, phone, screen):
             ".map(e => parseFloat(getComputedStyle(e).fontSize)))"
         )
         assert small >= 11
+        apart = one.page.evaluate(APART)
+        assert apart > 0, f"{screen}: icons cover the legend by {-apart} px"
     if screen == "why":
         phone.picture("phone-why")
 

@@ -1,5 +1,6 @@
 """The workbench shows what the commands write; long work reports, ends, can be cancelled."""
 
+import shutil
 import socket
 import time
 from dataclasses import replace
@@ -15,7 +16,7 @@ from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import charts, path, tasks
 from rovsim.apps.workbench.draft import Draft, reach
-from rovsim.apps.workbench.totals import tell_total
+from rovsim.apps.workbench.totals import list_totals, tell_total
 from rovsim.apps.workbench.work import Work
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
@@ -208,6 +209,31 @@ def test_a_saved_draft_is_one_of_the_models_and_may_be_saved_again(bench, tmp_pa
         assert here.models["lagging"] is saved
         assert saved.added[0]["time_constant"] == value
     assert here.base.name == "nominal"
+
+
+def test_models_saved_before_are_known_and_no_two_share_a_name(bench, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    here = Workbench(bench.settings, built_in(), bench.data, dict(bench.models), dict(bench.paths))
+    write_model(Draft(bench.base, diagnosis(), built_in()).model(), here.saved_in / "before.yaml")
+    assert list(here.known_models()) == ["nominal", "before"]
+    found = here.known_model("before")
+    assert found.added[0].id == "thruster_lag"
+    assert here.open_model(here.saved_in / "before.yaml") is found  # its replays are kept
+    assert here.known_model("nominal") is here.base
+    shutil.copy(here.saved_in / "before.yaml", tmp_path / "before.yaml")
+    for taken in (tmp_path / "before.yaml", tmp_path / "zero_acceleration.yaml"):
+        with pytest.raises(BadInput, match="another model is called"):
+            here.open_model(taken)
+
+
+def test_totals_are_the_vehicle_file_and_what_was_added(bench):
+    draft = Draft(bench.base, None, built_in())
+    draft.tick("linear_damping", True)
+    draft.move("linear_damping", "sway", -30.0)
+    before, after = list_totals(bench.base.body), list_totals(draft.model().body)
+    changed = {key: after[key] - before[key] for key in before if after[key] != before[key]}
+    assert changed.pop(("linear_damping", "sway")) == pytest.approx(-30.0)
+    assert changed == {}
 
 
 def test_a_draft_begins_as_the_diagnosis_and_what_is_saved_is_read_back(tmp_path):

@@ -207,7 +207,7 @@ class Add:
 
     def _save(self) -> None:
         section("Save it")
-        name = f"results/{self.bench.data.campaign.name}/models/with_effects.yaml"
+        name = str(self.bench.saved_in / "with_effects.yaml")
         self.path = ui.input("Model file", value=name).classes("control wide")
         self.path.props("outlined dense")
         ui.button("Save, and open the test runs", icon="save", on_click=self._saved).props(

@@ -12,7 +12,7 @@ Options = dict[str, Any]  # of ECharts, plain and deep
 
 POINTS = 1000  # a curve shows at most; a screen is not wider
 INK, SOFT, LINE, MARK = "#1a1a1a", "#555555", "#d9d9d9", "#D55E00"
-TALL, SHORT, GAP, TOP = 104, 56, 36, 40  # px: panels, what lies between, legend
+TALL, SHORT, GAP, TOP, ICONS = 104, 56, 36, 40, 12  # px: panels, what lies between, legend; icons
 WEIGHT = 2.2  # px of a line on screen for one of width 1 on paper
 
 
@@ -62,10 +62,10 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
     """Panels one above the other; zoom and pointer move all of them together."""
     every = list(range(len(panels)))
     found: Options = {
-        "legend": {"type": "scroll", "top": 4, "left": 56, "right": 70, "itemWidth": 34,
+        "legend": {"type": "scroll", "top": 0, "left": 56, "right": 8, "itemWidth": 34,
                    "itemStyle": {"opacity": 0}},
         "toolbox": {
-            "right": 8,
+            "right": 8, "top": ICONS,
             "feature": {
                 "dataZoom": {"yAxisIndex": "none", "title": {"zoom": "zoom", "back": "back"}}
             },

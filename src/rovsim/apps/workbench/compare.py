@@ -6,14 +6,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
-from rovsim.apps.workbench.parts import (
-    Slider,
-    cell,
-    computed,
-    heading,
-    onward,
-    table,
-)
+from rovsim.apps.workbench.parts import cell, computed, heading, onward, table
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.traces import (
@@ -23,6 +16,7 @@ from rovsim.apps.workbench.traces import (
     Traces,
     beside,
     excited,
+    horizon_slider,
     horizon_text,
     panels,
 )
@@ -81,13 +75,7 @@ class Compare:
             self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
             names = {key: name for key, (name, _) in QUANTITIES.items()}
             self._choice("quantity", ui.select(names, label="Quantity"))
-            with ui.column().classes("control horizon"):
-                self.horizon = ui.label()
-                at = HORIZONS.index(self.chosen["horizon"])
-                slider = Slider(min=0, max=len(HORIZONS) - 1, step=1, value=at)
-                slider.props('markers snap aria-label="Horizon"')
-                slider.on("update:model-value", lambda e: self._horizon(e.args), throttle=0.05)
-        self.horizon.text = f"Horizon, {horizon_text(self.chosen['horizon'])}"
+            horizon_slider(self.chosen["horizon"], self._horizon)
 
     def _choice(self, name: str, control: Any) -> None:
         control.value = self.chosen[name]
@@ -101,12 +89,11 @@ class Compare:
 
         control.on_value_change(changed)
 
-    async def _horizon(self, at: int) -> None:
-        self.chosen["horizon"] = HORIZONS[at]
-        self.horizon.text = f"Horizon, {horizon_text(HORIZONS[at])}"
+    async def _horizon(self, horizon: float | None) -> None:
+        self.chosen["horizon"] = horizon
         self._tell()
         shown, predicted = await self._predicted()
-        if self.chosen["horizon"] != HORIZONS[at]:  # moved on meanwhile
+        if self.chosen["horizon"] != horizon:  # moved on meanwhile
             return
         if self.traces:
             self.traces.redraw(shown)

@@ -63,8 +63,16 @@ def words(value: Any) -> str:
     return f"<td>{escape(str(value))}</td>"
 
 
-def table(caption: str, heads: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> None:
-    """A table of rows with a name and cells; it scrolls sideways where it is too wide."""
+def table(
+    caption: str,
+    heads: Sequence[str],
+    rows: Sequence[tuple[str, Sequence[str]]],
+    groups: Sequence[tuple[str, int]] = (),
+) -> None:
+    """A table of rows with a name and cells; it scrolls sideways where it is too wide.
+
+    `groups`: what stands above the columns after the first, and above how many.
+    """
     numeric = [
         "",
         *(c.startswith('<td class="number') and "number" for c in (rows or [("", ())])[0][1]),
@@ -73,12 +81,16 @@ def table(caption: str, heads: Sequence[str], rows: Sequence[tuple[str, Sequence
         f'<th scope="col" class="{kind or ""}">{escape(h)}</th>'
         for h, kind in zip(heads, numeric, strict=False)
     )
+    above = "".join(
+        f'<th scope="colgroup" colspan="{wide}">{escape(name)}</th>' for name, wide in groups
+    )
+    above = f"<tr><td></td>{above}</tr>" if groups else ""
     body = "".join(
         f'<tr><th scope="row">{escape(name)}</th>{"".join(cells)}</tr>' for name, cells in rows
     )
     ui.html(
         f'<div class="scroll" role="region" tabindex="0" aria-label="{escape(caption)}"><table>'
-        f"<caption>{escape(caption)}</caption><thead><tr>{top}</tr></thead>"
+        f"<caption>{escape(caption)}</caption><thead>{above}<tr>{top}</tr></thead>"
         f"<tbody>{body}</tbody></table></div>",
         sanitize=False,
     )

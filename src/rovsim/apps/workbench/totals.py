@@ -22,10 +22,22 @@ def tell_total(body: Body, effect: str, parameter: str, value: float) -> str:
     if effect not in TOTALS or parameter not in AXES:
         return ""
     before = float(TOTALS[effect](body)[AXES.index(parameter)])
-    total = before + value
     sign = "+" if value >= 0.0 else "−"
-    told = f"{significant(before)} {sign} {significant(abs(value))} = {significant(total)}"
+    told = f"{significant(before)} {sign} {significant(abs(value))} = {significant(before + value)}"
+    return told + warn(effect, before + value)
+
+
+def warn(effect: str, total: float) -> str:
+    """What is wrong with a coefficient below zero; empty where nothing is."""
     if total >= 0.0:
-        return told
-    pushes = "water would push, not brake" if effect != "added_mass" else "no water weighs less"
-    return f"{told}: {pushes}"
+        return ""
+    return ": no water weighs less" if effect == "added_mass" else ": water would push, not brake"
+
+
+def list_totals(body: Body) -> dict[tuple[str, str], float]:
+    """What each coefficient of a body comes to, by effect and axis."""
+    return {
+        (effect, axis): float(value)
+        for effect, read in TOTALS.items()
+        for axis, value in zip(AXES, read(body), strict=True)
+    }

@@ -9,10 +9,11 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel, cursor, height, series_data, styles, time_series
-from rovsim.apps.workbench.parts import chart
+from rovsim.apps.workbench.parts import Slider, chart
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.simulation.prediction import Prediction
 
@@ -24,6 +25,20 @@ HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 def horizon_text(horizon: float | None) -> str:
     """A horizon in words."""
     return "open loop: never corrected" if horizon is None else f"corrected every {horizon:g} s"
+
+
+def horizon_slider(horizon: float | None, changed: Callable[[float | None], Any]) -> None:
+    """A slider over the horizons, what it stands at above it; `changed` is given each."""
+
+    def moved(event: Any) -> Any:
+        label.text = f"Horizon, {horizon_text(HORIZONS[event.args])}"
+        return changed(HORIZONS[event.args])
+
+    with ui.column().classes("control horizon"):
+        label = ui.label(f"Horizon, {horizon_text(horizon)}")
+        slider = Slider(min=0, max=len(HORIZONS) - 1, step=1, value=HORIZONS.index(horizon))
+        slider.props('markers snap aria-label="Horizon"')
+        slider.on("update:model-value", moved, throttle=0.05)
 
 
 def excited(bench: Workbench, run: str) -> list[str]:
@@ -76,11 +91,11 @@ class Traces:
 
     def __init__(
         self, time: Array, shown: Sequence[Panel], about: str, span: Span = (None, None),
-        zoomed: Callable[[Span], None] = lambda span: None,
+        zoomed: Callable[[Span], None] = lambda span: None, look: Mapping[str, Look] | None = None,
     ) -> None:  # fmt: skip
         self.time, self.shown, self.told = time, list(shown), zoomed
         names = list(dict.fromkeys(n for panel in shown for n in panel.curves))
-        self.chart = chart(time_series(time, shown, styles(names)), about, height(shown))
+        self.chart = chart(time_series(time, shown, look or styles(names)), about, height(shown))
         first, last = float(time[0]), float(time[-1])
         with ui.row().classes("control wide"):
             ui.label("Part of the run shown")

@@ -121,6 +121,45 @@ class Workbench:
         """Take in a model that was saved or trained."""
         self.models[model.name], self.paths[model.name] = model, str(path)
 
+    @property
+    def saved_in(self) -> Path:
+        """Where models are saved unless another place is named."""
+        return Path("results") / self.data.campaign.name / "models"
+
+    def known_models(self) -> dict[str, Path]:
+        """Files by the name of their model: those open, and those that were saved here before."""
+        files = {path.stem: path for path in sorted(self.saved_in.glob("*.yaml"))}
+        known = {name: Path(path) for name, path in self.paths.items()}
+        return known | {name: path for name, path in files.items() if name not in known}
+
+    def known_model(self, name: str) -> Model:
+        """One of `known_models`, its file read now if it is not open.
+
+        Raises:
+            BadInput: the file holds no model.
+        """
+        return self.models.get(name) or self.open_model(self.known_models()[name])
+
+    def open_model(self, path: Path) -> Model:
+        """Take in the model of a file; one that is open is left as it is.
+
+        Raises:
+            BadInput: the file holds no model, or another one is called as this one is.
+        """
+        there = self.paths.get(path.stem)
+        if there is not None and Path(there).resolve() == path.resolve():
+            return self.models[path.stem]
+        if there is not None or path.stem in BUILT_IN:
+            raise BadInput(
+                f"another model is called '{path.stem}'",
+                where=path,
+                expected="a name that no open model has (it is that of the file)",
+                remedy="Rename the file.",
+            )
+        model = read_model(path, self.catalogue)
+        self.add(model, path)
+        return model
+
     def save(self, path: Path) -> Model:
         """Write the draft as a model file, and take it in as it is read back.
 

@@ -1,0 +1,259 @@
+"""Models: two of them side by side: their errors, their replays, and what is in them."""
+
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from nicegui import ui
+
+from rovsim import AXES
+from rovsim.apps.workbench.parts import (
+    cell,
+    computed,
+    heading,
+    onward,
+    section,
+    table,
+    text,
+    words,
+)
+from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.totals import list_totals, warn
+from rovsim.apps.workbench.traces import (
+    HORIZONS,
+    Span,
+    Traces,
+    excited,
+    horizon_slider,
+    panels,
+)
+from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.errors import RovsimError
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model import Model, nominal
+from rovsim.dynamics.model_file import describe_effect
+from rovsim.reporting.catalogue.entries import unit
+from rovsim.reporting.figures.palette import FAMILIES
+from rovsim.reporting.html.verdict import interval
+from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.reporting.wording import significant
+from rovsim.results.comparison import OPEN_LOOP, Metrics
+from rovsim.results.diagnosis import FittedValue
+
+TITLE, QUESTION = "Models", "Which of two models is better, and what sets them apart?"
+SIDES = ("left", "right")
+ABSENT = "–"
+LOOKS = (FAMILIES["nominal"], FAMILIES["knn"])  # left and right, whatever they are
+ERRORS = {f"{axis} ({u})": axis for axis, u in zip(AXES, VELOCITY_UNITS, strict=True)}
+POSE = {"position (m)": "position_rmse_m", "attitude (rad)": "attitude_rmse_rad"}
+Errors = dict[str, dict[float | None, Metrics]]  # by model and horizon
+
+
+class Models:
+    """The screen, with what was chosen on it."""
+
+    def __init__(self, bench: Workbench, place: Place) -> None:
+        self.bench, self.place = bench, place
+        motions = bench.data.motions
+        run = next((r for r, m in motions.items() if m.run.split == "train"), next(iter(motions)))
+        known = list(bench.known_models())
+        added = [*list(bench.models)[1:], *known[1:], *known]  # those open before those on disk
+        first = {
+            "left": bench.base.name, "right": added[0], "run": run,
+            "axes": excited(bench, run), "horizon": 2.0,
+        }  # fmt: skip
+        possible: Mapping[str, Sequence[Any]] = {
+            "left": known, "right": known, "run": list(motions), "axes": AXES,
+            "horizon": HORIZONS,
+        }  # fmt: skip
+        self.chosen = place.choose(first, possible)
+        self.span: Span = (place.number("from"), place.number("to"))
+        self.models: dict[str, Model] = {}  # those shown, by name
+        self.traces: Traces | None = None
+
+    async def show(self) -> None:
+        """Build the screen."""
+        heading(TITLE, QUESTION)
+        known = list(self.bench.known_models())
+        runs = {r: f"{r} ({m.run.split})" for r, m in self.bench.data.motions.items()}
+        with ui.row().classes("controls"):
+            self.sides = [
+                self._choice(side, ui.select(known, label=side.capitalize())) for side in SIDES
+            ]
+            self._choice("run", ui.select(runs, label="Run"))
+            self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
+            horizon_slider(self.chosen["horizon"], self._horizon)
+        with ui.row().classes("controls"):
+            self.file = ui.input("Another model file").classes("control wide")
+            self.file.props("outlined dense").on("keydown.enter", self._open)
+            ui.button("Open it on the right", on_click=self._open).props("outline no-caps")
+        self.area = ui.column().classes("area")
+        await self.draw()
+
+    def _choice(self, name: str, control: Any) -> Any:
+        control.value = self.chosen[name]
+        control.classes("control").props("outlined dense options-dense")
+
+        async def changed() -> None:
+            if control.value:
+                self.chosen[name] = control.value
+                self.span = (None, None) if name == "run" else self.span
+                await self.draw()
+
+        control.on_value_change(changed)
+        return control
+
+    async def _open(self) -> None:
+        try:
+            model = await computed(self.bench.open_model, Path(self.file.value.strip()))
+        except RovsimError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+            return
+        for side in self.sides:
+            side.set_options(list(self.bench.known_models()))
+        self.sides[1].value = model.name
+
+    async def _horizon(self, horizon: float | None) -> None:
+        self.chosen["horizon"] = horizon
+        self._tell()
+        shown = await self._panels()
+        if self.chosen["horizon"] == horizon and self.traces:  # not moved on meanwhile
+            self.traces.redraw(shown)
+
+    def _zoomed(self, span: Span) -> None:
+        self.span = span
+        self._tell()
+
+    def _tell(self) -> None:
+        """Let the address say what is shown."""
+        self.place.tell({**self.chosen, "from": self.span[0], "to": self.span[1]})
+
+    async def draw(self) -> None:
+        """Everything below the controls."""
+        self._tell()
+        self.area.clear()
+        self.traces = None
+        try:
+            names = dict.fromkeys(self.chosen[side] for side in SIDES)
+            self.models = {n: await computed(self.bench.known_model, n) for n in names}
+            shown = await self._panels()
+            errors = await computed(self._errors)
+        except RovsimError as error:  # of a file, or of a run that lacks what an effect needs
+            with self.area:
+                text(str(error), "warning")
+            return
+        with self.area:
+            if len(self.models) == 1:
+                text("One model, beside nothing. Save another on Add, or open its file here.")
+            _tell_errors(self.chosen["run"], errors)
+            section("Replays")
+            about = f"Measured and simulated, run {self.chosen['run']}"
+            time = self.bench.data.motions[self.chosen["run"]].time
+            look = {"measured": FAMILIES["measured"], **dict(zip(self.models, LOOKS, strict=False))}
+            self.traces = Traces(time, shown, about, self.span, self._zoomed, look)
+            section("What is in them")
+            _tell_parameters(self.models)
+            _tell_totals(self.models, self.bench.catalogue)
+            onward("See the test runs of all models", "/ladder")
+
+    async def _panels(self) -> Any:
+        motion = self.bench.data.motions[self.chosen["run"]]
+        predicted = {
+            name: await computed(
+                self.bench.prediction, model, self.chosen["run"], self.chosen["horizon"]
+            )
+            for name, model in self.models.items()
+        }
+        axes = [axis for axis in AXES if axis in self.chosen["axes"]]
+        return panels(motion, predicted, axes)
+
+    def _errors(self) -> Errors:
+        """Of each model at each horizon that comparison.json has."""
+        horizons = (*self.bench.settings.replay.horizons, None)
+        return {
+            name: {h: self.bench.metrics(model, self.chosen["run"], h) for h in horizons}
+            for name, model in self.models.items()
+        }
+
+
+def _tell_errors(run: str, errors: Errors) -> None:
+    """Errors by axis and horizon, and by how much the right one's are smaller or larger."""
+    section("Errors")
+    horizons = list(next(iter(errors.values())))
+    heads = [*errors, *(["change"] if len(errors) == 2 else [])]
+    rows = []
+    for name in (*ERRORS, *POSE):
+        cells: list[str] = []
+        for horizon in horizons:
+            values = {model: _read(found[horizon], name) for model, found in errors.items()}
+            at = OPEN_LOOP if horizon is None else f"{horizon:g}"
+            cells += [cell(v, f"{model}/{at}/{name.split()[0]}") for model, v in values.items()]
+            if len(values) == 2:
+                cells.append(f'<td class="number">{_change(*values.values())}</td>')
+        rows.append((name, cells))
+    groups = [("open loop" if h is None else f"{h:g} s", len(heads)) for h in horizons]
+    table(
+        f"Root mean square error on run {run}, corrected every so many seconds and never",
+        ["axis", *heads * len(horizons)], rows, groups,
+    )  # fmt: skip
+
+
+def _read(metrics: Metrics, name: str) -> float | None:
+    """The error that a row of the table shows."""
+    return metrics.velocity_rmse[ERRORS[name]] if name in ERRORS else getattr(metrics, POSE[name])
+
+
+def _change(before: float | None, after: float | None) -> str:
+    if not before or after is None:
+        return ABSENT
+    return f"{100.0 * (after / before - 1.0):+.0f} %".replace("-", "−")
+
+
+def _tell_parameters(models: Mapping[str, Model]) -> None:
+    """Every value that an effect of one of the models has."""
+    columns = {name: _values(model) for name, model in models.items()}
+    known = dict.fromkeys(key for values in columns.values() for key in values)
+    if not known:
+        text("Neither has more than the vehicle file: no effect was added.")
+        return
+    rows = [
+        (f"{effect}, {parameter}" if parameter else effect,
+         [words(values.get((effect, parameter), ABSENT)) for values in columns.values()])
+        for effect, parameter in known
+    ]  # fmt: skip
+    table("Effects that were added, with 95 % intervals", ["value", *columns], rows)
+
+
+def _values(model: Model) -> dict[tuple[str, str], str]:
+    """What a model has beside its vehicle file, in words, by effect and parameter."""
+    found: dict[tuple[str, str], str] = {}
+    for effect in model.added:
+        units = {p.name: p.unit for p in effect.parameters}
+        for name, known in describe_effect(effect).parameters.items():
+            value = FittedValue(value=known.value, std=known.std, unit=units[name])
+            found[effect.id, name] = interval(value)
+    if (learned := model.residual) is not None:
+        found["learned residual", ""] = f"{learned.kind}, {learned.points} points"
+    return found
+
+
+def _tell_totals(models: Mapping[str, Model], catalogue: Catalogue) -> None:
+    """What coefficients come to, where one of the models has another than the vehicle file."""
+    first = nominal(next(iter(models.values())).vehicle)
+    bodies = {"vehicle file": first.body} | {name: model.body for name, model in models.items()}
+    columns = {name: list_totals(body) for name, body in bodies.items()}
+    rows = []
+    for key, before in columns["vehicle file"].items():
+        values = [column[key] for column in columns.values()]
+        if any(value != before for value in values):
+            effect, axis = key
+            (si,) = (p.unit for p in catalogue[effect].parameters if p.name == axis)
+            told = [significant(value) + warn(effect, value) for value in values]
+            rows.append((f"{effect}, {axis} ({unit(si)})", [words(one) for one in told]))
+    if rows:
+        section("What the coefficients come to")
+        table("The vehicle file and what was added, together", ["coefficient", *columns], rows)
+
+
+async def show(bench: Workbench, place: Place) -> None:
+    """Show the screen."""
+    await Models(bench, place).show()
