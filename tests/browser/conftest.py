@@ -2,10 +2,20 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from chromium import DESK, FLAGS, PHONE, PICTURES, Tab, installed, started
+from rovsim.application.pipeline.design import Designed, write_flight
+from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
+from rovsim.apps.workbench.workbench import Workbench
+from rovsim.design.settings import Question
+from rovsim.dynamics.catalogue import built_in
+from rovsim.reporting.figures.planned_flight import PlannedFlight
+from rovsim.results.experiment import Experiment, Keeps, RivalOdds, Start, Surer, UsualManoeuvre
+
+RIVALS = ("thruster_lag", "input_delay")
 
 
 @pytest.fixture(scope="session")
@@ -37,6 +47,42 @@ def workbench(campaign, tmp_path_factory):
     yield address, folder
     process.terminate()
     process.wait(20)
+
+
+@pytest.fixture(scope="session")
+def planned(workbench, campaign):
+    """Address of a flight that was planned before, as `rovsim design` writes one, and its folder.
+
+    The search itself takes a minute; tests/workflow/test_tutorial_next_flight.py runs it.
+    """
+    settings = compose([f"campaign='{campaign}'", "seconds=20"])
+    bench = Workbench.opened(settings, built_in())
+    asked = {"between": RIVALS, "seconds": 20.0}
+    how = settings.model_dump(include={"design", "signals", "replay", "seed"})
+    folder = workbench[1] / bench.flight_folder("nominal", Question(**how, **asked))
+    write_flight(folder, flight())
+    one, other = RIVALS
+    return f"flight?asked=between&one={one}&other={other}&seconds=20&model=nominal", folder
+
+
+def flight() -> Designed:
+    """A flight of few numbers."""
+    odds = RivalOdds(now=2.0, then=1e9, log_odds_now=0.69, log_odds_then=20.7)
+    std = Surer(now=0.02, then=0.005, unit="s", gained=15.0)
+    expected = {"odds": {RIVALS[0]: odds}, "std": {f"{RIVALS[0]}.time_constant": std}}
+    usual = UsualManoeuvre(**expected, amplitude=(0.5, 0.2), designed_is_better=4.0)
+    known = Experiment(
+        seconds=20.0, model="nominal", between=RIVALS, start=Start(x_m=5, y_m=2, z_m=1, yaw_rad=0),
+        manoeuvre="designed", expects=expected, baselines={"zigzag": usual},
+        keeps=Keeps(nearest_wall_m=0.8, speed_m_s=0.5, turn_rate_rad_s=0.4, tilt_rad=0.1),
+        instructions=("Put the vehicle where it starts.", "Send experiment.csv."),
+    )  # fmt: skip
+    time = np.linspace(0.0, 20.0, 101)
+    path = np.stack([5.0 + np.sin(time), -2.0 + 0.0 * time, -1.0 + 0.0 * time], axis=1)
+    tank = np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]])
+    values = 1500.0 + 100.0 * np.sin(time)[:, None]
+    picture = PlannedFlight(np.stack([path, path + 0.1]), tank, time, values, ("t1",), "µs")
+    return Designed(known, "time_s,t1\n0.00,1500\n", picture)
 
 
 @pytest.fixture

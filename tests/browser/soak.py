@@ -18,7 +18,7 @@ from playwright.sync_api import sync_playwright
 from chromium import DESK, FLAGS, Tab, installed, started
 from rovsim.apps.cli.main import main
 
-SCREENS = ("compare", "where", "why", "add", "ladder", "models", "data", "gallery")
+SCREENS = ("compare", "where", "why", "add", "ladder", "models", "flight", "data", "gallery")
 FLAT = 1.0  # MB a campaign: what memory may grow by, in the second half
 DRAWN = "() => document.querySelector(\"[data-name='run/now']\")?.dataset.value"
 

@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rovsim.application.pipeline.design import design
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
+from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json
 from rovsim.core.run import Commands
 from rovsim.core.yaml_files import read_yaml
@@ -36,6 +38,15 @@ FEWER = {"FREQUENCIES": (0.12, 0.5), "SQUARES": (0.0,), "AMPLITUDES": (0.6,),
          "IN_PLANE": (0.1, 0.3), "OUT_OF_PLANE": (0.05, 0.2)}  # fmt: skip
 
 
+PLANNED = []  # questions of the command, and what it found
+
+
+def keep(data, model, question, catalogue):
+    """Plan, and keep the plan for a test that need not plan again."""
+    PLANNED.append((question, design(data, model, question, catalogue)))
+    return PLANNED[-1][1]
+
+
 def commands() -> list[str]:
     """Lines of the shell blocks."""
     blocks = re.findall(r"```sh\n(.*?)```", TUTORIAL.read_text(encoding="utf-8"), re.DOTALL)
@@ -53,6 +64,7 @@ def designed(tmp_path_factory):
         patch.chdir(out)
         for name, few in FEWER.items():
             patch.setattr(f"rovsim.design.search.{name}", few)
+        patch.setattr("rovsim.apps.cli.commands.design.design", keep)
         patch.setattr("rovsim.apps.cli.commands.diagnose.FIGURES", ("ladder",))
         patch.setattr("rovsim.apps.cli.commands.diagnose.installed", lambda name: False)
         for line in commands():
@@ -79,6 +91,21 @@ def test_two_rivals_become_one_name(designed):
     assert value["value"] == pytest.approx(true, abs=4 * value["std"])
     promised = asked["expects"]["std"][KNOWN]
     assert value["std"] == pytest.approx(promised["then"], rel=0.5)
+
+
+def test_the_workbench_writes_what_the_command_writes(designed, tmp_path, monkeypatch):
+    """Its job with the plan that the command made, for the same question."""
+    [(question, found)] = PLANNED
+
+    def planned(data, model, asked, catalogue):
+        assert (data.campaign.name, model.name, asked) == ("rivals", "nominal", question)
+        return found
+
+    monkeypatch.setattr("rovsim.application.pipeline.design.design", planned)
+    settings = compose([f"campaign='{designed / 'before'}'", *SHORTER])
+    assert tasks.design_into(settings, question, tmp_path / "out") == tmp_path / "out"
+    for path in (designed / "plan").glob("*.[cjt]*"):
+        assert (tmp_path / "out" / path.name).read_bytes() == path.read_bytes()
 
 
 def observed(folder):

@@ -101,6 +101,8 @@ class WorkbenchSettings(TrainingSettings, CampaignSettings):
 
     search: SearchSettings
     diagnosis: PathText | None
+    seconds: float = 60.0
+    design: DesignSettings = DesignSettings()
     port: int = Field(ge=1, le=65535)
     open: bool
 
@@ -114,8 +116,6 @@ class Settings(WorkbenchSettings):
     to: PathText = "nominal"
     between: list[str] | None = None
     know: list[str] | None = None
-    seconds: float = 60.0
-    design: DesignSettings = DesignSettings()
     fly: PathText | None = None
     files: list[PathText] = Field(default_factory=list)
     force: bool = False

@@ -1,10 +1,13 @@
 """The next flight: planned, and as it is reported."""
 
+import textwrap
 from dataclasses import dataclass
+from pathlib import Path
 
 from rovsim.application.pipeline.models import require_physics
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.core.errors import BadInput
+from rovsim.core.files import write_text
 from rovsim.core.progress import staged
 from rovsim.core.run import Commands
 from rovsim.design.plan import STAGES, Plan, plan
@@ -15,9 +18,11 @@ from rovsim.dynamics.model import Model
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_logged
 from rovsim.measurement.recording.commands_csv import format_commands
-from rovsim.reporting.figures.planned_flight import PlannedFlight
+from rovsim.reporting.figures.planned_flight import PlannedFlight, draw_flight
+from rovsim.reporting.figures.style import save
 from rovsim.results.experiment import Experiment
 
+WIDTH = 96  # letters of a line of instructions
 UNITS = {"pwm": "µs", "normalized": "1", "demand": "1", "wrench": "N, N m"}
 
 
@@ -54,6 +59,15 @@ def design(data: Measured, model: Model, question: Question, catalogue: Catalogu
     experiment = report(found, model.name, question, site)
     commands = found.flight.commands
     return Designed(experiment, format_commands(commands, log), _picture(found, commands, log))
+
+
+def write_flight(out: Path, found: Designed) -> None:
+    """Write the log, the picture, the instructions, and last what to expect."""
+    write_text(out / found.experiment.commands, found.log)
+    save(draw_flight(found.picture), out, "experiment")
+    steps = (textwrap.fill(one, WIDTH) for one in found.experiment.instructions)
+    write_text(out / "instructions.txt", "\n\n".join(steps) + "\n")
+    found.experiment.write(out / "experiment.json")
 
 
 def _refuse(question: Question) -> None:

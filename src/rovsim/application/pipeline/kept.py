@@ -1,15 +1,19 @@
-"""Diagnoses that are kept: found again where nothing changed that they depend on."""
+"""Diagnoses and flights that are kept: found again where nothing changed that they depend on."""
 
 import hashlib
 import json
 from pathlib import Path
 
 from rovsim.application.provenance import digest
+from rovsim.core.schema import Section
+from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model
 from rovsim.measurement.campaign import Campaign
+
+CODE, PLAN = "rovsim.diagnosis.of_campaign", "rovsim.design.plan"  # with all that they import
 
 
 def kept_folder(out: str | None, campaign: Campaign) -> Path:
@@ -21,11 +25,24 @@ def kept_diagnosis(
     folder: Path, campaign: Campaign, settings: DiagnosisSettings, base: Model, catalogue: Catalogue
 ) -> Path:
     """Of these recordings, settings, base and code: an outdated one is never found."""
+    key = _digest(campaign, settings, base, digest(CODE, effects=catalogue.files))
+    return folder / key / "diagnosis.json"
+
+
+def kept_flight(
+    folder: Path, campaign: Campaign, question: Question, model: Model, catalogue: Catalogue
+) -> Path:
+    """Folder of a planned flight, of these recordings, this question, model and code."""
+    key = _digest(campaign, question, model, digest(PLAN, effects=catalogue.files))
+    return folder / "flights" / key
+
+
+def _digest(campaign: Campaign, settings: Section, model: Model, code: str) -> str:
     content = hashlib.sha256()
     files = {campaign.file} | {path for run in campaign.runs for path in campaign.raw_files(run)}
     for path in sorted(p for p in files if p.is_file()):
         content.update(path.read_bytes())
     content.update(settings.model_dump_json().encode())
-    content.update(json.dumps(describe_model(base), sort_keys=True).encode())
-    content.update(digest("rovsim.diagnosis.of_campaign", effects=catalogue.files).encode())
-    return folder / content.hexdigest()[:12] / "diagnosis.json"
+    content.update(json.dumps(describe_model(model), sort_keys=True).encode())
+    content.update(code.encode())
+    return content.hexdigest()[:12]

@@ -8,7 +8,7 @@ anyway, and ECharts, Vue and fonts in its own package, so that nothing is fetche
     state         what all pages share: the open campaign, long work
     workbench     the open campaign, and what was computed of it; knows nothing of a browser
     draft         a model being put together from effects
-    work, tasks   long work in a process of its own
+    work          long work in a process of its own; jobs begins it, tasks does it
     charts, parts ECharts options and HTML that several screens share
     compare …     one screen a file: TITLE, QUESTION, show(bench)
 """

@@ -1,5 +1,6 @@
 """Add: tick effects, move their values, see the replay move; save the model as a file."""
 
+import shlex
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from rovsim.apps.workbench.parts import (
     Slider,
     computed,
     heading,
+    in_a_terminal,
     onward,
     section,
     text,
@@ -238,9 +240,8 @@ class Add:
                 if floor is not None:
                     tile("Noise floor", floor, "saved/noise_floor", "of a perfect model, about")
             text(_sentence(before, after))
-            ui.label("The same in a terminal").classes("soft")
-            campaign = self.bench.settings.campaign
-            ui.code(f"rovsim compare campaign={campaign} model=[nominal,{path}]", language="bash")
+            words = (f"campaign={self.bench.settings.campaign}", f"model=[nominal,{path}]")
+            in_a_terminal(f"rovsim compare {shlex.join(words)} out=COMPARED")
             onward("See the whole ladder", "/ladder")
 
 

@@ -18,7 +18,7 @@ from rovsim.apps.workbench.state import State
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
-SCREENS = ("compare", "where", "why", "add", "ladder", "models", "data")
+SCREENS = ("compare", "where", "why", "add", "ladder", "models", "flight", "data")
 STYLE, SAVE = (Path(__file__).with_name(name) for name in ("style.css", "save.js"))
 ICON = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><path fill="none" '

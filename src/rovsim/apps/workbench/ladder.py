@@ -3,6 +3,7 @@
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.charts import INK, SOFT, Options
 from rovsim.apps.workbench.parts import cell, chart, computed, heading, section, table, text
 from rovsim.apps.workbench.place import Place
@@ -53,9 +54,11 @@ def _train(bench: Workbench) -> None:
         on = ui.select(physical, label="On top of", value=physical[-1]).classes("control")
         on.props("outlined dense")
         for kind, name in KINDS.items():
-            ui.button(f"Train {name}", on_click=lambda _, k=kind: bench.train(k, on.value)).props(
-                "outline no-caps"
-            ).bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
+            ui.button(
+                f"Train {name}", on_click=lambda _, k=kind: jobs.train(bench, k, on.value)
+            ).props("outline no-caps").bind_enabled_from(
+                bench, "busy", backward=lambda busy: not busy
+            )
 
 
 def _report(bench: Workbench) -> None:
@@ -65,9 +68,9 @@ def _report(bench: Workbench) -> None:
         "soft",
     )
     with ui.row().classes("controls"):
-        ui.button("Write the report", icon="description", on_click=bench.report).props(
-            "outline no-caps"
-        ).bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
+        ui.button(
+            "Write the report", icon="description", on_click=lambda: jobs.report(bench)
+        ).props("outline no-caps").bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
         if "report" in bench.choices:
             path = bench.choices["report"]
             ui.button("Open it", on_click=lambda: ui.navigate.to("/report", new_tab=True)).props(

@@ -56,9 +56,9 @@ class Models:
         motions = bench.data.motions
         run = next((r for r, m in motions.items() if m.run.split == "train"), next(iter(motions)))
         known = list(bench.known_models())
-        added = [*list(bench.models)[1:], *known[1:], *known]  # those open before those on disk
+        added = list(bench.models)[1:]
         first = {
-            "left": bench.base.name, "right": added[0], "run": run,
+            "left": bench.base.name, "right": (added or known)[-1], "run": run,
             "axes": excited(bench, run), "horizon": 2.0,
         }  # fmt: skip
         possible: Mapping[str, Sequence[Any]] = {

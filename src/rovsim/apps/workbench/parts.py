@@ -1,8 +1,10 @@
 """Pieces that several screens share."""
 
 import asyncio
+from base64 import b64encode
 from concurrent.futures import ThreadPoolExecutor
 from html import escape
+from pathlib import Path
 from typing import Any, Callable, Sequence
 
 from nicegui import ui
@@ -124,6 +126,14 @@ def chart(
     return found.classes("chart").style(f"height:{height}px" if height else "")
 
 
+def png(path: Path, about: str) -> None:
+    """A picture that lies in a file."""
+    content = b64encode(path.read_bytes()).decode()
+    ui.html(
+        f'<img src="data:image/png;base64,{content}" alt="{escape(about)}">', sanitize=False
+    ).classes("picture")
+
+
 def bar(share: float, name: str = "") -> str:
     """A share of one as a bar in a table, its number beside it."""
     width = 100.0 * max(0.0, min(1.0, share))
@@ -138,6 +148,13 @@ def onward(label: str, path: str) -> None:
     ui.button(label, icon="arrow_forward", on_click=lambda: ui.navigate.to(path)).props(
         "unelevated no-caps"
     ).classes("onward")
+
+
+def in_a_terminal(line: str) -> None:
+    """The command that does the same."""
+    ui.label("The same in a terminal").classes("soft")
+    shown = ui.code(line, language="bash")
+    shown.copy_button.props('aria-label="Copy the command" title="Copy"')
 
 
 def formula(latex: str) -> None:

@@ -15,6 +15,7 @@ from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, WorkbenchSettings, select
 from rovsim.core.files import write_text
 from rovsim.core.progress import reported
+from rovsim.design.settings import Question
 from rovsim.diagnosis.equations.proposal import FILE
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in, load_catalogue
@@ -57,6 +58,17 @@ def train_into(settings: WorkbenchSettings, path: Path) -> Path:
     motions, how = list(data.motions.values()), select(settings, TrainingSettings)
     train(motions, base, how, catalogue, path, provenance(how, catalogue))
     return path
+
+
+def design_into(settings: WorkbenchSettings, question: Question, out: Path) -> Path:
+    """Plan the flight that answers a question; writes it as `rovsim design` does; returns `out`."""
+    from rovsim.application.pipeline.design import design, write_flight  # a second, for a few
+
+    catalogue = load_catalogue(settings.effect_files)
+    data = measure(open_campaign(settings.campaign), settings.signals)
+    model = load_one_model(settings.model, data.vehicle, catalogue)
+    write_flight(out, design(data, model, question, catalogue))
+    return out
 
 
 def report_into(

@@ -1,11 +1,11 @@
 """Why: which effects are missing, how sure that is, and what to record next."""
 
-from base64 import b64encode
 from html import escape
 from pathlib import Path
 
 from nicegui import ui
 
+from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.gallery import picture
 from rovsim.apps.workbench.parts import (
     bar,
@@ -14,6 +14,7 @@ from rovsim.apps.workbench.parts import (
     formula,
     heading,
     onward,
+    png,
     section,
     table,
     text,
@@ -51,11 +52,14 @@ async def show(bench: Workbench, place: Place) -> None:
     if said.next:
         section("What to record next")
         text(said.next, "next")
+        onward("Plan the flight", "/flight")
     section("What else to know")
     for remark in said.remarks:
         text(remark)
     _ranking(found)
-    ui.button("Diagnose again", on_click=bench.diagnose).props("flat no-caps").classes("onward")
+    ui.button("Diagnose again", on_click=lambda: jobs.diagnose(bench)).props(
+        "flat no-caps"
+    ).classes("onward")
 
 
 def _ask(bench: Workbench) -> None:
@@ -64,7 +68,7 @@ def _ask(bench: Workbench) -> None:
         "to prove itself on stretches it was not fitted to. The test runs stay closed until the "
         "end. This takes from ten seconds to some minutes."
     )
-    button = ui.button("Find what is missing", icon="search", on_click=bench.diagnose)
+    button = ui.button("Find what is missing", icon="search", on_click=lambda: jobs.diagnose(bench))
     button.props("unelevated no-caps").classes("onward").bind_enabled_from(
         bench, "busy", backward=lambda busy: not busy
     )
@@ -119,11 +123,7 @@ async def _left(bench: Workbench, found: Diagnosis) -> None:
         section("A disturbance, and no law")
         path = bench.out / "pictures" / "disturbance.png"
         await computed(_draw_disturbance, found, path)
-        png = b64encode(path.read_bytes()).decode()
-        about = "What pushes and follows no law, on the path and in time"
-        ui.html(f'<img src="data:image/png;base64,{png}" alt="{about}">', sanitize=False).classes(
-            "picture"
-        )
+        png(path, "What pushes and follows no law, on the path and in time")
 
 
 def _take(bench: Workbench) -> None:

@@ -5,15 +5,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Sequence
 
-from rovsim.application.pipeline.kept import kept_diagnosis, kept_folder
+from rovsim.application.pipeline.kept import kept_diagnosis, kept_flight, kept_folder
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
 from rovsim.application.provenance import describe_origin
-from rovsim.application.settings import WorkbenchSettings, compose, select
+from rovsim.application.settings import WorkbenchSettings, select
 from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
+from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
@@ -83,6 +84,15 @@ class Workbench:
         how = select(self.settings, DiagnosisSettings)
         return kept_diagnosis(self.out, self.data.campaign, how, self.base, self.catalogue)
 
+    def flight_folder(self, name: str, question: Question) -> Path:
+        """Where the flight lies that answers a question about a model.
+
+        Raises:
+            BadInput: its file holds no model.
+        """
+        model = self.known_model(name)
+        return kept_flight(self.out, self.data.campaign, question, model, self.catalogue)
+
     @cached_property
     def baseline(self) -> Model:
         """The model to beat: a vehicle that keeps its velocity."""
@@ -127,10 +137,10 @@ class Workbench:
         return Path("results") / self.data.campaign.name / "models"
 
     def known_models(self) -> dict[str, Path]:
-        """Files by the name of their model: those open, and those that were saved here before."""
-        files = {path.stem: path for path in sorted(self.saved_in.glob("*.yaml"))}
-        known = {name: Path(path) for name, path in self.paths.items()}
-        return known | {name: path for name, path in files.items() if name not in known}
+        """Files by the name of their model, the base first: those open, and those saved before."""
+        known = {path.stem: path for path in self.saved_in.glob("*.yaml")}
+        known |= {name: Path(path) for name, path in self.paths.items()}
+        return {name: known[name] for name in (self.base.name, *sorted(known))}
 
     def known_model(self, name: str) -> Model:
         """One of `known_models`, its file read now if it is not open.
@@ -187,38 +197,6 @@ class Workbench:
     def busy(self) -> bool:
         """Whether long work is going on."""
         return self.work is not None and self.work.state == "running"
-
-    def diagnose(self) -> None:
-        """Begin to look for what the base lacks."""
-        settings, path = self.only(self.base.name), self.diagnosis_path
-        self.work = Work.start(
-            "Finding what is missing", self.found, tasks.diagnose_into, settings, path
-        )
-
-    def train(self, kind: str, name: str) -> None:
-        """Begin to train a residual on top of one of the models."""
-        trained = f"{kind}_{self.settings.control}"
-        trained = trained if name == self.base.name else f"{name}+{trained}"
-        chosen = compose([f"residual={kind}"]).residual
-        settings = self.only(name).model_copy(update={"residual": chosen})
-
-        def take(path: Path) -> None:
-            self.add(read_model(path, self.catalogue), path)
-
-        path = self.out / "trained" / trained / f"{trained}.yaml"
-        self.work = Work.start(f"Training {trained}", take, tasks.train_into, settings, path)
-
-    def report(self) -> None:
-        """Begin to write the report and the JSON files behind it."""
-
-        def take(path: Path) -> None:
-            self.choices["report"] = path
-
-        settings = self.only(*self.models)
-        known = (self.ladder(), self.diagnosis)
-        self.work = Work.start(
-            "Writing the report", take, tasks.report_into, settings, *known, self.out
-        )
 
     def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
         """One run replayed in windows of `horizon` s, or open loop (None)."""

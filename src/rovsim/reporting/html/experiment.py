@@ -1,8 +1,8 @@
-"""What `design` says on the terminal."""
+"""What a designed flight promises, in words: on the terminal and in the workbench."""
 
 from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
-from rovsim.results.experiment import Experiment, RivalOdds, Surer
+from rovsim.results.experiment import Experiment, RivalOdds, Surer, UsualManoeuvre
 
 SURE = 1e6
 
@@ -13,22 +13,23 @@ def tell_experiment(found: Experiment) -> str:
     lines += [_odds(name, one) for name, one in found.expects.odds.items()]
     lines += [_std(name, one) for name, one in found.expects.std.items()]
     lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
-    for name, one in found.baselines.items():
-        better = one.designed_is_better
-        told = (
-            "leaves the limits at any amplitude"
-            if better is None
-            else f"tells {significant(1.0 / better)} of it"
-        )
-        lines.append(f"  {name:<11}{told}")
-    return "\n".join([*lines, "", _keeps(found)])
+    lines += [f"  {name:<11}{tell_share(one)}" for name, one in found.baselines.items()]
+    return "\n".join([*lines, "", tell_limits(found)])
+
+
+def tell_share(usual: UsualManoeuvre) -> str:
+    """How much of the designed flight's information a usual manoeuvre gives."""
+    if usual.designed_is_better is None:
+        return "leaves the limits at any amplitude"
+    return f"tells {significant(1.0 / usual.designed_is_better)} of it"
 
 
 def _odds(name: str, one: RivalOdds) -> str:
-    return f"  {name}, if true: odds {_size(one.now)} now, {_size(one.then)} then"
+    return f"  {name}, if true: odds {size_of_odds(one.now)} now, {size_of_odds(one.then)} then"
 
 
-def _size(odds: float) -> str:
+def size_of_odds(odds: float) -> str:
+    """Odds as people say them: what is beyond a million is no number any more."""
     if odds > SURE:
         return "over a million"
     return significant(odds) if odds > 1.0 / SURE else "under one in a million"
@@ -40,7 +41,8 @@ def _std(name: str, one: Surer) -> str:
     return f"  {name}: ± {then}{unit} (now ± {now}{unit})"
 
 
-def _keeps(found: Experiment) -> str:
+def tell_limits(found: Experiment) -> str:
+    """How near to walls and limits it comes."""
     kept = found.keeps
     wall = "" if kept.nearest_wall_m is None else f"{kept.nearest_wall_m:.2f} m from any wall, "
     return (

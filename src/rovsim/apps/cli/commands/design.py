@@ -9,23 +9,17 @@ campaign's), OUT/experiment.json (what to expect, and what the usual manoeuvres 
 picture and OUT/instructions.txt. `rovsim tank … fly=OUT/experiment.csv` flies it.
 """
 
-import textwrap
-from pathlib import Path
-
 from pydantic import Field
 
-from rovsim.application.pipeline.design import Designed, design
+from rovsim.application.pipeline.design import design, write_flight
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
-from rovsim.core.files import write_text
 from rovsim.core.schema import checked
 from rovsim.design.settings import DesignSettings, Question
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.experiment import tell_experiment
-
-WIDTH = 96
 
 
 class Settings(CampaignSettings):
@@ -45,7 +39,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     model = load_one_model(settings.model, data.vehicle, catalogue)
     out = choose_folder(settings, f"results/{data.campaign.name}/design")
     found = design(data, model, question, catalogue)
-    _write(out, found)
+    write_flight(out, found)
     text = tell_experiment(found.experiment)
     say(settings, f"{text}\n\n{out / 'experiment.csv'}", found.experiment.to_json())
 
@@ -55,15 +49,3 @@ def _ask(settings: Settings) -> Question:
     asked = settings.model_dump(include={"seconds", "design", "signals", "replay", "seed"})
     names = {"between": settings.between or [], "know": settings.know or []}
     return checked(Question, asked | names, "command line")
-
-
-def _write(out: Path, found: Designed) -> None:
-    from rovsim.reporting.figures.planned_flight import draw_flight
-    from rovsim.reporting.figures.style import save
-
-    drawn = draw_flight(found.picture)
-    write_text(out / "experiment.csv", found.log)
-    save(drawn, out, "experiment")
-    steps = (textwrap.fill(one, WIDTH) for one in found.experiment.instructions)
-    write_text(out / "instructions.txt", "\n\n".join(steps) + "\n")
-    found.experiment.write(out / "experiment.json")

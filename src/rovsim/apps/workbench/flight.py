@@ -1,0 +1,203 @@
+"""Flight: the next recording that would tell most, planned: path, commands, what to expect."""
+
+import shlex
+from html import escape
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from nicegui import ui
+
+from rovsim.apps.workbench import jobs
+from rovsim.apps.workbench.parts import (
+    cell,
+    computed,
+    heading,
+    in_a_terminal,
+    png,
+    section,
+    table,
+    text,
+    words,
+)
+from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.errors import RovsimError
+from rovsim.core.schema import checked
+from rovsim.design.settings import Question
+from rovsim.dynamics.model_file import describe_effect
+from rovsim.reporting.html.experiment import size_of_odds, tell_limits, tell_share
+from rovsim.results.experiment import Experiment
+
+TITLE, QUESTION = "Flight", "Which flight would tell most?"
+ASKED = {"between": "Which of two effects is it?", "know": "How large is a value?"}
+RIVALS = ("linear_damping", "quadratic_damping")  # where no diagnosis names two
+SHORTEST, LONGEST = 10, 600  # s
+
+
+class Flight:
+    """The screen, with what was chosen on it."""
+
+    def __init__(self, bench: Workbench, place: Place) -> None:
+        self.bench, self.place = bench, place
+        unsure = bench.diagnosis.indistinguishable if bench.diagnosis else ()
+        one, other = next((pair for pair in unsure if len(pair) == 2), RIVALS)
+        trained = {name for name, m in bench.models.items() if m.residual is not None or m.inert}
+        self.known = [name for name in bench.known_models() if name not in trained]
+        added = [name for name in list(bench.models)[1:] if name not in trained]
+        first = {
+            "model": (added or self.known)[-1], "asked": "between", "one": one,
+            "other": other, "seconds": int(bench.settings.seconds),
+        }  # fmt: skip
+        effects = list(bench.catalogue)
+        possible: Mapping[str, Sequence[Any]] = {
+            "model": self.known, "asked": list(ASKED), "one": effects, "other": effects,
+            "seconds": range(SHORTEST, LONGEST + 1),
+        }  # fmt: skip
+        self.chosen = place.choose(first, possible)
+
+    async def show(self) -> None:
+        """Build the screen."""
+        heading(TITLE, QUESTION)
+        text(
+            "A minute of commands, made for your question: predicted from all that the train runs "
+            "leave open, within the walls and limits, and compared with the usual manoeuvres."
+        )
+        known = {"know": await self._values()}
+        self.chosen = self.place.choose({**self.chosen, "know": []}, known)
+        self.controls = ui.row().classes("controls")
+        self.area = ui.column().classes("area")
+        await self._controls()
+        await self._draw()
+
+    async def _controls(self) -> None:
+        """What is asked, and about which model; its values may be chosen."""
+        known, effects, chosen = await self._values(), list(self.bench.catalogue), self.chosen
+        chosen["know"] = [name for name in chosen["know"] if name in known]
+        self.controls.clear()
+        with self.controls:
+            self._choice("asked", ui.select(ASKED, label="The question"))
+            if chosen["asked"] == "between":
+                self._choice("one", ui.select(effects, label="One", with_input=True))
+                self._choice("other", ui.select(effects, label="Or the other", with_input=True))
+            else:
+                self._choice("know", ui.select(known, label="Values (none: all)", multiple=True))
+            self._choice("model", ui.select(self.known, label="Model"))
+            seconds = ui.number("Seconds", min=SHORTEST, max=LONGEST, precision=0)
+            self._choice("seconds", seconds.props("debounce=500"))  # ms, for two more digits
+
+    async def _values(self) -> list[str]:
+        """`effect.parameter` of every value that was added to the model."""
+        try:
+            model = await computed(self.bench.known_model, self.chosen["model"])
+        except RovsimError:  # told where the flight would stand
+            return []
+        return [f"{e.id}.{name}" for e in model.added for name in describe_effect(e).parameters]
+
+    def _choice(self, name: str, control: Any) -> None:
+        control.value = self.chosen[name]
+        control.classes("control").props("outlined dense options-dense")
+
+        async def changed() -> None:
+            if control.value or name == "know":
+                self.chosen[name] = int(control.value) if name == "seconds" else control.value
+                if name in ("asked", "model"):
+                    await self._controls()
+                await self._draw()
+
+        control.on_value_change(changed)
+
+    @property
+    def question(self) -> Question:
+        """What is asked."""
+        chosen = self.chosen
+        known = self.bench.settings.model_dump(include={"design", "signals", "replay", "seed"})
+        names = {"between": (chosen["one"], chosen["other"])}
+        asked = names if chosen["asked"] == "between" else {"know": chosen["know"]}
+        return checked(Question, known | asked | {"seconds": chosen["seconds"]}, "the question")
+
+    async def _draw(self) -> None:
+        """The flight that answers the question, or the way to it."""
+        self.place.tell(self.chosen)
+        self.area.clear()
+        try:
+            question = self.question
+            folder = await computed(self.bench.flight_folder, self.chosen["model"], question)
+            found = folder / "experiment.json"
+            known = Experiment.read(found) if found.exists() else None
+        except RovsimError as error:
+            with self.area:
+                text(str(error), "warning")
+            return
+        self.area.clear()  # another change may have been drawn meanwhile
+        with self.area:
+            if known is None:
+                self._ask(question)
+            else:
+                _tell(known, folder)
+            self._terminal()
+
+    def _ask(self, question: Question) -> None:
+        text(
+            "Commands are searched that move the vehicle so that the answer shows best. This takes "
+            "one to some minutes, and can be cancelled.", "soft",
+        )  # fmt: skip
+        button = ui.button(
+            "Plan the flight", icon="route",
+            on_click=lambda: jobs.design(self.bench, self.chosen["model"], question),
+        ).props("unelevated no-caps").classes("onward")  # fmt: skip
+        button.bind_enabled_from(self.bench, "busy", backward=lambda busy: not busy)
+
+    def _terminal(self) -> None:
+        chosen = self.chosen
+        asked = f"between=[{chosen['one']},{chosen['other']}]"
+        asked = asked if chosen["asked"] == "between" else f"know=[{','.join(chosen['know'])}]"
+        campaign, model = self.bench.settings.campaign, self.bench.paths[chosen["model"]]
+        given = [f"campaign={campaign}", f"model={model}", asked, f"seconds={chosen['seconds']}"]
+        line = shlex.join(word for word in (*given, "out=PLAN") if word != "know=[]")
+        in_a_terminal(f"rovsim design {line}")
+
+
+def _tell(found: Experiment, folder: Path) -> None:
+    """What it is expected to tell, where it leads, and what to do."""
+    section(f"A flight of {found.seconds:g} s")
+    _expected(found)
+    text(tell_limits(found))
+    png(folder / "experiment.png", "The predicted path from above and from the side, the commands")
+    with ui.row().classes("controls"):
+        for name, title in (("experiment.csv", "Commands"), ("instructions.txt", "Instructions")):
+            ui.button(
+                f"{title} ({name})", icon="download",
+                on_click=lambda _, path=folder / name: ui.download.file(path),
+            ).props("outline no-caps")  # fmt: skip
+    section("What to do")
+    steps = "".join(f"<li>{escape(one)}</li>" for one in found.instructions)
+    ui.html(f"<ol>{steps}</ol>", sanitize=False).classes("text")
+    section("What the usual manoeuvres would tell")
+    rows = [(name, [words(tell_share(one))]) for name, one in found.baselines.items()]
+    table(
+        "On the same seconds, at their best amplitudes",
+        ["manoeuvre", "beside this flight"],
+        rows,
+    )
+
+
+def _expected(found: Experiment) -> None:
+    if found.expects.odds:
+        rows = [
+            (name, [words(size_of_odds(one.now)), words(size_of_odds(one.then))])
+            for name, one in found.expects.odds.items()
+        ]
+        table("Odds of each effect against the other, if it is the true one",
+              ["effect", "now", "after the flight"], rows)  # fmt: skip
+    if found.expects.std:
+        rows = [
+            (f"{name} ({one.unit})" if one.unit not in (None, "1") else name,
+             [cell(one.now, f"{name}/now"), cell(one.then, f"{name}/then")])
+            for name, one in found.expects.std.items()
+        ]  # fmt: skip
+        table("Standard deviation of each value", ["value", "now", "after the flight"], rows)
+
+
+async def show(bench: Workbench, place: Place) -> None:
+    """Show the screen."""
+    await Flight(bench, place).show()

@@ -1,0 +1,54 @@
+"""Long work on an open campaign: begun here, done in a process of its own, taken in when done."""
+
+from pathlib import Path
+
+from rovsim.application.settings import compose
+from rovsim.apps.workbench import tasks
+from rovsim.apps.workbench.work import Work
+from rovsim.apps.workbench.workbench import Workbench
+from rovsim.design.settings import Question
+from rovsim.dynamics.model_file import read_model
+
+
+def diagnose(bench: Workbench) -> None:
+    """Begin to look for what the base lacks."""
+    settings, path = bench.only(bench.base.name), bench.diagnosis_path
+    bench.work = Work.start(
+        "Finding what is missing", bench.found, tasks.diagnose_into, settings, path
+    )
+
+
+def train(bench: Workbench, kind: str, name: str) -> None:
+    """Begin to train a residual on top of one of the models."""
+    trained = f"{kind}_{bench.settings.control}"
+    trained = trained if name == bench.base.name else f"{name}+{trained}"
+    chosen = compose([f"residual={kind}"]).residual
+    settings = bench.only(name).model_copy(update={"residual": chosen})
+
+    def take(path: Path) -> None:
+        bench.add(read_model(path, bench.catalogue), path)
+
+    path = bench.out / "trained" / trained / f"{trained}.yaml"
+    bench.work = Work.start(f"Training {trained}", take, tasks.train_into, settings, path)
+
+
+def report(bench: Workbench) -> None:
+    """Begin to write the report and the JSON files behind it."""
+
+    def take(path: Path) -> None:
+        bench.choices["report"] = path
+
+    settings = bench.only(*bench.models)
+    known = (bench.ladder(), bench.diagnosis)
+    bench.work = Work.start(
+        "Writing the report", take, tasks.report_into, settings, *known, bench.out
+    )
+
+
+def design(bench: Workbench, name: str, question: Question) -> None:
+    """Begin to plan the flight that answers a question about one of the models."""
+
+    given = (bench.only(name), question, bench.flight_folder(name, question))
+    bench.work = Work.start(
+        "Planning a flight", lambda folder: None, tasks.design_into, *given
+    )  # the screen finds it in its folder
