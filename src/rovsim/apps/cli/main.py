@@ -46,6 +46,11 @@ def _main(words: list[str]) -> None:
         print(f"rovsim {__version__}")
         return
     command, rest = words[0], words[1:]
+    if command == "completion":
+        from rovsim.apps.cli.completion import complete
+
+        print(complete(rest))
+        return
     if command not in names:
         raise BadInput(
             f"unknown command '{command}'",
@@ -74,7 +79,8 @@ def _main(words: list[str]) -> None:
 def _help(names: Sequence[str]) -> str:
     lines = ["rovsim COMMAND key=value …", ""]
     lines += [f"  {name:<9} {_doc(name).splitlines()[0]}" for name in names]
-    lines += ["", "rovsim COMMAND --help tells more; keys and their values stand in conf/."]
+    lines += ["", "rovsim completion bash, zsh or fish: what the Tab key needs (`--help`)."]
+    lines += ["rovsim COMMAND --help tells more; keys and their values stand in conf/."]
     lines += ["--quiet prints nothing but errors, --json the result as JSON; rovsim --version."]
     return "\n".join(lines)
 

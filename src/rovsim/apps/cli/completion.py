@@ -1,0 +1,256 @@
+"""`rovsim completion SHELL`: what the shell's Tab key asks, answered without importing anything.
+
+Hydra's own completion knows keys alone, neither commands nor files nor effects, and needs more than
+a second. Here the configuration and the effects are read as text: an answer takes about 0.1 s.
+"""
+
+import os
+import pkgutil
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Iterable, Sequence
+
+import rovsim
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.shipped import conf_file, conf_names
+
+INSIDE = Path(rovsim.__file__).parent
+EFFECTS, TARGETS = INSIDE / "dynamics/effects", INSIDE / "application/export/targets"
+COMMANDS = Path(__file__).with_name("commands")
+NOT_SETTINGS = ("defaults", "hydra")
+MODELS = ("nominal", "zero_acceleration")
+OPTIONS = ("--help", "--quiet", "--json", "--multirun")
+# Keys whose values are files: how such a file ends, after "/" for folders alone.
+FILES = {
+    "campaign": "/", "out": "/", "model": ".yaml", "to": ".yaml", "diagnosis": ".json",
+    "effects_file": ".py", "fly": ".csv", "folds.published": ".csv",
+}  # fmt: skip
+UNLISTED = "    listed = False"  # in a class: no effect of the catalogue
+OF_EFFECTS = ("effects", "between", "know")
+SCRIPTS = {
+    "bash": """_rovsim() {
+  local IFS=$'\\n'
+  COMPREPLY=($("${COMP_WORDS[0]}" completion bash "${COMP_LINE:0:COMP_POINT}" 2>/dev/null))
+}
+complete -o nospace -F _rovsim rovsim""",
+    "zsh": """#compdef rovsim
+_rovsim() {
+  local -a found
+  found=("${(@f)$("${words[1]}" completion zsh "${(j: :)words[1,CURRENT]}" 2>/dev/null)}")
+  [[ -n $found ]] && compadd -Q -S '' -- $found
+}
+(( $+functions[compdef] )) || { autoload -Uz compinit && compinit }
+compdef _rovsim rovsim""",
+    "fish": """function _rovsim
+  set -l words (commandline -opc)
+  $words[1] completion fish (commandline -cp | string collect) 2>/dev/null
+end
+complete -c rovsim -f -a '(_rovsim)'""",
+}
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word as it was typed, and what it stands for."""
+
+    raw: str
+    value: str
+    quote: str  # the one that is still open
+
+    def typed(self, value: str) -> str:
+        """A longer value as it would be typed on: after a quote as it is, else escaped."""
+        if self.quote:
+            return self.quote + value
+        return re.sub(r"([^\w\[\],.=/:+~@%-])", r"\\\1", value)
+
+
+def complete(words: Sequence[str]) -> str:
+    """The script of a shell, or what may stand where a line ends.
+
+    Raises:
+        BadInput: no shell that is known.
+    """
+    shell, *line = words or [""]
+    if shell not in SCRIPTS:
+        raise BadInput(
+            f"no completion for '{shell}'" if shell else "no shell was named",
+            where="rovsim completion",
+            expected=f"one of {', '.join(SCRIPTS)}",
+            remedy=nearest(shell, SCRIPTS) if shell else "For example: rovsim completion bash.",
+        )
+    if not line:
+        return SCRIPTS[shell]
+    try:
+        return "\n".join(_answer(shell, line[0]))
+    except Exception:  # whatever is odd about a line: the Tab key finds nothing, and says nothing
+        return ""
+
+
+def _answer(shell: str, line: str) -> list[str]:
+    *before, last = split(line)
+    names = [word.value for word in before[1:]]
+    found = suggest(names, last.value)
+    return [_as(shell, last, one) for one in found]
+
+
+def _as(shell: str, word: Word, found: str) -> str:
+    """As a shell wants it: what is finished ends in a blank, where the shell adds none."""
+    typed = word.typed(found)
+    if shell == "bash" and not word.quote:  # it takes a word to begin after the last = or :
+        typed = typed[max(word.raw.rfind(mark) for mark in "=:") + 1 :]
+    elif shell == "bash":
+        typed = typed[1:]
+    finished = not found.endswith(("=", "/", ".")) and "=[" not in found
+    if shell == "fish" or not finished:
+        return typed
+    return typed + word.quote + " "
+
+
+def split(line: str) -> list[Word]:
+    """The words of an unfinished line; the last is what is being typed, perhaps nothing."""
+    words, raw, value, quote, escaped = [], "", "", "", False
+    for letter in line:
+        if not (quote or escaped) and letter.isspace():
+            if raw:
+                words.append(Word(raw, value, ""))
+            raw = value = ""
+            continue
+        raw += letter
+        if escaped:
+            value, escaped = value + letter, False
+        elif letter == "\\" and quote != "'":
+            escaped = True
+        elif letter == quote:
+            quote = ""
+        elif letter in "'\"" and not quote:
+            quote = letter
+        else:
+            value += letter
+    return [*words, Word(raw, value, quote)]
+
+
+def suggest(given: Sequence[str], word: str) -> list[str]:
+    """What `word` may become after the words that were given, commands first."""
+    if not given:
+        return _beginning(word, [*commands(), "completion"])
+    command, *rest = given
+    if command == "completion":
+        return _beginning(word, SCRIPTS)
+    if word.startswith("-"):
+        return _beginning(word, OPTIONS)
+    key, equals, value = word.partition("=")
+    if equals:
+        before, value = _last_item(value)
+        return [f"{key}={before}{one}" for one in _values(command, key, value)]
+    taken = {one.partition("=")[0] for one in rest}
+    files = _files(word, "") if command == "init" else []
+    return [*files, *_keys(command, word, taken)]
+
+
+def commands() -> list[str]:
+    """Names of the commands."""
+    return sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS)]))
+
+
+def _beginning(word: str, names: Iterable[str]) -> list[str]:
+    return [name for name in names if name.startswith(word)]
+
+
+def _last_item(value: str) -> tuple[str, str]:
+    """What stands before the last item of a list, and that item."""
+    at = max(value.rfind("["), value.rfind(",")) + 1
+    return (value[:at], value[at:]) if value.startswith("[") else ("", value)
+
+
+def _keys(command: str, word: str, taken: set[str]) -> list[str]:
+    """Keys that the command's own help names; once something is typed, all of the configuration."""
+    source = (COMMANDS / f"{command}.py").read_text(encoding="utf-8")
+    own = re.findall(r"(?<![\w.])([a-z_]+(?:\.\w+)*)=", source.split('"""')[1])
+    known = [*own, *settings()] if word else own
+    ends = [key[len(word) :] for key in known if key.startswith(word) and key not in taken]
+    return [word + end for end in dict.fromkeys(map(_step, ends))]
+
+
+def _step(end: str) -> str:
+    """The end of a key up to its next dot."""
+    inner, dot, _ = end.partition(".")
+    return f"{inner}{dot or '='}"
+
+
+def _values(command: str, key: str, value: str) -> list[str]:
+    """What a value may become: names first, then files."""
+    if key == "to" and command == "export":
+        return _beginning(value, [module.name for module in pkgutil.iter_modules([str(TARGETS)])])
+    named = [*conf_names(key), *settings().get(key, ())]
+    if key in OF_EFFECTS:
+        named += effects()
+    elif key in ("model", "to"):
+        named += MODELS
+    files = _files(value, FILES[key]) if key in FILES else []
+    return [*_beginning(value, named), *files]
+
+
+def _files(start: str, ending: str) -> list[str]:
+    """Folders, and files that end so, which begin with what was typed; "/": folders alone."""
+    _, _, name = start.rpartition("/")
+    before = start[: len(start) - len(name)]
+    place = Path(before or ".").expanduser()
+    found = []
+    for entry in sorted(os.scandir(place), key=lambda one: one.name) if place.is_dir() else ():
+        if entry.name.startswith(name) and (name or not entry.name.startswith(".")):
+            if entry.is_dir():
+                found.append(f"{before}{entry.name}/")
+            elif entry.name.endswith(ending):
+                found.append(before + entry.name)
+    return found
+
+
+def effects() -> list[str]:
+    """Ids of the built-in effects, as their files declare them."""
+    texts = (path.read_text(encoding="utf-8") for path in EFFECTS.glob("*.py"))
+    classes = (one for text in texts for one in text.split("\nclass ") if UNLISTED not in one)
+    return sorted(name for one in classes for name in re.findall(r'^    id = "(\w+)"', one, re.M))
+
+
+@cache
+def settings() -> dict[str, tuple[str, ...]]:
+    """Keys of the configuration, dotted, with the values that their lines name."""
+    main = _text("config.yaml")
+    groups = re.findall(r"^  - ([\w/]+): (\w+)", main, re.M)
+    found = _listed(main, "")
+    for group, chosen in groups:
+        text = _text(f"{group}/{chosen}.yaml")
+        package = re.search(r"@package ([\w.]+)", text)
+        found |= {group: ()} | _listed(text, f"{package[1] if package else group}.")
+    return found
+
+
+def _text(name: str) -> str:
+    path = conf_file(name)
+    return path.read_text(encoding="utf-8") if path else ""
+
+
+def _listed(text: str, before: str) -> dict[str, tuple[str, ...]]:
+    """Keys of one file of settings: plain mappings, one key a line."""
+    found: dict[str, tuple[str, ...]] = {}
+    above: list[tuple[int, str]] = []
+    for space, key, value in re.findall(r"^( *)(\w+):(.*)$", text, re.M):
+        above = [one for one in above if one[0] < len(space)]
+        name = "".join(f"{outer}." for _, outer in above) + key
+        if not value.split("#")[0].strip():
+            above.append((len(space), key))
+        elif name.split(".")[0] not in NOT_SETTINGS:
+            found[before + name] = _choices(value)
+    return found
+
+
+def _choices(value: str) -> tuple[str, ...]:
+    """Values that a line of settings names: true and false, or `a | b` of its comment."""
+    now, _, comment = value.partition("#")
+    if now.strip() in ("true", "false"):
+        return ("true", "false")
+    comment = re.sub(r"\([^)]*\)", "", comment)
+    named = re.match(r"\s*(\w+(?:\s*\|\s*\w+)+)", comment)
+    return tuple(re.split(r"\s*\|\s*", named[1])) if named else ()
