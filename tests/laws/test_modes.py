@@ -43,5 +43,5 @@ def test_a_slow_hold_of_angles_with_drag_gives_way_to_a_hold_of_rates(tmp_path):
 def test_what_has_no_modes_is_left_alone(tmp_path):
     base, _ = observed(tmp_path, duration=2.0)
     found = SimpleNamespace(hypothesis=Hypothesis(base, (Term(LinearDamping(), ("surge",)),)))
-    workspace = SimpleNamespace(list_other_modes=lambda term: [])
+    workspace = SimpleNamespace(list_modes=lambda term: [])
     assert change_mode(workspace, found) is found

@@ -133,9 +133,12 @@ def find_challengers(
 ) -> list[Proposal]:
     """The first other effects that may explain what a removed term did, best first.
 
-    Where a term itself is hardly worth its price, a rival need not be: the two share the evidence.
+    All that promise nearly as much as it did are among them: loops about three angles were third in
+    the place of weak sticks and drag, and likelier once refitted. Where a term itself is hardly
+    worth its price, a rival need not be: the two share the evidence.
     """
     others = [p for p in rest.others if p.term.id != term.id]
+    trials = max(trials, sum(p.gain > LEVEL * rest.loss for p in others))
     worth = keep_close([p for p in others if p.gain > 0.0], trials)
     return worth or [p for p in others[:trials] if _explains(workspace, p) > PROMISING * rest.loss]
 
@@ -149,11 +152,12 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
     """With effects that have modes in another one, where that is more likely.
 
     A loop that holds an angle, but slowly, and more drag than there is do what a loop that holds a
-    rate does alone: neither of the two can be taken away or swapped by itself.
+    rate does alone: neither of the two can be taken away or swapped by itself. So do a slow loop of
+    the same mode, and drag, so that its own start is tried again as well.
     """
     h = current.hypothesis
     for i, term in enumerate(h.terms):
-        for start in workspace.list_other_modes(term):
+        for start in workspace.list_modes(term):
             terms = (*h.terms[:i], start, *h.terms[i + 1 :])
             trial = prune(workspace, workspace.fit(replace(h, terms=terms)))
             if workspace.score(trial) > workspace.score(current) + SWAP:

@@ -185,15 +185,14 @@ class SearchWorkspace:
         H, b = rest.products[np.ix_(own, own)], rest.products[own, 0]
         return rest.loss - float(b @ solve(H + np.diag(spread**-2.0), b))
 
-    def list_other_modes(self, term: Term) -> list[Term]:
-        """Starts of the same effect with the same free values, whose tried values differ."""
-        tried = [p.name for p in term.effect.parameters if not p.fitted]
+    def list_modes(self, term: Term) -> list[Term]:
+        """Starts of the same effect, if it has modes, with the same free values."""
+        if all(p.fitted for p in term.effect.parameters):
+            return []
         starts = [block.candidate.term() for block in self.sensitivities.blocks]
         return [
-            one
-            for one in starts
+            one for one in starts
             if one.id == term.id and one.free and set(one.free) == set(term.free)
-            and any(one.effect[name] != term.effect[name] for name in tried)
         ]  # fmt: skip
 
     def propose(self, current: Fit) -> list[Proposal]:

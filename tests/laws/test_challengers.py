@@ -1,0 +1,20 @@
+"""Which other effects are tried in the place of one that was selected."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.diagnosis.selection.forward_selection import find_challengers
+from rovsim.diagnosis.selection.proposals import Proposal
+from rovsim.dynamics.effects.constant_wrench import ConstantWrench
+
+
+@pytest.mark.parametrize(("loss", "tried"), [(100.0, 3), (300.0, 1)])
+def test_all_that_promise_nearly_what_a_term_explains_challenge_it(loss, tried):
+    term = Term(ConstantWrench(surge=1.0), ("surge",))
+    others = [Proposal(SimpleNamespace(id=str(gain)), gain) for gain in (95.0, 90.0, 80.0, 30.0)]
+    found = find_challengers(
+        SimpleNamespace(price=0.0), term, SimpleNamespace(loss=loss, others=others), trials=1
+    )
+    assert [p.gain for p in found] == [95.0, 90.0, 80.0][:tried]
