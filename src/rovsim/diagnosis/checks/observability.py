@@ -16,7 +16,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.diagnosis.selection.sensitivities import CandidateColumns, linearise_candidates
+from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Means
 from rovsim.dynamics.vehicle import Vehicle
@@ -34,28 +34,17 @@ def list_not_observable(
     """
     workspace = selection.workspace
     runs = workspace.bank.runs
-    sizes = np.sqrt(np.diag(workspace.inner_products))
-    shown = _find_shown(sizes, workspace.sensitivities.blocks, workspace.price)
+    blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
+    shown = _find_shown(workspace.sizes(Hypothesis(base)), blocks, workspace.price)
     if selection.found.hypothesis.model.thrust_path.autopilots:
-        shown |= _look_beside_loops(selection)
+        driven = [block for block in blocks if block.candidate.effect.through == "thrusters"]
+        sizes = workspace.sizes(selection.found.hypothesis)
+        shown |= _find_shown(sizes, driven, workspace.price)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
     silent -= {term.id for term in selection.found.hypothesis.terms}
     silent -= {rival.effect for rival in selection.named_rivals}  # tried in the place of a name
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
-
-
-def _look_beside_loops(selection: Selection) -> dict[str, bool]:
-    """Whether the runs show what acts through thrusters where loops push in place of the mixer."""
-    workspace, model = selection.workspace, selection.found.hypothesis.model
-    named = {term.id for term in selection.found.hypothesis.terms}
-    each = [block.candidate for block in workspace.sensitivities.blocks]
-    driven = [c for c in each if c.effect.through == "thrusters" and c.effect.id not in named]
-    if not driven:
-        return {}
-    anew = linearise_candidates(workspace.bank, Hypothesis(model), driven)
-    sizes = np.linalg.norm(anew.bank.flatten(anew.columns, workspace.noise), axis=1)
-    return _find_shown(sizes, anew.blocks, workspace.price)
 
 
 def _find_shown(sizes: Array, blocks: Sequence[CandidateColumns], price: float) -> dict[str, bool]:

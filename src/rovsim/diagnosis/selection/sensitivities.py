@@ -1,7 +1,7 @@
 """What each candidate would change in the innovations, to first order, from each of its starts.
 
 The observer keeps every model close to the measurement, so these columns hardly depend on which
-other effects the model has: they are made once.
+other effects the model has: they are made once, and once more beside loops on board.
 """
 
 from dataclasses import dataclass, replace
@@ -79,6 +79,27 @@ def linearise_candidates(
             count += len(columns[0])
     stacked = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
     return Sensitivities(base.model, bank, absent, stacked, tuple(blocks))
+
+
+def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> Sensitivities:
+    """Columns of the same candidates beside all that a hypothesis has.
+
+    Those of an effect that it has are made beside the others. Zero where the observer cannot hold
+    the model.
+    """
+    rests: dict[str, tuple[Hypothesis, list[Array]]] = {}
+    parts = []
+    for candidate in known.candidates:
+        others = tuple(term for term in at.terms if term.id != candidate.effect.id)
+        own = candidate.effect.id if len(others) < len(at.terms) else ""
+        if own not in rests:
+            model = replace(at, terms=others).model
+            rests[own] = Hypothesis(model), bank.innovations(model)
+        columns = _columns(bank, rests[own][0], candidate, rests[own][1])
+        held = all(np.isfinite(one).all() for one in columns)
+        parts.append(columns if held else [np.zeros_like(one) for one in columns])
+    stacked = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
+    return replace(known, bank=bank, base=bank.innovations(at.model), columns=stacked)
 
 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:

@@ -7,7 +7,7 @@ single number.
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -23,9 +23,14 @@ from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, ra
 from rovsim.diagnosis.selection.sensitivities import (
     Sensitivities,
     fit_remaining_noise,
+    linearise_beside,
     linearise_candidates,
 )
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.dynamics.model import Model
+
+# Of a column's own square, in six digits: what free parameters leave less of is theirs.
+EXPLAINED = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +47,20 @@ class Removed:
     others: list[Proposal]
 
 
+class _White(NamedTuple):
+    """Columns (c, m) of the candidates, white, and their inner products (c, c)."""
+
+    columns: Array
+    products: Array
+
+
 @dataclass(frozen=True, eq=False)
 class SearchWorkspace:
-    """Everything a search looks at: the runs, the candidates' columns, and one noise for all."""
+    """Everything a search looks at: the runs, the candidates' columns, and one noise for all.
+
+    `sensitivities` are those beside the base. Loops on board take demands from the mixer, so that
+    thrusters push something else beside them: there all columns are made anew.
+    """
 
     bank: FilterBank
     sensitivities: Sensitivities
@@ -53,10 +69,13 @@ class SearchWorkspace:
     _fitted: dict[tuple, Fit] = field(default_factory=dict)
     _proposed: dict[tuple, list[Proposal]] = field(default_factory=dict)
     _removed: dict[tuple, list[Removed]] = field(default_factory=dict)
+    _beside: dict[tuple, Sensitivities] = field(default_factory=dict)
+    _white: dict[tuple, _White] = field(default_factory=dict)
 
     def renew(self, current: Fit) -> "SearchWorkspace":
         """The workspace whose filters and noise suit what is now known to act."""
-        noise = fit_remaining_noise(self.sensitivities, current.hypothesis, self.noise, rounds=1)
+        known = self._look_beside(current.hypothesis)
+        noise = fit_remaining_noise(known, current.hypothesis, self.noise, rounds=1)
         return self.redesign(current.hypothesis, noise)
 
     def redesign(self, at: Hypothesis, noise: Noise) -> "SearchWorkspace":
@@ -66,11 +85,31 @@ class SearchWorkspace:
         where axes drive each other: there they are made anew, and the noise is fitted to them.
         """
         bank, columns = self.bank.redesign(at.model, noise), self.sensitivities
+        beside = {} if bank.coupled else self._beside
         if bank.coupled:
             base = Hypothesis(columns.base_model)
             columns = linearise_candidates(bank, base, columns.candidates)
             noise = fit_remaining_noise(columns, at, noise, rounds=1)
-        return SearchWorkspace(bank, columns, noise, self.settings)
+        return SearchWorkspace(bank, columns, noise, self.settings, _beside=beside)
+
+    def _look_beside(self, at: Hypothesis) -> Sensitivities:
+        """The candidates' columns beside the loops of a hypothesis; made once for these loops."""
+        loops = _list_loops(at.model)
+        if loops == _list_loops(self.sensitivities.base_model):
+            return self.sensitivities
+        if loops not in self._beside:
+            bank = self.bank.redesign(at.model, self.noise)
+            self._beside[loops] = linearise_beside(bank, at, self.sensitivities)
+        return self._beside[loops]
+
+    def _whiten(self, at: Hypothesis) -> _White:
+        """The same, white under the common noise."""
+        loops = _list_loops(at.model)
+        if loops not in self._white:
+            known = self._look_beside(at)
+            columns = known.bank.flatten(known.columns, self.noise)
+            self._white[loops] = _White(columns, inner_products(columns).astype(float))
+        return self._white[loops]
 
     @cached_property
     def price(self) -> float:
@@ -92,15 +131,9 @@ class SearchWorkspace:
         """Twice the log likelihood, the price of the free parameters paid."""
         return found.likelihood - self.price * sum(t.choices for t in found.hypothesis.terms)
 
-    @cached_property
-    def columns(self) -> Array:
-        """The candidates' columns (c, m), white."""
-        return self.sensitivities.bank.flatten(self.sensitivities.columns, self.noise)
-
-    @cached_property
-    def inner_products(self) -> Array:
-        """Inner products (c, c) of the candidates' columns."""
-        return inner_products(self.columns).astype(float)
+    def sizes(self, at: Hypothesis) -> Array:
+        """Lengths (c,) of the candidates' columns, white, beside the loops of a hypothesis."""
+        return np.sqrt(np.diag(self._whiten(at).products))
 
     def products(self, seen: Linearised) -> Array:
         """Inner products (1 + c, 1 + c) of the innovations and the candidates' columns.
@@ -109,10 +142,14 @@ class SearchWorkspace:
         """
         rows = [one.astype(np.float32) for one in seen.rows]
         own = self.bank.flatten(rows, self.noise)
-        across = own @ self.columns.T
-        M = np.block([[inner_products(own), across], [across.T, self.inner_products]])
+        columns, among = self._whiten(seen.at)
+        across = own @ columns.T
+        M = np.block([[inner_products(own), across], [across.T, among]])
         kept = [0, *range(len(own), len(M))]
-        return project_out(M, range(1, len(own)))[np.ix_(kept, kept)]
+        left = project_out(M, range(1, len(own)))[np.ix_(kept, kept)]
+        gone = 1 + np.flatnonzero(np.diag(left)[1:] < EXPLAINED * np.diag(among))
+        left[gone], left[:, gone] = 0.0, 0.0
+        return left
 
     def remove_each(self, current: Fit) -> list[Removed]:
         """The current hypothesis without each of its terms, the others refitted to first order.
@@ -214,3 +251,11 @@ class SearchWorkspace:
             self.settings.draws, seed,
         )  # fmt: skip
         return max(0.0, float(np.quantile(gains, 1.0 - self.settings.false_alarm)))
+
+
+def _list_loops(model: Model) -> tuple:
+    """Which demands loops on board take, and in which mode; empty where there are none."""
+    return tuple(
+        (loop.mixed(np.eye(6)).tobytes(), *(loop[p.name] for p in loop.parameters if not p.fitted))
+        for loop in model.thrust_path.autopilots
+    )

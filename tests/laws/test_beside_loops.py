@@ -1,0 +1,36 @@
+"""What the next effect could be, where loops on board take demands from the mixer."""
+
+import pytest
+
+from flown import observed
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.settings import SearchSettings
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.onboard_control import OnboardControl
+from rovsim.dynamics.effects.thrusters import PropellerTorque
+from rovsim.dynamics.model_file import EffectEntry
+from rovsim.simulation.synthetic_tank.settings import Log
+
+LOOP = {"gain_yaw": 1.4, "bandwidth_yaw": 2.5}
+RATIO = 0.02  # m
+
+
+def test_the_torque_of_propellers_is_foreseen_beside_a_loop_about_yaw(tmp_path):
+    hidden = {OnboardControl.id: LOOP, PropellerTorque.id: {"ratio": RATIO}}
+    entries = tuple(EffectEntry(effect=name, parameters=values) for name, values in hidden.items())
+    base, runs = observed(tmp_path, duration=20.0, effects=entries, log=Log(kind="demand"))
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    listed = list_candidates(runs, built_in(), base.vehicle)
+    torque = [c for c in listed if c.effect is PropellerTorque]
+    known = linearise_candidates(bank, Hypothesis(base), torque)
+    first = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
+    loop = Hypothesis(base, (Term(OnboardControl(**LOOP), ()),))
+    workspace = first.redesign(loop, FIRST_NOISE)
+    (proposal,) = workspace.propose(workspace.fit(loop))
+    assert proposal.term.effect["ratio"] == pytest.approx(RATIO, rel=0.1)
+    assert proposal.gain > 0.0
