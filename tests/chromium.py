@@ -18,6 +18,9 @@ DESK, PHONE = (1280, 720), (390, 844)
 PICTURES = os.environ.get("ROVSIM_SCREENSHOTS")  # a folder: `make screenshots`
 
 
+LOG = "workbench.log"  # what it says on the way: no traceback, if all is well
+
+
 def installed() -> str | None:
     """Path of a Chromium on this machine; None: only Playwright's own, if any."""
     return next((path for name in NAMES if (path := shutil.which(name))), None)
@@ -36,7 +39,10 @@ def started(folder: Path, *words: str) -> tuple[subprocess.Popen, str]:
     command = [sys.executable, "-m", "rovsim", "ui", "open=false", f"port={port}", *words]
     # NiceGUI behaves differently where it sees that pytest runs
     clean = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
-    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, env=clean)
+    with (folder / LOG).open("a") as log:
+        process = subprocess.Popen(
+            command, cwd=folder, stdout=subprocess.DEVNULL, stderr=log, env=clean
+        )
     address = f"http://127.0.0.1:{port}"
     for _ in range(600):
         try:

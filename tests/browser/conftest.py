@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chromium import DESK, FLAGS, PHONE, PICTURES, Tab, installed, started
+from chromium import DESK, FLAGS, LOG, PHONE, PICTURES, Tab, installed, started
 from rovsim.application.pipeline.design import Designed, write_flight
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
@@ -47,6 +47,7 @@ def workbench(campaign, tmp_path_factory):
     yield address, folder
     process.terminate()
     process.wait(20)
+    assert "(most recent call last)" not in (folder / LOG).read_text()
 
 
 @pytest.fixture(scope="session")

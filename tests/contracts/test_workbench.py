@@ -17,7 +17,8 @@ from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import charts, path, tasks
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.totals import list_totals, tell_total
-from rovsim.apps.workbench.work import Work
+from rovsim.apps.workbench.traces import panels
+from rovsim.apps.workbench.work import Work, reap
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
@@ -160,6 +161,19 @@ def test_a_coefficient_is_told_with_what_it_comes_to(bench, value, told):
     assert tell_total(body, "thruster_lag", "time_constant", value) == ""
 
 
+def test_a_pose_is_shown_in_the_tank_and_turns_the_short_way(bench):
+    motion = bench.data.motions["6dof-1"]
+    shown = panels(
+        motion, {"m": bench.prediction(bench.base, "6dof-1", 2.0)}, ["heave", "yaw"], "eta"
+    )
+    titles = ["down", "down: measured − model", "yaw", "yaw: measured − model"]
+    assert [panel.title for panel in shown] == titles
+    usable = motion.usable
+    np.testing.assert_allclose(shown[0].curves["measured"][usable], motion.eta[usable, 2])
+    missed = shown[3].curves["m"]
+    assert np.nanmax(np.abs(missed)) <= np.pi
+
+
 def test_a_change_is_undone_and_a_drag_of_a_slider_is_one():
     draft = Draft(model(), diagnosis(), built_in())
     assert not draft.changed
@@ -236,6 +250,18 @@ def test_totals_are_the_vehicle_file_and_what_was_added(bench):
     assert changed == {}
 
 
+def test_each_saved_model_that_opens_the_test_runs_is_counted(bench, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    own = bench.settings.model_copy(update={"out": str(tmp_path / "out")})
+    here = Workbench(own, built_in(), bench.data, dict(bench.models), dict(bench.paths))
+    for opened, name in enumerate(("with_effects.yaml", "with_effects_2.yaml"), 1):
+        path = here.free_path()
+        assert path.name == name  # never the one before
+        assert here.note_opening(here.save(path)) == opened
+    kept = (tmp_path / "out" / "test_runs_opened.csv").read_text().splitlines()
+    assert [line.split(",")[0] for line in kept] == ["model", "with_effects", "with_effects_2"]
+
+
 def test_a_draft_begins_as_the_diagnosis_and_what_is_saved_is_read_back(tmp_path):
     draft = Draft(model(), diagnosis(), built_in())
     write_model(draft.model(), tmp_path / "new.yaml")
@@ -288,6 +314,17 @@ def test_work_tells_how_far_it_is_and_ends_as_it_should():
     assert "Mend it" in poor.said
     assert ended(gone)[0] == "failed"
     assert "unexpectedly" in gone.said
+
+
+def test_a_process_that_has_ended_is_let_go():
+    work = Work.start("counting", print, counting, 1, 0.0)
+    assert ended(work)[0] == "done"
+    for _ in range(200):  # it says that it is done a moment before it ends
+        reap()
+        if not Path(f"/proc/{work.process.pid}").exists():
+            return
+        time.sleep(0.02)
+    raise AssertionError("it is still there")
 
 
 def test_work_that_is_cancelled_ends_at_once():

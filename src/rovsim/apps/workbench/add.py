@@ -1,8 +1,9 @@
 """Add: tick effects, move their values, see the replay move; save the model as a file."""
 
 import shlex
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Mapping, Sequence
 
 from nicegui import ui
 
@@ -21,7 +22,14 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.totals import tell_total
-from rovsim.apps.workbench.traces import Traces, excited, panels
+from rovsim.apps.workbench.traces import (
+    HORIZONS,
+    Traces,
+    excited,
+    first_run,
+    horizon_slider,
+    panels,
+)
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
@@ -30,7 +38,7 @@ from rovsim.reporting.wording import significant
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
 STEPS = 400  # of a slider
-HORIZON = 2.0  # s, that of the error shown
+HORIZON = 2.0  # s, at first; the errors above the curves are always of 2 s windows
 
 
 class Add:
@@ -40,7 +48,12 @@ class Add:
         self.bench, self.draft, self.place = bench, bench.draft, place
         train = [r for r, m in bench.data.motions.items() if m.run.split == "train"]
         self.runs = train or list(bench.data.motions)
-        self.run = place.choose({"run": self.runs[0]}, {"run": self.runs})["run"]
+        run = first_run(bench)
+        first = {"run": run, "axes": excited(bench, run), "horizon": HORIZON}
+        possible: Mapping[str, Sequence[Any]] = {
+            "run": self.runs, "axes": AXES, "horizon": HORIZONS,
+        }  # fmt: skip
+        self.chosen = place.choose(first, possible)
         self.wanted = self.drawing = False
         self.traces: Traces | None = None
 
@@ -57,8 +70,10 @@ class Add:
                 self._effects()
                 self._save()
             with ui.column().classes("half right"):
-                choice = ui.select(self.runs, label="Run", value=self.run).classes("control")
-                choice.props("outlined dense").on_value_change(lambda e: self._other(e.value))
+                with ui.row().classes("controls"):
+                    self._choice("run", ui.select(self.runs, label="Run"))
+                    self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
+                    horizon_slider(self.chosen["horizon"], partial(self._chosen, "horizon"))
                 with ui.row().classes("tiles"):
                     self.before = tile("This run, before", None, "run/before")
                     self.after = tile("This run, now", None, "run/now")
@@ -85,12 +100,20 @@ class Add:
             box = ui.checkbox(name, value=ticked)
             box.on_value_change(lambda e: self._tick(name, e.value))
             known = self.bench.catalogue[name]
+            if ticked and self._unasked(name):
+                text("Not among what the diagnosis found missing: it may fit noise.", "soft")
             if not ticked:
                 text((known.__doc__ or "").split("\n")[0], "soft")
                 return
             units = {p.name: p for p in known.parameters}
             for parameter, value in self.draft.entry(name).parameters.items():
                 self._slider(name, units[parameter], value.value)
+
+    def _unasked(self, name: str) -> bool:
+        """Whether there is a diagnosis, and it did not select the effect."""
+        return self.draft.diagnosis is not None and name not in {
+            e.effect for e in self.draft.chosen
+        }
 
     def _slider(self, effect: str, parameter: Any, value: float) -> None:
         low, high = reach(parameter, value)
@@ -145,11 +168,26 @@ class Add:
         if name:
             await self._tick(name, True)
 
-    async def _other(self, run: str) -> None:
-        self.run = run
-        self.place.choose({"run": run}, {"run": self.runs})
-        self.place.tell({"run": run})
-        await self.draw()
+    def _choice(self, name: str, control: Any) -> None:
+        control.value = self.chosen[name]
+        control.classes("control").props("outlined dense options-dense")
+        control.on_value_change(lambda e: self._chosen(name, e.value))
+
+    async def _chosen(self, name: str, value: Any) -> None:
+        if value or name == "horizon":  # None: open loop
+            self.chosen[name] = value
+            self.place.tell(self.chosen)
+            await self.draw()
+
+    @property
+    def run(self) -> str:
+        """The run shown."""
+        return self.chosen["run"]
+
+    @property
+    def axes(self) -> list[str]:
+        """The axes shown, in order."""
+        return [axis for axis in AXES if axis in self.chosen["axes"]]
 
     def _model(self) -> Model | None:
         """The draft as a model; None, with a message, if no such model can be."""
@@ -164,7 +202,7 @@ class Add:
 
     def _replayed(self, model: Model) -> tuple[Any, float | None]:
         """Prediction and error of the run shown."""
-        found = self.bench.prediction(model, self.run, HORIZON)
+        found = self.bench.prediction(model, self.run, self.chosen["horizon"])
         return found, self.bench.run_error(model, self.run)
 
     async def draw(self) -> None:
@@ -179,7 +217,6 @@ class Add:
         new, now = await computed(self._replayed, model)
         waiting.delete()
         motion = self.bench.data.motions[self.run]
-        self.axes = [a for a in AXES if a in excited(self.bench, self.run)]
         self.base = base
         with self.area:
             shown = panels(motion, {self.bench.base.name: base, "new": new}, self.axes)
@@ -209,8 +246,9 @@ class Add:
 
     def _save(self) -> None:
         section("Save it")
-        name = str(self.bench.saved_in / "with_effects.yaml")
-        self.path = ui.input("Model file", value=name).classes("control wide")
+        self.path = ui.input("Model file", value=str(self.bench.free_path())).classes(
+            "control wide"
+        )
         self.path.props("outlined dense")
         ui.button("Save, and open the test runs", icon="save", on_click=self._saved).props(
             "unelevated no-caps"
@@ -227,9 +265,11 @@ class Add:
             return
         before = (await computed(self.bench.step, self.bench.base)).windows_2s
         after = (await computed(self.bench.step, saved)).windows_2s
-        self._tell(path, before, after)
+        opened = await computed(self.bench.note_opening, saved)
+        self.path.value = str(self.bench.free_path())
+        self._tell(path, before, after, opened)
 
-    def _tell(self, path: Path, before: float | None, after: float | None) -> None:
+    def _tell(self, path: Path, before: float | None, after: float | None, opened: int) -> None:
         diagnosis = self.bench.diagnosis
         floor = diagnosis.error.noise_floor if diagnosis else None
         self.result.clear()
@@ -240,6 +280,7 @@ class Add:
                 if floor is not None:
                     tile("Noise floor", floor, "saved/noise_floor", "of a perfect model, about")
             text(_sentence(before, after))
+            text(_counted(opened), "soft")
             words = (f"campaign={self.bench.settings.campaign}", f"model=[nominal,{path}]")
             in_a_terminal(f"rovsim compare {shlex.join(words)} out=COMPARED")
             onward("See the whole ladder", "/ladder")
@@ -251,6 +292,16 @@ def _sentence(before: float | None, after: float | None) -> str:
     if after < before:
         return f"Saved. On the test runs the error fell by {100 * (1 - after / before):.0f} %."
     return "Saved. On the test runs the error did not fall."
+
+
+def _counted(opened: int) -> str:
+    """How often the test runs were opened, and what that does to their number."""
+    if opened == 1:
+        return "The test runs were opened for one saved model: this one."
+    return (
+        f"The test runs were opened for {opened} saved models. Whoever chooses among these by the "
+        "test runs has fitted to them: the error on new runs will be larger."
+    )
 
 
 async def show(bench: Workbench, place: Place) -> None:

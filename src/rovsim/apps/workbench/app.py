@@ -13,13 +13,14 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from rovsim.application.settings import WorkbenchSettings
 from rovsim.apps.workbench import HOST
 from rovsim.apps.workbench.gate import Gate
+from rovsim.apps.workbench.parts import heading
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.state import State
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
 SCREENS = ("compare", "where", "why", "add", "ladder", "models", "flight", "data")
-STYLE, SAVE = (Path(__file__).with_name(name) for name in ("style.css", "save.js"))
+STYLE, CHARTS = (Path(__file__).with_name(name) for name in ("style.css", "charts.js"))
 ICON = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><path fill="none" '
     'stroke="#0072B2" stroke-width="4" d="M2 21c5-14 9-14 14 0s9 14 14 0"/></svg>'
@@ -37,6 +38,14 @@ RECALL = """
 LOOK = 0.25  # s between two looks at long work
 
 
+class Screens(ui.sub_pages):
+    """The screens by their addresses, and a way on from an address that is none."""
+
+    def _render_404(self) -> None:
+        heading("No such screen", "The address is wrong, or of another version.")
+        ui.link("Compare", "/compare")
+
+
 class Page:
     """One browser tab."""
 
@@ -49,7 +58,7 @@ class Page:
     def build(self) -> None:
         """Header, progress, screen."""
         ui.add_head_html(f"<style>{STYLE.read_text(encoding='utf-8')}</style>")
-        ui.add_head_html(f"<script>{SAVE.read_text(encoding='utf-8')}</script>")
+        ui.add_head_html(f"<script>{CHARTS.read_text(encoding='utf-8')}</script>")
         ui.colors(primary="#0072B2")
         ui.query("html").props('lang="en"')
         with ui.element("header"):
@@ -68,7 +77,7 @@ class Page:
             routes: dict[str, Callable] = {f"/{n}": partial(self._screen, n) for n in self.links}
             routes |= {"/": partial(self._screen, "compare"), "/open": self._open}
             routes["/gallery/{effect}"] = self._effect
-            self.pages = ui.sub_pages(routes)
+            self.pages = Screens(routes)
         ui.keyboard(on_key=self._key)
         ui.timer(LOOK, self._look)
         ui.run_javascript(RECALL)
@@ -85,16 +94,24 @@ class Page:
             self.left = ui.label().classes("soft")
             ui.button("Cancel", on_click=self._cancel).props("flat dense no-caps")
         self.strip.visible = False
+        with ui.row().classes("progress warning").props('role="alert"') as self.trouble:
+            self.failed = ui.label().classes("text")
+            ui.button("Close", on_click=self._read).props("flat dense no-caps")
+        self.trouble.visible = False
 
     def _cancel(self) -> None:
         if work := self.shared.working():
             work.cancel()
+
+    def _read(self) -> None:
+        self.shared.trouble = ""
 
     def _look(self) -> None:
         """Show how far long work is; draw the screen again when something has changed."""
         self.shared.settle()
         work = self.shared.working()
         self.strip.visible = work is not None
+        self.failed.text, self.trouble.visible = self.shared.trouble, bool(self.shared.trouble)
         if work is not None:
             self.what.text = f"{work.title}: {work.what.partition(': ')[2] or work.what}"
             self.bar.value = work.share or 0.0
@@ -136,10 +153,11 @@ class Page:
         if bench is None:
             self._choose()
             return
-        try:
-            await _module(name).show(bench, Place(name, asked.query_parameters, self.kept))
-        except RovsimError as error:
-            ui.label(str(error)).classes("warning")
+        with ui.element("div").classes("sheet"):  # goes with the screen
+            try:
+                await _module(name).show(bench, Place(name, asked.query_parameters, self.kept))
+            except RovsimError as error:
+                ui.label(str(error)).classes("warning")
 
     async def _effect(self, effect: str) -> None:
         self._active("gallery")
@@ -157,7 +175,8 @@ class Page:
         if shared.proposal is not None:
             new_campaign.show(shared.proposal, str(shared.described), shared.write, shared.leave)
             return
-        campaigns.show(self.shared.choose, self.shared.practise, self.shared.problem)
+        typed = shared.settings.campaign or "" if shared.problem else ""
+        campaigns.show(shared.choose, shared.practise, shared.problem, typed)
 
 
 def _module(name: str) -> ModuleType:

@@ -17,13 +17,20 @@ def known() -> list[Path]:
     return sorted(found)
 
 
-def show(choose: Callable[[str], None], practise: Callable[[], None], problem: str = "") -> None:
-    """Show the screen; `choose` opens a folder, `practise` makes a campaign and opens it."""
+def show(
+    choose: Callable[[str], None], practise: Callable[[], None], problem: str = "", typed: str = ""
+) -> None:
+    """Show the screen; `choose` opens a folder, `practise` makes a campaign and opens it.
+
+    `typed` is the folder that could not be opened, for `problem`.
+    """
     heading(TITLE, QUESTION)
     if problem:
         text(problem, "warning")
     with ui.row().classes("controls"):
-        folder = ui.input("Folder of a campaign, or of recordings").classes("control wide")
+        folder = ui.input("Folder of a campaign, or of recordings", value=typed).classes(
+            "control wide"
+        )
         folder.props("outlined dense")
         folder.on("keydown.enter", lambda: choose(folder.value.strip()))
         ui.button("Open", on_click=lambda: choose(folder.value.strip())).props("unelevated no-caps")
@@ -33,7 +40,7 @@ def show(choose: Callable[[str], None], practise: Callable[[], None], problem: s
         "soft",
     )
     if found := known():
-        section("Near here")
+        section("Campaigns in this folder")
         with ui.column().classes("effects"):
             for path in found:
                 ui.button(str(path), on_click=lambda _, p=path: choose(str(p))).props(

@@ -1,5 +1,6 @@
 """ECharts options: time series over linked axes, bars, paths. Plain dictionaries, testable."""
 
+import json
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
@@ -61,6 +62,7 @@ def series_data(time: Array, panels: Sequence[Panel], but: str = "") -> list[Opt
 def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> Options:
     """Panels one above the other; zoom and pointer move all of them together."""
     every = list(range(len(panels)))
+    titles = [f"{panel.title} ({panel.unit})" for panel in panels]
     found: Options = {
         "legend": {"type": "scroll", "top": 0, "left": 56, "right": 8, "itemWidth": 34,
                    "itemStyle": {"opacity": 0}},
@@ -74,7 +76,7 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         "tooltip": {
             "trigger": "axis",
             "confine": True,
-            ":valueFormatter": "v => v == null ? '–' : Number(v).toPrecision(3)",
+            ":formatter": f"points => tellPanels(points, {json.dumps(titles)})",
         },
         "dataZoom": [
             {

@@ -6,7 +6,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
-from rovsim.apps.workbench.parts import cell, computed, heading, onward, table
+from rovsim.apps.workbench.parts import cell, computed, heading, onward, table, text
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.traces import (
@@ -16,6 +16,7 @@ from rovsim.apps.workbench.traces import (
     Traces,
     beside,
     excited,
+    first_run,
     horizon_slider,
     horizon_text,
     panels,
@@ -35,8 +36,7 @@ class Compare:
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench, self.place = bench, place
         runs = list(bench.data.motions)
-        tests = (run for run in runs if bench.data.motions[run].run.split == "test")
-        run = next(tests, runs[0])
+        run = first_run(bench)
         first = {
             "run": run, "beside": [], "models": [bench.base.name], "axes": excited(bench, run),
             "quantity": "nu", "horizon": 2.0,
@@ -57,6 +57,10 @@ class Compare:
     async def show(self) -> None:
         """Build the screen."""
         heading(TITLE, QUESTION)
+        text(
+            "Axes are those of the body: surge ahead, sway to starboard, heave down; positions are "
+            "north, east and down in the tank.", "soft",
+        )  # fmt: skip
         self._controls()
         self.area = ui.column().classes("area")
         await self.draw()

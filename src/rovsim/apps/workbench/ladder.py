@@ -47,7 +47,7 @@ async def show(bench: Workbench, place: Place) -> None:
 
 
 def _train(bench: Workbench) -> None:
-    section("What physics cannot take, a learned residual may")
+    section("Learn what is left")
     text("Trained on the train runs, on top of any model, and shown here on the test runs.", "soft")
     physical = [n for n, m in bench.models.items() if m.residual is None and not m.inert]
     with ui.row().classes("controls"):

@@ -23,6 +23,7 @@ from rovsim.apps.workbench.traces import (
     Span,
     Traces,
     excited,
+    first_run,
     horizon_slider,
     panels,
 )
@@ -53,8 +54,7 @@ class Models:
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench, self.place = bench, place
-        motions = bench.data.motions
-        run = next((r for r, m in motions.items() if m.run.split == "train"), next(iter(motions)))
+        motions, run = bench.data.motions, first_run(bench)
         known = list(bench.known_models())
         added = list(bench.models)[1:]
         first = {

@@ -15,15 +15,27 @@ from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
-SAVE = {"PNG": "savePicture", "CSV": "saveValues"}  # functions of save.js
+SAVE = {"PNG": "savePicture", "CSV": "saveValues"}  # functions of charts.js
 
 # One thread computes: it uses all cores, and what was asked for first is shown first.
 _thread = ThreadPoolExecutor(1)
 
 
-async def computed(function: Callable, *given: Any) -> Any:
-    """`function(*given)` in the computing thread, while the page stays alive."""
+async def in_thread(function: Callable, *given: Any) -> Any:
+    """`function(*given)` in the computing thread, while pages stay alive."""
     return await asyncio.get_running_loop().run_in_executor(_thread, function, *given)
+
+
+async def computed(function: Callable, *given: Any) -> Any:
+    """The same for a screen: what was to follow ends where the screen was left meanwhile."""
+    try:
+        place = ui.context.slot.parent
+    except RuntimeError:  # the control that was used has been drawn anew since
+        place = None
+    found = await in_thread(function, *given)
+    if place is not None and place.is_deleted:
+        raise asyncio.CancelledError
+    return found
 
 
 class Slider(ui.slider):

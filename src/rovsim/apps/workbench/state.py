@@ -9,6 +9,7 @@ from typing import Any, Mapping
 from nicegui import ui
 
 from rovsim.application.settings import WorkbenchSettings, compose
+from rovsim.apps.workbench.work import reap
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
@@ -21,6 +22,7 @@ class State:
     def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue) -> None:
         self.settings, self.catalogue, self.problem = settings, catalogue, ""
         self.said = ""  # of the work that ended last
+        self.trouble = ""  # why it failed, until somebody has read it
         self.bench: Any = None
         self.work: Any = None
         self.version = 0  # changes when the screens must be drawn again
@@ -90,11 +92,11 @@ class State:
         """The open campaign, read now if need be; None when there is none, or it cannot be read."""
         async with self.opening:
             if self.bench is None and self.settings.campaign and not self.problem:
-                from rovsim.apps.workbench.parts import computed
+                from rovsim.apps.workbench.parts import in_thread
                 from rovsim.apps.workbench.workbench import Workbench
 
                 try:
-                    self.bench = await computed(Workbench.opened, self.settings, self.catalogue)
+                    self.bench = await in_thread(Workbench.opened, self.settings, self.catalogue)
                     _keep_loaded()
                 except RovsimError as error:
                     self.problem = str(error)
@@ -107,6 +109,8 @@ class State:
     def settle(self) -> None:
         """Look after long work: take in what came of it."""
         work = self.working()
+        if work is None:
+            reap()
         if work is None or work.look() == "running":
             return
         self.work = None
@@ -114,12 +118,13 @@ class State:
             self.bench.work = None
         if work.state == "done":
             work.after(work.said)
-        elif work.state == "failed" and self.bench is None:
-            self.problem = work.said
+        elif work.state == "failed":
+            self.problem = work.said if self.bench is None else ""
+            self.trouble = f"{work.title}: {work.said}"
         self.version += 1
         self.said = {
             "done": f"{work.title}: done in {work.elapsed:.0f} s.",
-            "failed": f"{work.title}: {work.said}",
+            "failed": "",
             "cancelled": f"{work.title}: cancelled, nothing was changed.",
         }[work.state]
 

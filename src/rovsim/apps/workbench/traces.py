@@ -11,6 +11,7 @@ from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel, cursor, height, series_data, styles, time_series
 from rovsim.apps.workbench.parts import Slider, chart
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.rotations import to_euler
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.palette import Look
@@ -18,7 +19,13 @@ from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.simulation.prediction import Prediction
 
 Span = tuple[float | None, float | None]  # s, part of a run; None: from its start, to its end
-QUANTITIES = {"nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS)}
+POSE_UNITS = ("m",) * 3 + ("rad",) * 3
+QUANTITIES = {
+    "nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS),
+    "eta": ("position and attitude", POSE_UNITS),
+}  # fmt: skip
+# A pose belongs to the tank: what stands in place of the axis of the body.
+POSES = dict(zip(AXES, ("north", "east", "down", "roll", "pitch", "yaw"), strict=True))
 HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 
 
@@ -41,6 +48,13 @@ def horizon_slider(horizon: float | None, changed: Callable[[float | None], Any]
         slider.on("update:model-value", moved, throttle=0.05)
 
 
+def first_run(bench: Workbench) -> str:
+    """The first train run: test runs stay closed until somebody asks for them."""
+    motions = bench.data.motions
+    train = (name for name, motion in motions.items() if motion.run.split == "train")
+    return next(train, next(iter(motions)))
+
+
 def excited(bench: Workbench, run: str) -> list[str]:
     """Axes that moved in a run, at most three to begin with."""
     known = bench.data.quality[run]
@@ -52,16 +66,38 @@ def panels(
 ) -> list[Panel]:
     """A panel per axis, and under it what each model missed (measured minus model)."""
     _, units = QUANTITIES[quantity]
-    moved = blank(motion.measured, getattr(motion, quantity), np.nan)
-    measured = np.where(motion.usable[:, None], moved, np.nan)
+    measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
     found = []
     for axis in axes:
         k = AXES.index(axis)
-        models = {name: getattr(p, quantity)[:, k] for name, p in predicted.items()}
+        models = {name: _columns(p, quantity)[:, k] for name, p in predicted.items()}
         missed = {name: measured[:, k] - values for name, values in models.items()}
-        found.append(Panel(axis, units[k], {"measured": measured[:, k], **models}))
-        found.append(Panel(f"{axis}: measured − model", units[k], missed, short=True))
+        title = axis
+        if quantity == "eta":
+            title = POSES[axis]
+            missed = {n: _turned(x) if k > 2 else x for n, x in missed.items()}
+        found.append(Panel(title, units[k], {"measured": measured[:, k], **models}))
+        found.append(Panel(f"{title}: measured − model", units[k], missed, short=True))
     return found
+
+
+def _columns(of: Motion | Prediction, quantity: str) -> Array:
+    """Six columns (n, 6) of a quantity: of a pose the position, and angles for people."""
+    values = getattr(of, quantity)
+    return np.hstack([values[:, :3], to_euler(values[:, 3:])]) if quantity == "eta" else values
+
+
+def _measured(motion: Motion, quantity: str) -> Array:
+    """The same (n, 6) of a run, NaN where nothing was measured."""
+    values, seen = _columns(motion, quantity), motion.measured
+    if seen is None or quantity != "eta":
+        return blank(seen, values, np.nan)
+    return np.where([*seen.coordinates, *seen.axes[3:5], *seen.heading], values, np.nan)
+
+
+def _turned(angle: Array) -> Array:
+    """An angle between two headings, the short way round."""
+    return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
 def beside(

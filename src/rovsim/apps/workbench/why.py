@@ -143,7 +143,8 @@ def _draw_disturbance(found: Diagnosis, path: Path) -> None:
 
 
 def _ranking(found: Diagnosis) -> None:
-    ranking = [r for r in found.ranking if (r.error_reduction or 0.0) > 0.0][:SHOWN]
+    helping = [r for r in found.ranking if (r.error_reduction or 0.0) > 0.0]
+    ranking = sorted(helping, key=lambda r: -(r.error_reduction or 0.0))[:SHOWN]
     if ranking:
         section("Each effect alone")
         rows = [
@@ -158,7 +159,7 @@ def _ranking(found: Diagnosis) -> None:
         ]
         table(
             "Error that each effect removes by itself, at its first estimate",
-            ["effect", "error removed", "probability that it alone is missing"], rows,
+            ["effect", "error removed", "probability that it, and nothing else, is missing"], rows,
         )  # fmt: skip
     if found.where:
         section("Where the model fails")

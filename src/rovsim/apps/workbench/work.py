@@ -71,6 +71,11 @@ class Work:
         return self.elapsed * (1.0 / self.share - 1.0) if known and self.share else None
 
 
+def reap() -> None:
+    """Let processes go that have ended; the system keeps each until it is asked about it."""
+    multiprocessing.active_children()
+
+
 def _run(pipe: Connection, function: Callable, given: tuple) -> None:
     """In the other process."""
     with heard_by(lambda what, share: pipe.send(("progress", what, share))):

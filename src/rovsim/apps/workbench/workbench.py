@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain, count
 from pathlib import Path
 from typing import Any, Sequence
 
@@ -14,6 +15,7 @@ from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.files import read_text, write_text
 from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
@@ -28,6 +30,7 @@ from rovsim.results.ladder import EFFECTS, Ladder, Step
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import replay
 
+OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and measured
 KEPT = 200  # replays; one of a minute takes 2 MB
 
 
@@ -188,6 +191,19 @@ class Workbench:
         saved = read_model(path, self.catalogue)
         self.add(saved, path)
         return saved
+
+    def free_path(self) -> Path:
+        """Where the next model may be saved without taking the place of another."""
+        ends = chain([""], (f"_{k}" for k in count(2)))
+        paths = (self.saved_in / f"with_effects{end}.yaml" for end in ends)
+        return next(path for path in paths if not path.exists())
+
+    def note_opening(self, model: Model) -> int:
+        """Write down that the test runs were opened for a model; how often they were by now."""
+        kept = self.out / OPENINGS
+        before = read_text(kept) if kept.exists() else "model,error\n"
+        write_text(kept, f"{before}{model.name},{self.step(model).windows_2s}\n")
+        return len(before.splitlines())
 
     def only(self, *names: str) -> WorkbenchSettings:
         """The settings, with these models."""

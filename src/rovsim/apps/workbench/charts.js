@@ -28,3 +28,20 @@ function saveValues(chart) {
   saveFile(url, "rovsim.csv");
   URL.revokeObjectURL(url);
 }
+
+// ECharts takes every turn of the wheel: without Ctrl it belongs to the page.
+addEventListener("wheel", event => {
+  if (!event.ctrlKey && event.target.closest?.(".chart")) event.stopPropagation();
+}, { capture: true });
+
+// What the pointer is at: the time once, then each panel with its unit and its curves.
+function tellPanels(points, titles) {
+  const clean = text => text.replace(/[&<>"']/g, letter => `&#${letter.charCodeAt(0)};`);
+  const known = points.filter(point => Number.isFinite(point.value?.[1]));
+  const lines = titles.map((title, k) => [title, known.filter(p => p.seriesId.startsWith(`${k}/`))])
+    .filter(([, own]) => own.length)
+    .map(([title, own]) => `<div>${clean(title)}: ` + own.map(point =>
+      `${point.marker}${clean(point.seriesName)} <b>${Number(point.value[1]).toPrecision(3)}</b>`
+    ).join(", ") + "</div>");
+  return `${Number(points[0].axisValue).toFixed(2)} s${lines.join("")}`;
+}
