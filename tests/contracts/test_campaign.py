@@ -42,6 +42,15 @@ def test_numbers_are_names(tmp_path):
     assert campaign.name == "2025"
 
 
+def test_a_key_that_is_mistyped_is_answered_with_the_nearest(tmp_path):
+    """It is unknown, and the one that was meant is missing: the first says more."""
+    folder = write_run(tmp_path)
+    content = campaign_content()
+    content["mocap"]["world_axs"] = content["mocap"].pop("world_axes")
+    with pytest.raises(BadInput, match=r"'mocap.world_axs'.*Did you mean 'world_axes'"):
+        load_campaign(write_campaign(folder, content))
+
+
 @pytest.mark.parametrize("name", ["mätning 3, a=b (ny)", "水槽", "with space"])
 def test_unusual_paths_work(tmp_path, name):
     folder = write_run(tmp_path / name)

@@ -58,7 +58,9 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
 
 
 def _explained(error: ValidationError, kind: type[Section], content: Any, where: Any) -> BadInput:
-    first = error.errors(include_url=False)[0]
+    found = error.errors(include_url=False)
+    # A key that is mistyped is unknown and missing; the first says what was meant.
+    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
     place = ".".join(str(part) for part in first["loc"] if not _is_type(part))
     if first["type"] == "extra_forbidden":
         key = str(first["loc"][-1])
