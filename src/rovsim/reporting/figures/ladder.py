@@ -77,5 +77,5 @@ def _remarks(ladder: Ladder, steps: Mapping[str, float], top: float) -> list[str
     beyond = [short(name) for name, value in steps.items() if value > top]
     return [
         f"Runs of the {' and '.join(splits)} split." if splits else "",
-        f"The bar of {beyond[0]} goes on beyond the axes." if beyond else "",
+        f"The bar of {beyond[0]} is longer than the axis." if beyond else "",
     ]
