@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study thesis test test-ui fuzz kills crowd soak test-slurm wheel-test ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
+.PHONY: help setup study thesis test test-ui fuzz kills crowd soak test-slurm wheel-test walk ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
@@ -18,6 +18,7 @@ help:
 	@echo "make crowd   two studies, two sweeps and a workbench at once on one database"
 	@echo "make soak    a long day at the workbench: 1,000 replays, 20 campaigns"
 	@echo "make test-slurm   the study and a sweep through a real Slurm on this machine (root, slurm-wlm)"
+	@echo "make walk    a newcomer with a watch: fresh clone to a fallen error, own csv files to a verdict"
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
@@ -45,6 +46,10 @@ thesis: setup
 
 test: setup
 	$(BIN)/python -m pytest -n $(CORES) --dist worksteal
+
+# Minutes, and it needs a package index: what a newcomer types, timed.
+walk: setup
+	$(BIN)/python tests/walk.py
 
 wheel-test: setup
 	.ci/wheel-test $(PYTHON)
