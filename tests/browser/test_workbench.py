@@ -28,6 +28,11 @@ SCREENS = tuple(READY)
 CHANGED = (
     "([name, v]) => Number(document.querySelector(`[data-name='${name}']`).dataset.value) != v"
 )
+SAME = """() => {
+  const [now, before] = ["now", "before"].map(
+    name => Number(document.querySelector(`[data-name="run/${name}"]`).dataset.value));
+  return Math.abs(now / before - 1) < 1e-3;
+}"""
 NUMBER = "document.querySelector(\"input[aria-label='thruster_lag, time_constant, number']\")"
 # Least distance in px between the lower edge of a chart's legend and its icons.
 APART = """Math.min(1e6, ...[...document.querySelectorAll('.chart')].flatMap(div => {
@@ -156,9 +161,7 @@ def test_a_slider_moves_the_replay_and_keys_alone_suffice(tab):
     for _ in range(40):
         tab.page.keyboard.press("PageDown")
     tab.page.wait_for_function(CHANGED, arg=["run/now", before])
-    tab.page.wait_for_timeout(1000)
-    absent = tab.numbers("run/")
-    assert absent["run/now"] == pytest.approx(absent["run/before"], rel=1e-3)
+    tab.page.wait_for_function(SAME)  # a busy machine follows the last key later
     tab.page.keyboard.press("1")
     tab.page.get_by_role("heading", name="Compare").wait_for()
     tab.page.keyboard.press("Tab")
