@@ -1,6 +1,6 @@
 """Qualisys Track Manager 6DOF export (tab separated, millimetres)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -138,9 +138,9 @@ def _body(path: Path, layout: Layout, name: str) -> dict[str, int]:
 
 
 def _without_events(table: Lines) -> Lines:
-    keep = [n for n, row in enumerate(table.cells) if row[0].strip() != "EVENT"]
-    cells, places = [table.cells[n] for n in keep], [table.numbers[n] for n in keep]
-    return Lines(table.path, table.names, cells, places, table.ended)
+    keep = [n for n, row in enumerate(table.rows) if row.split("\t", 1)[0].strip() != "EVENT"]
+    rows, places = [table.rows[n] for n in keep], [table.numbers[n] for n in keep]
+    return replace(table, rows=rows, numbers=places)
 
 
 def _rate(path: Path, layout: Layout) -> float | None:
@@ -172,7 +172,7 @@ def _time(table: Lines, layout: Layout, rate: float | None) -> Array:
         )
     if "Frame" in layout.names:
         return (times(table, layout.names.index("Frame")) - 1.0) / rate
-    return np.arange(len(table.cells)) / rate
+    return np.arange(len(table)) / rate
 
 
 def body_names(path: Path) -> list[str]:

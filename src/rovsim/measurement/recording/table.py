@@ -1,8 +1,9 @@
 """Columns of numbers in delimited text, with the line and column of whatever is wrong."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,20 +11,40 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
 
+AT_ONCE = 10_000  # lines: where one of them needs a closer look, so many get it
+
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines of cells below a line of column names.
+    """Lines below a line of column names, their cells `separator` apart.
 
     `numbers` are the line numbers in the file, from 1; `ended` is False when the file stops in
-    the middle of a line (no line end after it).
+    the middle of a line (no line end after it). Lines are split when they are asked for: cells
+    take ten times the room of their text.
     """
 
     path: Path
     names: list[str]
-    cells: list[list[str]]
-    numbers: list[int]
+    separator: str
+    rows: Sequence[str]
+    numbers: Sequence[int]
     ended: bool = True
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def cells(self, row: int) -> list[str]:
+        """Cells of one line, counted from the first below the names, or from the last."""
+        return self.rows[row].split(self.separator)
+
+    def all_cells(self) -> Iterator[list[str]]:
+        """Cells of each line."""
+        return (row.split(self.separator) for row in self.rows)
+
+    def between(self, first: int, last: int) -> "Lines":
+        """Lines from the first up to the one before the last."""
+        rows, numbers = self.rows[first:last], self.numbers[first:last]
+        return replace(self, rows=rows, numbers=numbers, ended=True)
 
 
 def csv_lines(path: Path) -> Lines:
@@ -58,9 +79,9 @@ def split_lines(
     path: Path, lines: list[str], header: int, names: list[str], separator: str, *, ended: bool
 ) -> Lines:
     """Split the lines below line `header` (index from 0); blank ones are skipped."""
-    filled = [(n + 1, line) for n, line in enumerate(lines) if n > header and line.strip()]
-    cells = [line.split(separator) for _, line in filled]
-    return Lines(path, names, cells, [number for number, _ in filled], ended)
+    filled = [n for n in range(header + 1, len(lines)) if lines[n].strip()]
+    rows = [lines[n] for n in filled]
+    return Lines(path, names, separator, rows, [n + 1 for n in filled], ended)
 
 
 def without_cut_line(table: Lines, columns: list[int]) -> tuple[Lines, int]:
@@ -68,14 +89,14 @@ def without_cut_line(table: Lines, columns: list[int]) -> tuple[Lines, int]:
 
     It is cut when it stops before one of the `columns` in use, or in the middle of such a cell.
     """
-    if not table.cells:
+    if not len(table):
         return table, 0
-    last = table.cells[-1]
+    last = table.cells(-1)
     short = len(last) <= max(columns)
     ragged = not table.ended and len(last) - 1 in columns and not _is_number(last[-1])
     if not (short or ragged):
         return table, 0
-    return Lines(table.path, table.names, table.cells[:-1], table.numbers[:-1]), 1
+    return table.between(0, len(table) - 1), 1
 
 
 def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
@@ -109,11 +130,20 @@ def numbers(table: Lines, columns: list[int]) -> Array:
     Raises:
         BadInput: a cell is missing or holds no number.
     """
+    found = np.empty((len(table), len(columns)))
+    for first in range(0, len(table), AT_ONCE):
+        some = table.between(first, first + AT_ONCE)
+        found[first : first + AT_ONCE] = _plain_numbers(some, columns)
+    return found
+
+
+def _plain_numbers(table: Lines, columns: list[int]) -> Array:
     try:
-        picked = [[row[c].strip() or "nan" for c in columns] for row in table.cells]
-        return np.array(picked, dtype=float).reshape(len(picked), len(columns))
-    except (IndexError, ValueError):
-        rows = zip(table.cells, table.numbers, strict=True)
+        return np.loadtxt(
+            table.rows, comments=None, delimiter=table.separator, usecols=columns, ndmin=2
+        )
+    except ValueError:  # empty cells, or what a message will be about
+        rows = zip(table.all_cells(), table.numbers, strict=True)
         return np.array([[_number(table, row, n, c) for c in columns] for row, n in rows])
 
 
@@ -126,7 +156,7 @@ def times(table: Lines, column: int) -> Array:
     time = numbers(table, [column])[:, 0]
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
-        cell = table.cells[bad[0]][column].strip()
+        cell = table.cells(int(bad[0]))[column].strip()
         raise _bad_cell(table, table.numbers[bad[0]], column, cell, "a finite time in s")
     return time
 

@@ -80,7 +80,7 @@ def rewritten(path: Path, scratch: Path) -> tuple[Path, tuple[str, ...]]:
 def _text(lines: Lines, columns: dict[int, Column]) -> str:
     names = [columns[k].ours if k in columns else name for k, name in enumerate(lines.names)]
     rows = [",".join(names)]
-    for cells in lines.cells:
+    for cells in lines.all_cells():
         rows.append(",".join(_cell(cell, columns.get(k)) for k, cell in enumerate(cells)))
     return "\n".join(rows) + "\n"
 
@@ -141,7 +141,7 @@ def _values(lines: Lines, place: int) -> Array:
     try:
         return numbers(lines, [place])[:, 0]
     except BadInput:
-        return np.full(len(lines.cells), np.nan)
+        return np.full(len(lines), np.nan)
 
 
 def _time(lines: Lines, place: int, unit: str) -> tuple[float, str]:
