@@ -16,6 +16,8 @@ from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.clock import find_stretches, time_step
 from rovsim.measurement.signals.motion import Motion
 
+AT_ONCE = 1 << 16  # samples in a stack: filters take some twenty times its room
+
 
 @dataclass(frozen=True)
 class Embedded:
@@ -54,13 +56,16 @@ def derive(
     for k, (path, window) in enumerate(zip(paths, windows, strict=True)):
         alike[window.before, _count_finite(path, window)].append(k)
     for (before, count), members in alike.items():
-        if count:
-            past = [motion.eta[windows[k].first - before : windows[k].first] for k in members]
+        if not count:
+            continue
+        most = max(1, AT_ONCE // (before + count))
+        for some in (members[k : k + most] for k in range(0, len(members), most)):
+            past = [motion.eta[windows[k].first - before : windows[k].first] for k in some]
             whole = np.stack(
-                [np.vstack([p, paths[k][:count]]) for p, k in zip(past, members, strict=True)]
+                [np.vstack([p, paths[k][:count]]) for p, k in zip(past, some, strict=True)]
             )
             both = np.stack(velocities(whole, time_step(motion.time), signals))
-            for i, k in enumerate(members):
+            for i, k in enumerate(some):
                 found[k][:, :count] = both[:, i, before:]
     return found
 
