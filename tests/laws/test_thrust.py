@@ -189,3 +189,16 @@ def test_a_common_gain_is_common_to_any_number_of_thrusters():
     commands = Commands(np.zeros(1), np.full((1, 9), 0.3), "thruster")
     thrust = world.thrust_path.over_steps(commands, EDGES).force[0]
     np.testing.assert_allclose(thrust, thrust[0])
+
+
+@pytest.mark.parametrize("between", ["held", "linear"])
+@pytest.mark.parametrize("kind", ["thruster", "demand", "wrench"])
+def test_many_steps_are_taken_in_parts_and_say_the_same(monkeypatch, kind, between):
+    value = sticks() if kind == "thruster" else 0.5 * sticks()[:, :6]
+    commands = Commands(np.linspace(0.1, 1.7, len(value)), value, kind)
+    path = model(InputDelay(delay=0.05), VoltageSag(fraction=0.2)).thrust_path
+    whole = path.over_steps(commands, EDGES, between)
+    monkeypatch.setattr("rovsim.dynamics.actuation.AT_ONCE", 17)
+    parts = path.over_steps(commands, EDGES, between)
+    for name in ("force", "wrench", "demand"):
+        np.testing.assert_array_equal(getattr(parts, name), getattr(whole, name))

@@ -1,6 +1,6 @@
 """Which run a thing belongs to, what was commanded, and where it was: known to all rooms."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, Mapping
 
 import numpy as np
@@ -33,7 +33,8 @@ class Commands:
     `time` (m,) in s on the MoCap clock, increasing. `value` (m, c): commands of the thrusters in
     [-1, 1] and angles in rad, as `Vehicle.command_columns` says (`thruster`), demands per axis in
     [-1, 1] (`demand`) or a body wrench in N, N m (`wrench`). `auxiliary`: what else was logged, by
-    name; `voltage` is that of the battery in V.
+    name; `voltage` is that of the battery in V. Where this is a part of a recording, `before` and
+    `after` are the s of it that lie on either side.
     Without lines (m = 0) nothing was commanded: free decay, towing, drifting.
     """
 
@@ -41,6 +42,13 @@ class Commands:
     value: Array
     kind: CommandKind
     auxiliary: Mapping[str, Logged] = field(default_factory=dict)
+    before: float = 0.0
+    after: float = 0.0
+
+    def within(self, begin: float, end: float) -> "Commands":
+        """The lines of a part of the recording, between two times."""
+        first, last = np.searchsorted(self.time, [begin, end])
+        return replace(self, time=self.time[first:last], value=self.value[first:last])
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,6 +27,7 @@ from rovsim.dynamics.effects.base import (
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
 Between = Literal["held", "linear"]
+AT_ONCE = 1 << 16  # steps whose thrust is found together: it takes twenty times the room of a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +45,25 @@ class Thrust:
     heading: Array | None = None
     angle: Array | None = None
     read: Array | None = None
+
+    @staticmethod
+    def joined(parts: "Sequence[Thrust]") -> "Thrust":
+        """Thrust over the steps of all parts, one after the other."""
+        if len(parts) == 1:
+            return parts[0]
+        return Thrust(
+            np.concatenate([part.force for part in parts]),
+            np.concatenate([part.wrench for part in parts]),
+            np.concatenate([part.demand for part in parts]),
+            _join([part.heading for part in parts], axis=1),
+            _join([part.angle for part in parts]),
+            _join([part.read for part in parts]),
+        )
+
+
+def _join(parts: Sequence[Array | None], axis: int = 0) -> Array | None:
+    known = [part for part in parts if part is not None]
+    return np.concatenate(known, axis=axis) if known else None
 
 
 class ThrustPath:
@@ -166,10 +186,14 @@ class ThrustPath:
         Before the first line its command holds, after the last one too. The mean is exact for held
         commands wherever a line falls inside a step.
         """
-        arrival = edges[0] + self.arrival(commands.time - edges[0])  # clocks agree at the start
-        duration = float(edges[-1] - edges[0])
+        start = float(edges[0]) - commands.before
+        arrival = start + self.arrival(commands.time - start)  # clocks agree at the start
+        duration = float(edges[-1]) + commands.after - start
         lines = replace(commands, time=arrival)
-        static = self.arrived(lines, edges, float(edges[0]), duration, between)
+        some = [edges[k : k + AT_ONCE + 1] for k in range(0, len(edges) - 1, AT_ONCE)]
+        static = Thrust.joined(
+            [self.arrived(_around(lines, e), e, start, duration, between) for e in some]
+        )
         force, _ = self.respond(static.force, float(edges[1] - edges[0]), None)
         return replace(static, force=force)
 
@@ -236,6 +260,14 @@ class ThrustPath:
         """Whether the same command makes the same static force at all times."""
         timed = "voltage" in lines.auxiliary or any(not s.steady for s in self.strengths)
         return len(lines.time) > 0 and not timed
+
+
+def _around(lines: Commands, edges: Array) -> Commands:
+    """The lines that steps between `edges` depend on."""
+    first = int(np.searchsorted(lines.time, edges[0], side="right")) - 1
+    last = int(np.searchsorted(lines.time, edges[-1], side="right")) + 1
+    at = slice(max(first, 0), last)
+    return replace(lines, time=lines.time[at], value=lines.value[at])
 
 
 def _between(time: Array, value: Array, at: Array, between: Between) -> Array:

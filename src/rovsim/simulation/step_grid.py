@@ -10,10 +10,14 @@ from rovsim.measurement.signals.motion import Motion
 
 @dataclass(frozen=True, eq=False)
 class StepGrid:
-    """`edges` (k+1,) s between k steps of one length; `stride` steps make a sample."""
+    """`edges` (k+1,) s between k steps of one length; `stride` steps make a sample.
+
+    `before`: s of the recording that lie before the first.
+    """
 
     edges: Array
     stride: int
+    before: float = 0.0
 
     @property
     def h(self) -> float:
@@ -22,16 +26,17 @@ class StepGrid:
 
     @property
     def time(self) -> Array:
-        """The same (k+1,), s since the first."""
-        return self.edges - self.edges[0]
+        """The same (k+1,), s since the start of the recording."""
+        return self.edges - self.edges[0] + self.before
 
     @staticmethod
     def over(motion: Motion, step: float) -> "StepGrid":
         """Steps no longer than `step` s over a run; those of a sampled run meet its samples."""
         if motion.binned:
             count = int(np.ceil((motion.end - motion.time[0]) / step - 1e-9))
-            return StepGrid(motion.time[0] + step * np.arange(count + 1), 1)
+            edges = motion.time[0] + step * np.arange(count + 1)
+            return StepGrid(edges, 1, motion.commands.before)
         period = float(motion.time[1] - motion.time[0])
         stride = int(np.ceil(period / step - 1e-9))
         h, count = period / stride, (len(motion.time) - 1) * stride
-        return StepGrid(motion.time[0] + h * np.arange(count + 1), stride)
+        return StepGrid(motion.time[0] + h * np.arange(count + 1), stride, motion.commands.before)

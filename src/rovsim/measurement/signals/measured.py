@@ -1,6 +1,6 @@
 """What of a motion was measured, where it was not all of it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Iterator, Mapping
 
 import numpy as np
@@ -30,6 +30,10 @@ class Measured:
     def period(self) -> float:
         """Time between two samples of the slowest channel, s."""
         return SHARE / float(self.cutoff[0])
+
+    def part(self, at: slice) -> "Measured":
+        """Of some samples of the run."""
+        return replace(self, when=self.when[at])
 
     def by_name(self) -> Iterator[tuple[str, Array]]:
         """Arrays under the names that `from_names` knows."""

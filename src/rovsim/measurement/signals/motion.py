@@ -1,6 +1,6 @@
 """A run on a clean clock: poses, then velocities and accelerations."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,8 @@ from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.recording.recording import labels, unlabelled
 from rovsim.measurement.signals.clock import find_stretches
 from rovsim.measurement.signals.measured import Measured
+
+BESIDE = 10.0  # s of the log kept on either side of a part: longer than any delay of a command
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +31,13 @@ class Poses:
     usable: Array
     commands: Commands
     measured: Measured | None = None
+
+    def part(self, at: slice) -> "Poses":
+        """Some samples of it."""
+        return replace(
+            self, time=self.time[at], eta=self.eta[at], usable=self.usable[at],
+            measured=self.measured and self.measured.part(at),
+        )  # fmt: skip
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""
@@ -77,6 +86,20 @@ class Motion:
     def state(self) -> Array:
         """Instantaneous state (n, 13): position, quaternion, velocity."""
         return np.concatenate([self.eta, self.state_nu], axis=1)
+
+    def part(self, at: slice) -> "Motion":
+        """Some samples or bins of it, which know where in the recording they lie."""
+        names = ("time", "eta", "nu", "nu_dot", "state_nu", "usable")
+        arrays = {name: getattr(self, name)[at] for name in names}
+        time, bins = arrays["time"], self.time[at.stop :]
+        end = float(bins[0] if self.binned and len(bins) else self.end if self.binned else time[-1])
+        commands = self.commands.within(float(time[0]) - BESIDE, end + BESIDE)
+        before = commands.before + float(time[0] - self.time[0])
+        after = commands.after + self.end - end
+        return replace(
+            self, commands=replace(commands, before=before, after=after), end=end,
+            measured=self.measured and self.measured.part(at), **arrays,
+        )  # fmt: skip
 
     def segments(self) -> list[tuple[int, int]]:
         """Stretches [first, last) of usable samples, in order."""
