@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from rovsim.application.pipeline.recordings import load_campaign_vehicle
-from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_runs
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.campaign import load_campaign
@@ -22,5 +23,8 @@ def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[O
     campaign = load_campaign(folder / "raw")
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())
-    base, flown = nominal(load_campaign_vehicle(campaign)), Runs({"a": motion}, {"a": stage})
-    return base, prepare_runs(flown, "train", ReplaySettings(), built_in(), base.body.free)
+    base, flown = (
+        nominal(load_campaign_vehicle(campaign)),
+        Runs({"a": motion}, {"a": stage}, {"a": "train"}),
+    )
+    return base, list(prepare_train(flown, ReplaySettings(), built_in(), base.body.free).runs)

@@ -130,7 +130,7 @@ def test_the_ladder_of_a_study_puts_the_effects_where_their_model_stands():
 
 
 def test_a_step_without_runs_has_every_key_and_no_number():
-    empty = Ladder(steps=(score_step("nominal", [], []),)).to_json()["steps"][0]
+    empty = Ladder(steps=(score_step("nominal", []),)).to_json()["steps"][0]
     assert empty["windows_2s"] is None
     assert set(empty["velocity_mae"].values()) == {None}
 

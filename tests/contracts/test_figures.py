@@ -79,6 +79,17 @@ def test_nothing_measured_is_said_not_crashed(name):
     show(drawn(name, content))
 
 
+def test_of_many_runs_those_are_shown_that_lack_most():
+    one = next(iter(study()["quality"].values()))
+    found = {f"r{k}": one.model_copy(update={"not_found": k}) for k in range(100)}
+    found["r3"] = one.model_copy(update={"unusable": "it does not move"})
+    shown = [
+        text.get_text()
+        for text in drawn("excitation", {"quality": found}).axes[0].get_yticklabels()
+    ]
+    assert shown[::-1] == ["r3", *(f"r{k}" for k in range(61, 100))]
+
+
 def test_the_bars_of_the_ladder_are_its_numbers():
     content = study()
     steps = {s.model: s.windows_2s for s in content["ladder"].models}

@@ -9,7 +9,7 @@ from rovsim.benchmarks.blind.suites import hiding
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.observed_run import prepare_runs
+from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.dynamics.catalogue import built_in
@@ -40,7 +40,7 @@ def test_a_tank_that_hides_it_gives_it_back(name, settings, tmp_path):
     flown = fly(hiding("single", (name,), 2, "development", tank=MINUTE), tmp_path / "raw")
     data = measure(open_campaign(str(tmp_path / "raw")), settings.signals)
     base = nominal(data.vehicle)
-    runs = prepare_runs(data.runs, "train", settings.replay, built_in(), base.body.free)
+    runs = list(prepare_train(data.runs, settings.replay, built_in(), base.body.free).runs)
     bank = FilterBank.design(runs, base, FIRST_NOISE)
     hidden = build_effect(flown.hidden[0], built_in()).given()
     listed = [c for c in list_candidates(runs, built_in(), base.vehicle) if c.effect.id == name]

@@ -17,12 +17,18 @@ from rovsim.reporting.formula import mathml
 from rovsim.reporting.html import leave_one_run_out, published_errors, report, terminal
 from rovsim.reporting.html.marked import BEGIN, END
 from rovsim.reporting.html.speed import timing_sentences
-from rovsim.reporting.html.verdict import explain
+from rovsim.reporting.html.verdict import explain, part_sentences
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import several, significant
 from rovsim.results.comparison import Comparison
-from rovsim.results.diagnosis import DiagnosisErrors, FittedEffect, FittedValue, Unexplained
+from rovsim.results.diagnosis import (
+    DiagnosisErrors,
+    FittedEffect,
+    FittedValue,
+    LookedAt,
+    Unexplained,
+)
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import MissedCell
@@ -291,3 +297,27 @@ def test_tables_hold_the_comparisons_numbers(content, quantity):
 
 def test_latex_special_characters_are_escaped():
     assert r"zero\_acceleration" in tabulate_ladder(study()["ladder"]).latex()
+
+
+def test_of_many_runs_it_says_which_are_drawn(content):
+    many = dict.fromkeys(map(str, range(200)))
+    data = ReportData(
+        **{k: content[k] for k in ("comparison", "ladder")}, motions=many,
+        replays={"nominal": {}, "better": {}}, drawn=("3", "4"),
+    )  # fmt: skip
+    said = "Drawn are the 2 runs on which better errs most, of 200; the workbench shows each."
+    assert said in report.render(report.Report("x", data))
+    assert "Drawn are" not in rendered(comparison=content["comparison"])
+
+
+def test_long_lists_of_runs_are_cut():
+    assert several(["a", "b", "c"]) == "a, b, c"
+    assert several([f"r{k}" for k in range(200)]).endswith("r7 and 192 more")
+
+
+def test_what_was_not_looked_at_is_said():
+    part = LookedAt(seconds=900.0, of=48000.0, wider=7.3)
+    (said,) = part_sentences(part)
+    assert said.startswith("Looked at: those 15.0 of the 800 min of train runs that tell most.")
+    assert "7.3 times narrower" in said
+    assert part_sentences(LookedAt(seconds=60.0, of=60.0, wider=1.0)) == []

@@ -22,7 +22,8 @@ from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Inputs, Jobs, Place
 from rovsim.dynamics.model import zero_acceleration
-from rovsim.evaluation.scores import rms, score, subtract
+from rovsim.evaluation.scored import score
+from rovsim.evaluation.scores import rms, subtract
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.prediction import Replay
@@ -226,7 +227,7 @@ def simulated(seconds=6.0, gap=None):
 
 # motion of the pilot only: a cut-off far above it leaves the prediction as it was
 OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
-SHORT = ReplaySettings(horizons=(0.5,))
+SHORT = ReplaySettings().model_copy(update={"horizons": (0.5,)})
 
 
 def test_the_model_that_moved_the_vehicle_predicts_it():

@@ -8,7 +8,7 @@ from rovsim.application.pipeline.recordings import load_campaign_vehicle, measur
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
-from rovsim.evaluation.scores import score
+from rovsim.evaluation.scored import score
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.replay import replay

@@ -12,7 +12,8 @@ from rovsim.application.pipeline.recordings import load_campaign_vehicle
 from rovsim.core.rotations import to_euler
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.evaluation.scores import pool, rms, score, subtract
+from rovsim.evaluation.scored import score
+from rovsim.evaluation.scores import Sums, subtract
 from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
@@ -28,13 +29,13 @@ ROOT = Path(__file__).parents[2]
 
 def test_the_nominal_model_explains_the_empty_practice_tank():
     campaign = load_campaign(needed(SHARED / "practice" / "null-2"))
-    model, found = nominal(load_campaign_vehicle(campaign)), []
+    model, found = nominal(load_campaign_vehicle(campaign)), Sums.nothing()
     for run in campaign.runs:
         if run.split == "test":
             motion = clean(read_run(campaign, run.id)[0], SignalSettings())
             again = replay(model, motion, SignalSettings(), ReplaySettings())
-            found.append(subtract(motion, again.horizons["2"]))
-    assert np.all(rms(pool(found).nu) <= [0.013] * 3 + [0.035] * 3)
+            found += Sums.of(subtract(motion, again.horizons["2"]))
+    assert np.all(found.velocity_rmse <= [0.013] * 3 + [0.035] * 3)
 
 
 NAMES = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "u_m_s", "v_m_s", "w_m_s")

@@ -20,7 +20,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.observed_run import prepare_runs
+from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.selection.gauss_newton import fit, polish
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.damping import LinearDamping
@@ -113,7 +113,7 @@ def observed(folder):
     settings = compose([])
     data = measure(open_campaign(str(folder)), settings.signals)
     base = nominal(data.vehicle)
-    runs = prepare_runs(data.runs, "train", settings.replay, built_in(), base.body.free)
+    runs = list(prepare_train(data.runs, settings.replay, built_in(), base.body.free).runs)
     return base, {run.motion.run.id: run for run in runs}
 
 

@@ -66,6 +66,6 @@ rule score:
     benchmark:
         f"{R}/benchmarks/score/{{model}}.tsv"
     params:
-        code=study.code("evaluation.scores"),
+        code=study.code("evaluation.scored"),
     script:
         "../scripts/score.py"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Iterator
 
 from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
+from rovsim.core.remade import ReadAgain, Remade, read_again
 from rovsim.core.schema import S, checked
 from rovsim.measurement.signals.motion import Motion
 
@@ -81,9 +82,9 @@ class Job:
         """
         return checked(kind, json.loads(self.params.settings), "conf")
 
-    def motions(self, name: str = "motions") -> list[Motion]:
-        """Runs, read."""
-        return [Motion.read(path) for path in self.paths(name)]
+    def motions(self, name: str = "motions") -> ReadAgain[Motion]:
+        """Runs, each read when it is asked for."""
+        return ReadAgain(self.paths(name), Motion.read)
 
     @property
     def vehicle(self) -> "Vehicle":
@@ -113,14 +114,14 @@ class Job:
 
         return Runs.read(self.paths("motions"), self.paths("stages"))
 
-    def replays(self) -> "dict[str, dict[str, Replay]]":
-        """The input `replays` by model and run, in the order of the rule."""
+    def replays(self) -> "dict[str, Remade[Replay]]":
+        """The input `replays` by model and run, in the order of the rule; read when asked for."""
         from rovsim.simulation.prediction import Replay
 
-        found: dict[str, dict[str, Replay]] = {}
-        for replay in map(Replay.read, self.paths("replays")):
-            found.setdefault(replay.model, {})[replay.run.id] = replay
-        return found
+        found: dict[str, dict[str, Path]] = {}
+        for path in self.paths("replays"):  # MODEL/RUN.npz
+            found.setdefault(path.parent.name, {})[path.stem] = path
+        return {model: read_again(runs, Replay.read) for model, runs in found.items()}
 
 
 @contextmanager

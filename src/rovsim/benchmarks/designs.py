@@ -26,7 +26,7 @@ from rovsim.design.report import describe_start, report
 from rovsim.design.search import Tried
 from rovsim.design.settings import Question
 from rovsim.design.worth import NOTHING
-from rovsim.diagnosis.observer.observed_run import prepare_runs
+from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry, Value
@@ -147,7 +147,7 @@ def _fly(
         return {"left": error.found}
     runs = _measure(folder / f"with_{name}", settings).runs
     base = nominal(data.vehicle)
-    train = prepare_runs(runs, "train", settings.replay, built_in(), base.body.free)
+    train = prepare_train(runs, settings.replay, built_in(), base.body.free).runs
     return _reached(found.known, learn(base, train, question, built_in()))
 
 

@@ -17,7 +17,7 @@ from rovsim.design.search import Range, Tried, search, try_usual
 from rovsim.design.settings import Question
 from rovsim.design.surroundings import Surroundings, surround
 from rovsim.design.worth import Worth, value
-from rovsim.diagnosis.observer.observed_run import prepare_runs
+from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
@@ -71,7 +71,7 @@ def plan(
         BadInput: nothing that could be planned, or no flight stays within the limits.
     """
     stage("learning")
-    train = prepare_runs(runs, "train", question.replay, catalogue, model.body.free)
+    train = prepare_train(runs, question.replay, catalogue, model.body.free).runs
     usable = select_usable(train)
     if not usable.enough:
         raise BadInput(

@@ -6,8 +6,7 @@ from typing import Callable
 import numpy as np
 
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
-from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_runs
-from rovsim.diagnosis.observer.windows import Windows
+from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
 from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
 from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -15,8 +14,9 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model
 from rovsim.evaluation.error_conditions.entries import list_conditions
-from rovsim.evaluation.error_conditions.search import search_conditions
-from rovsim.evaluation.ladder import score_step
+from rovsim.evaluation.error_conditions.search import search_runs
+from rovsim.evaluation.ladder import HORIZON, StepScore
+from rovsim.evaluation.scores import subtract
 from rovsim.measurement.runs import Runs
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
@@ -48,39 +48,42 @@ def diagnose_campaign(
 ) -> Diagnosed:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
     stage("reading")
-    train, test = (
-        prepare_runs(runs, split, settings.replay, catalogue, base.body.free)
-        for split in ("train", "test")
+    train = prepare_train(
+        runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
     found = diagnose(
-        base, train, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
+        base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
     )
     stage("scoring")
-    motions = [w.motion for w in train]
     searched = (
-        [search_conditions(base, motions, settings.signals, settings.replay)] if motions else []
+        [search_runs(base, runs, settings.signals, settings.replay)] if runs.of("train") else []
     )
     where = [finding.share() for one in searched for finding in one.explanation.findings]
-    ladder = _climb(found, test, settings)
+    ladder = _climb(found, runs, settings, catalogue)
     return Diagnosed(
-        report(found, where, ladder, describe_model(base), catalogue), list_conditions(searched),
-        found.proposed.source if found.proposed else None,
+        report(found, where, ladder, describe_model(base), catalogue, train.looked_at),
+        list_conditions(searched), found.proposed.source if found.proposed else None,
     )  # fmt: skip
 
 
-def _climb(found: TrainDiagnosis, test: list[ObservedRun], settings: DiagnosisSettings) -> Ladder:
+def _climb(
+    found: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue
+) -> Ladder:
     """The base, the effects one after the other, and the noise floor, on the test runs.
 
     Where a law is proposed, it and what is beside it come last, before the noise floor.
     """
-    motions = [w.motion for w in test]
-    horizons = settings.replay.model_copy(update={"horizons": (2.0,)})
-    steps = [
-        score_step(one.name, motions, [replay(one, m, settings.signals, horizons) for m in motions])
-        for one in _list_models(found)
-    ]
-    floor = Step(model=NOISE_FLOOR, windows_2s=_floor(found, test, settings, steps[-1].windows_2s))
-    return Ladder(steps=(*steps, floor))
+    models, horizons = _list_models(found), (float(HORIZON),)
+    how = settings.replay.model_copy(update={"horizons": horizons})
+    scores = [StepScore(model.name) for model in models]
+    for name in runs.of("test"):
+        motion = runs.motions[name]
+        for model, score in zip(models, scores, strict=True):
+            replayed = replay(model, motion, settings.signals, how, open_loop=False)
+            score.add(motion, subtract(motion, replayed.horizons[HORIZON]))
+    steps = [score.step for score in scores]
+    floor = _floor(found, runs, settings, catalogue, steps[-1].windows_2s)
+    return Ladder(steps=(*steps, Step(model=NOISE_FLOOR, windows_2s=floor)))
 
 
 def _list_models(found: TrainDiagnosis) -> list[Model]:
@@ -88,11 +91,9 @@ def _list_models(found: TrainDiagnosis) -> list[Model]:
 
 
 def _floor(
-    found: TrainDiagnosis,
-    test: list[ObservedRun],
-    settings: DiagnosisSettings,
+    found: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue,
     reached: float | None,
-) -> float | None:
+) -> float | None:  # fmt: skip
     """What a perfect model would score; None where that cannot be estimated.
 
     Part of what is taken for noise may be structure: a floor above what was reached is none.
@@ -100,11 +101,12 @@ def _floor(
     if found.fit is None or reached is None:
         return None
     fit = found.proposed.fit if found.proposed else found.fit
+    test = prepare_test(runs, settings.replay, catalogue, found.base.body.free)
     floor = simulate_noise_floor(
         _list_models(found)[-1], test, fit.noise, settings.signals, settings.seed
     )
-    # what was reached is itself drawn by chance: a root mean square of w windows
-    chance = 1.0 / np.sqrt(2.0 * sum(len(Windows(run).spans) for run in test))
-    if floor is None or floor > (1.0 + chance) * reached:
+    if floor is None or floor.error is None:
         return None
-    return min(floor, reached)
+    # what was reached is itself drawn by chance: a root mean square of w windows
+    chance = 1.0 / np.sqrt(2.0 * floor.windows)
+    return None if floor.error > (1.0 + chance) * reached else min(floor.error, reached)

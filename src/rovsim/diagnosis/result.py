@@ -23,6 +23,7 @@ from rovsim.results.diagnosis import (
     DiagnosisErrors,
     FittedEffect,
     FittedNoise,
+    LookedAt,
     RivalEffect,
     ScaleOfForces,
     Unexplained,
@@ -39,6 +40,7 @@ def report(
     ladder: Ladder,
     base: Mapping[str, JsonValue],
     catalogue: Catalogue,
+    looked_at: LookedAt | None = None,
 ) -> Diagnosis:
     """What is written of a diagnosis.
 
@@ -48,6 +50,7 @@ def report(
         ladder: the base, the effects one after the other, and the noise floor, on the test runs.
         base: file of the model that was diagnosed, so that `rovsim add` needs nothing else.
         catalogue: what the effects are.
+        looked_at: how much of the train runs.
     """
     alike = group_indistinguishable(found.rivals)
     joint = _list_joint(found)
@@ -71,6 +74,7 @@ def report(
             if np.isfinite(r.deficit)
         ),
         noise=_noise(found),
+        looked_at=looked_at,
         base=dict(base),
         ladder=ladder,
     )

@@ -8,6 +8,8 @@ from rovsim.core.schema import Section
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings
 
+MOST = 600.0  # s of train runs: ten minutes at 100 Hz take 1.5 GB
+
 
 class SearchSettings(Section):
     """How effects are chosen.
@@ -15,7 +17,8 @@ class SearchSettings(Section):
     `false_alarm` is the chance of naming an effect where none is missing, per addition. `relevant`:
     an effect without which no axis' error in 2 s windows is larger by this share is left out,
     however sure it is: at that size the laboratory's clocks and roundings look like effects.
-    The search ends where the evidence ends; `most_effects` only guards against one that does not.
+    Of train runs that last longer than `most_seconds` together, those parts are looked at that tell
+    most. The search ends where the evidence ends; `most_effects` guards against one that does not.
     """
 
     false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.01
@@ -23,6 +26,7 @@ class SearchSettings(Section):
     trials: PositiveInt = 3
     most_effects: PositiveInt = 12
     relevant: Annotated[float, Field(ge=0)] = 0.02
+    most_seconds: Annotated[float, Field(ge=60)] = MOST
 
 
 class DiagnosisSettings(Section):

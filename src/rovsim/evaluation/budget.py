@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.results.base import ByAxis
-from rovsim.results.budget import BudgetTotals, RunBudget
+from rovsim.results.budget import RunBudget
 
 MISSING = "missing"
 
@@ -40,6 +39,11 @@ class Budget:
             for name, force in forces.items()
         }
 
+    @property
+    def totals(self) -> RunBudget:
+        """What `budget.json` says of the run."""
+        return RunBudget(model=self.model, rms=self.rms())
+
     def write(self, path: Path) -> None:
         """Write to `.npz`."""
         parts = {f"part/{name}": force for name, force in self.parts.items()}
@@ -52,8 +56,3 @@ class Budget:
         a = read_arrays(path)
         parts = {key.removeprefix("part/"): a[key] for key in a if key.startswith("part/")}
         return Budget(str(a["label"][0]), str(a["label"][1]), a["time"], parts, a["missing"])
-
-
-def total(budgets: Sequence[Budget]) -> BudgetTotals:
-    """`budget.json`: RMS by run, part and axis."""
-    return BudgetTotals(runs={b.run: RunBudget(model=b.model, rms=b.rms()) for b in budgets})

@@ -1,26 +1,50 @@
 """The ladder: the error falling, step by step, on runs that no step was fitted to."""
 
-from typing import Sequence
+from dataclasses import dataclass, field
+from typing import Iterable
 
-from rovsim.evaluation.scores import normalize, pool, rms, subtract, summarize
+from rovsim.evaluation.scores import Errors, Moments, Sums, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
 
+HORIZON = "2"  # s, of the windows
 
-def score_step(
-    name: str, motions: Sequence[Motion], replays: Sequence[Replay], split: str = "test"
-) -> Step:
-    """A model's error in 2 s windows, all runs of the split pooled; None where there is none."""
-    pairs = [(m, r) for m, r in zip(motions, replays, strict=True) if m.run.split == split]
-    if not pairs:
-        return Step(model=name)
-    errors = pool([subtract(m, r.horizons["2"]) for m, r in pairs])
-    metrics = summarize(errors)
-    return Step(
-        model=name,
-        split=split,
-        acceleration_rmse=metrics.acceleration_rmse,
-        velocity_mae=metrics.velocity_mae,
-        windows_2s=normalize([m for m, _ in pairs], rms(errors.nu)),
-    )
+
+@dataclass(eq=False)
+class StepScore:
+    """A model's error in 2 s windows, all runs of a split pooled as they are taken in."""
+
+    model: str
+    split: str = "test"
+    _errors: Sums = field(default_factory=Sums.nothing)
+    _measured: Moments = field(default_factory=Moments.nothing)
+
+    def add(self, motion: Motion, errors: Errors) -> None:
+        """Take in a run and the errors in its windows of 2 s; one of another split is passed by."""
+        if motion.run.split != self.split:
+            return
+        self._errors += Sums.of(errors)
+        self._measured += Moments.of(motion.nu[motion.usable])
+
+    @property
+    def step(self) -> Step:
+        """What was found; None where there was no run."""
+        if not self._errors.samples:
+            return Step(model=self.model, split=self.split)
+        metrics = self._errors.metrics()
+        return Step(
+            model=self.model,
+            split=self.split,
+            acceleration_rmse=metrics.acceleration_rmse,
+            velocity_mae=metrics.velocity_mae,
+            windows_2s=normalize(self._measured.std, self._errors.velocity_rmse),
+        )
+
+
+def score_step(name: str, pairs: Iterable[tuple[Motion, Replay]], split: str = "test") -> Step:
+    """A model's step, from runs and their replays."""
+    score = StepScore(name, split)
+    for motion, replay in pairs:
+        score.add(motion, subtract(motion, replay.horizons[HORIZON]))
+    return score.step

@@ -1,21 +1,18 @@
 """How far a model is from the measurement: one definition of each number, used everywhere."""
 
-from dataclasses import dataclass
-from typing import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Iterable
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.quality import EXCITED
 from rovsim.measurement.signals.measured import Measured, blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis, or_none
-from rovsim.results.comparison import OPEN_LOOP, Comparison, Metrics, ModelErrors, RunErrors
-from rovsim.results.growth import Curve
-from rovsim.simulation.prediction import Prediction, Replay
-from rovsim.simulation.windows import find_windows
+from rovsim.results.comparison import Metrics
+from rovsim.simulation.prediction import Prediction
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,89 +54,124 @@ def _posed(measured: Measured | None) -> tuple[float, float]:
     return (1.0 if place else np.nan), (1.0 if angle else np.nan)
 
 
-def pool(parts: Sequence[Errors]) -> Errors:
-    """Errors of several runs as one set of samples."""
-    names = ("nu", "nu_dot", "position", "attitude")
-    return Errors(*(np.concatenate([getattr(p, name) for p in parts]) for name in names))
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """Sums over samples, from which all metrics follow; those of several runs add up.
+
+    `samples`, `accelerated` samples with an acceleration; `nu_squared`, `nu_absolute`,
+    `nu_dot_squared` (6,), `position_squared` m2, `attitude_squared` rad2.
+    """
+
+    samples: int
+    accelerated: int
+    nu_squared: Array
+    nu_absolute: Array
+    nu_dot_squared: Array
+    position_squared: float
+    attitude_squared: float
+
+    @staticmethod
+    def nothing() -> "Sums":
+        """Of no samples."""
+        return Sums(0, 0, np.zeros(6), np.zeros(6), np.zeros(6), 0.0, 0.0)
+
+    @staticmethod
+    def of(errors: Errors) -> "Sums":
+        """Sums of the errors of one run."""
+        with np.errstate(over="ignore"):  # of a model that diverged: infinite
+            return Sums(
+                len(errors.nu),
+                len(errors.nu_dot),
+                np.square(errors.nu).sum(axis=0),
+                np.abs(errors.nu).sum(axis=0),
+                np.square(errors.nu_dot).sum(axis=0),
+                float(np.square(errors.position).sum()),
+                float(np.square(errors.attitude).sum()),
+            )
+
+    def __add__(self, other: "Sums") -> "Sums":
+        pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return Sums(*(one + more for one, more in pairs))
+
+    @property
+    def velocity_rmse(self) -> Array:
+        """RMS (6,) of the velocity error; NaN where there is nothing."""
+        return root_mean(self.nu_squared, self.samples)
+
+    def metrics(self) -> Metrics:
+        """The metrics of contract section 3; None where the model left the finite numbers."""
+        return Metrics(
+            acceleration_rmse=ByAxis.of(root_mean(self.nu_dot_squared, self.accelerated)),
+            velocity_mae=ByAxis.of(_mean(self.nu_absolute, self.samples)),
+            velocity_rmse=ByAxis.of(self.velocity_rmse),
+            position_rmse_m=or_none(float(root_mean(self.position_squared, self.samples))),
+            attitude_rmse_rad=or_none(float(root_mean(self.attitude_squared, self.samples))),
+        )
+
+
+def _mean(total: Array | float, count: int) -> Array:
+    return np.asarray(total) / count if count else np.full(np.shape(total), np.nan)
+
+
+def root_mean(total: Array | float, count: int) -> Array:
+    """Root of the mean of `count` squares that add up to `total` (...); NaN where there is none."""
+    return np.asarray(np.sqrt(_mean(total, count)))
 
 
 def rms(x: Array) -> Array:
     """Root mean square over the first axis; NaN where there is nothing."""
-    if not len(x):
-        return np.full(x.shape[1:], np.nan)
     with np.errstate(over="ignore"):  # of a model that diverged: infinite
-        return np.sqrt(np.mean(np.square(x), axis=0))
-
-
-def mean_absolute(x: Array) -> Array:
-    """Mean absolute value over the first axis; NaN where there is nothing."""
-    return np.mean(np.abs(x), axis=0) if len(x) else np.full(x.shape[1:], np.nan)
+        return root_mean(np.square(x).sum(axis=0), len(x))
 
 
 def summarize(errors: Errors) -> Metrics:
-    """The metrics of contract section 3; None where the model left the finite numbers."""
-    return Metrics(
-        acceleration_rmse=ByAxis.of(rms(errors.nu_dot)),
-        velocity_mae=ByAxis.of(mean_absolute(errors.nu)),
-        velocity_rmse=ByAxis.of(rms(errors.nu)),
-        position_rmse_m=or_none(float(rms(errors.position))),
-        attitude_rmse_rad=or_none(float(rms(errors.attitude))),
-    )
+    """The metrics of one set of errors."""
+    return Sums.of(errors).metrics()
 
 
-def score(motion: Motion, replay: Replay) -> RunErrors:
-    """All metrics of one model on one run."""
-    found = {name: summarize(subtract(motion, p)) for name, p in replay.horizons.items()}
-    return RunErrors(
-        split=motion.run.split,
-        control=motion.run.control,
-        open_loop=found.pop(OPEN_LOOP),
-        windows=found,
-    )
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """How many samples, their mean (6,) and the squares (6,) about it; those of two sets add up.
+
+    Chan, Golub & LeVeque 1983, Am. Stat. 37(3), eq. 2.1.
+    """
+
+    count: int
+    mean: Array
+    squares: Array
+
+    @staticmethod
+    def nothing() -> "Moments":
+        """Of no samples."""
+        return Moments(0, np.zeros(6), np.zeros(6))
+
+    @staticmethod
+    def of(x: Array) -> "Moments":
+        """Of samples (n, 6)."""
+        mean = x.mean(axis=0) if len(x) else np.zeros(x.shape[1:])
+        return Moments(len(x), mean, np.square(x - mean).sum(axis=0))
+
+    def __add__(self, other: "Moments") -> "Moments":
+        count = self.count + other.count
+        share, apart = other.count / max(count, 1), other.mean - self.mean
+        squares = self.squares + other.squares + apart**2 * self.count * share
+        return Moments(count, self.mean + share * apart, squares)
+
+    @property
+    def std(self) -> Array:
+        """Standard deviation (6,); NaN where there is nothing."""
+        return root_mean(self.squares, self.count)
 
 
-def score_all(motions: Sequence[Motion], replays: Mapping[str, Mapping[str, Replay]]) -> Comparison:
-    """`comparison.json` of replays by model and run."""
-    models = {
-        name: ModelErrors(runs={m.run.id: score(m, runs[m.run.id]) for m in motions})
-        for name, runs in replays.items()
-    }
-    return Comparison(models=models)
+def measured_spread(motions: Iterable[Motion]) -> Array:
+    """Standard deviation (6,) of the measured velocity over some runs."""
+    return sum((Moments.of(m.nu[m.usable]) for m in motions), Moments.nothing()).std
 
 
-def normalize(motions: Sequence[Motion], velocity_rmse: Array) -> float | None:
+def normalize(spread: Array, velocity_rmse: Array) -> float | None:
     """Velocity RMSE (6,) over the standard deviation of the measured velocity, mean over axes.
 
     Only axes that were excited count: an axis nobody moved cannot be judged.
     """
-    nu = np.concatenate([m.nu[m.usable] for m in motions])
-    spread = np.std(nu, axis=0)
     moved = spread > EXCITED
     return or_none(np.mean(velocity_rmse[moved] / spread[moved])) if moved.any() else None
-
-
-def trace_growth(motions: Sequence[Motion], replays: Sequence[Replay], horizon: str = "5") -> Curve:
-    """Velocity RMSE against time since the anchor, from the windows of one horizon, test runs."""
-    ages, found = [], []
-    for motion, replay in zip(motions, replays, strict=True):
-        if motion.run.split == "test" and horizon in replay.horizons:
-            prediction = replay.horizons[horizon]
-            known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
-            ages.append(_age(motion, prediction, float(horizon))[known])
-            found.append((prediction.nu - motion.nu)[known])
-    age, error = np.concatenate([*ages, np.empty(0)]), np.concatenate([*found, np.empty((0, 6))])
-    edges = np.linspace(0.0, float(horizon), 26)
-    bins = np.digitize(age, edges)
-    kept = [b for b in range(1, len(edges)) if np.any(bins == b)]
-    rows = np.array([rms(error[bins == b]) for b in kept]).reshape(-1, 6)
-    columns = {a: tuple(map(or_none, row)) for a, row in zip(AXES, rows.T, strict=True)}
-    return Curve(horizon_s=tuple(float(edges[b]) for b in kept), velocity_rmse=columns)
-
-
-def _age(motion: Motion, prediction: Prediction, horizon: float) -> Array:
-    """Time since the anchor of the window each sample belongs to, s."""
-    age = np.full(len(motion.time), np.nan)
-    for a, b in find_windows(motion, horizon):
-        at = slice(a, b) if motion.binned else slice(a + 1, b + 1)
-        age[at] = motion.time[at] - motion.time[a]
-    return age

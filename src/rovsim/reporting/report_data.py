@@ -11,11 +11,12 @@ from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import Result
+from rovsim.results.budget import BudgetTotals
 from rovsim.results.comparison import OPEN_LOOP, Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
-from rovsim.results.ladder import Ladder
+from rovsim.results.ladder import Ladder, Step
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.quality import Quality
@@ -30,7 +31,8 @@ R = TypeVar("R", bound=Result)
 class ReportData:
     """Motions by run, replays by model and run, budgets of one model by run, and results.
 
-    A result that is not known is None, and what would show it is left out.
+    A result that is not known is None, and what would show it is left out. `drawn`: runs of which
+    each has its figures.
     """
 
     motions: Mapping[str, Motion] = field(default_factory=dict)
@@ -39,6 +41,9 @@ class ReportData:
     quality: Mapping[str, Quality] = field(default_factory=dict)
     comparison: Comparison | None = None
     growth: Growth | None = None
+    steps: tuple[Step, ...] = ()
+    forces: BudgetTotals | None = None
+    drawn: tuple[str, ...] = ()
     ladder: Ladder | None = None
     timing: Timing | None = None
     where: ErrorConditions | None = None

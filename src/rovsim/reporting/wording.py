@@ -1,9 +1,10 @@
 """Names and numbers as people write them."""
 
 import math
-from typing import Iterable
+from typing import Iterable, Sequence
 
 LONGEST = 40  # letters of a name before its middle is left out
+MOST = 8  # names told of many: a line of run ids
 
 
 def short(name: str, length: int = LONGEST) -> str:
@@ -11,6 +12,13 @@ def short(name: str, length: int = LONGEST) -> str:
     if len(name) <= length:
         return name
     return f"{name[: length // 2]}…{name[-(length // 2 - 1) :]}"
+
+
+def several(names: Sequence[str]) -> str:
+    """Names that may be hundreds: of many the first ones, and how many more."""
+    if len(names) <= MOST + 1:
+        return ", ".join(names)
+    return f"{', '.join(names[:MOST])} and {len(names) - MOST} more"
 
 
 def listed(names: Iterable[str]) -> str:

@@ -135,6 +135,17 @@ class ScaleOfForces(Section):
     parameters: tuple[str, ...]
 
 
+class LookedAt(Section):
+    """How many s of the train runs were looked at, of how many there are.
+
+    With all of them standard deviations would be up to `wider` times smaller.
+    """
+
+    seconds: float
+    of: float
+    wider: float
+
+
 class FittedNoise(Sparse):
     """Six values each: disturbance m/s2, rad/s2; its memory s; reading m, rad. Empty if unknown.
 
@@ -183,6 +194,7 @@ class Diagnosis(Result):
     not_observable: tuple[str, ...] = ()
     rivals: tuple[RivalEffect, ...] = ()
     noise: FittedNoise = FittedNoise()
+    looked_at: LookedAt | None = None
     base: dict[str, JsonValue]
     ladder: Ladder
 

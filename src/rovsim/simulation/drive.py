@@ -1,11 +1,12 @@
 """What drives a model over integration steps, or at instants."""
 
 from dataclasses import dataclass, field, replace
-from typing import Callable, NamedTuple, Sequence, TypeVar
+from typing import Callable, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.remade import Recent
 from rovsim.core.run import Commands
 from rovsim.dynamics.actuation import Between, Thrust
 from rovsim.dynamics.model import Model
@@ -13,8 +14,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 
-T = TypeVar("T")
-KEPT = 64  # drives of a run: what one step of a fit needs, some 0.2 MB each a minute
+KEPT = 1 << 26  # bytes: fifty drives of a minute, what one step of a fit needs
 
 
 class Reads(NamedTuple):
@@ -147,47 +147,45 @@ class Drives:
         edges: ends (k+1,) s of the steps, over each of which thrust is steady.
         between: two lines of the log.
         parts: (s,) so many steps are then joined to each one.
+        kept: where they are kept, perhaps with those of other runs.
     """
 
     def __init__(
-        self, commands: Commands, edges: Array, between: Between, parts: Array | None = None
+        self,
+        commands: Commands,
+        edges: Array,
+        between: Between,
+        parts: Array | None = None,
+        kept: Recent | None = None,
     ) -> None:
         self._given = commands, edges, between
         self._parts = parts
-        self._actuations: dict[tuple, tuple[Actuation, ...]] = {}
-        self._drives: dict[tuple, Drive] = {}
+        self._kept = Recent(KEPT) if kept is None else kept
+        self._own = object()  # of its keys: no other run has it
 
     def of(self, models: Sequence[Model]) -> list[Drive]:
         """One for each model."""
         return [self._of(model) for model in models]
 
     def _of(self, model: Model) -> Drive:
-        path, edges = model.thrust_path, self._given[1]
-        key = (id(model.vehicle), *path.key)
+        path = model.thrust_path
+        key = (self._own, id(model.vehicle), *path.key)
         loops = [loop.values.tobytes() for loop in path.autopilots]
         inertia = model.body.M.tobytes() if loops else b""
         whole = (*key, *loops, inertia, model.body.B.tobytes())
-        if whole not in self._drives:
-            if key not in self._actuations:
-                _keep(self._actuations, key, self._actuate(model))
-            mean, *growth = self._actuations[key]
-            drive = mean.drive(model, float(edges[-1] - edges[0]))
-            if growth:
-                drive = replace(drive, ramp=growth[0].push(model))
-            _keep(self._drives, whole, drive)
-        return self._drives[whole]
+        return self._kept.get(whole, lambda: self._drive(model, key))
+
+    def _drive(self, model: Model, key: tuple) -> Drive:
+        mean, *growth = self._kept.get((key,), lambda: self._actuate(model))
+        commands, edges, _ = self._given
+        lasts = float(edges[-1]) + commands.after - (float(edges[0]) - commands.before)
+        drive = mean.drive(model, lasts)
+        return replace(drive, ramp=growth[0].push(model)) if growth else drive
 
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:
         """Over the steps; where they are joined, also what each grows by."""
         found = Actuation.by(model, model.thrust_path.over_steps(*self._given))
         return (found,) if self._parts is None else found.joined(self._parts)
-
-
-def _keep(kept: dict[tuple, T], key: tuple, value: T) -> None:
-    """Put in, and let go of what came first."""
-    kept[key] = value
-    if len(kept) > KEPT:
-        del kept[next(iter(kept))]
 
 
 def drive_by_log(model: Model, motion: Motion, grid: StepGrid, settings: ReplaySettings) -> Drive:

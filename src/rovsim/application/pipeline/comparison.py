@@ -2,32 +2,73 @@
 
 from typing import Sequence
 
-from rovsim.application.pipeline.error_conditions import find_error_conditions
+import numpy as np
+
 from rovsim.application.pipeline.forces import balance_run
 from rovsim.application.pipeline.recordings import Measured
-from rovsim.application.pipeline.replays import measure_growth, replay_models
+from rovsim.application.pipeline.replays import replay_when_asked
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
+from rovsim.core.remade import Remade
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import score_all
-from rovsim.reporting.report_data import ReportData
+from rovsim.evaluation.error_conditions.entries import list_conditions
+from rovsim.evaluation.error_conditions.search import ConditionSearch
+from rovsim.evaluation.scored import Scored
+from rovsim.reporting.report_data import SHOWN, ReportData
+from rovsim.results.budget import BudgetTotals
+from rovsim.results.comparison import OPEN_LOOP, Comparison
+from rovsim.simulation.replay import replay
+
+DRAWN = 12  # runs: a report of fifty figures can still be read
 
 
 def compare(data: Measured, models: Sequence[Model], settings: SimulationSettings) -> ReportData:
-    """Replays, scores and findings of all models, forces of the last."""
-    motions = list(data.motions.values())
-    replays = replay_models(models, motions, settings)
-    grown = measure_growth(motions, replays)
-    where = find_error_conditions([m for m in models if not m.inert], motions, settings)
-    forces = {
-        m.run.id: balance_run(models[-1], m, settings) for m in counted(motions, "balancing forces")
-    }
+    """Replays, scores and findings of all models, forces of the last.
+
+    Once over the runs, one after the other: what memory holds does not grow with their number.
+    """
+    scored = Scored(model.name for model in models)
+    searches = _searches(data, models, settings)
+    shown = replay_when_asked(models, data.motions, settings)
+    budgets = Remade(data.motions, lambda run: balance_run(models[-1], data.motions[run], settings))
+    forces = {}
+    for run in counted(list(data.motions), "comparing"):
+        motion = data.motions[run]
+        for model in models:
+            found = replay(model, motion, settings.signals, settings.replay)
+            scored.add(motion, found)
+            shown[model.name].keep(run, found.only(SHOWN, OPEN_LOOP))
+        for search in searches:
+            search.add(motion)
+        forces[run] = budgets[run].totals
     return ReportData(
         motions=data.motions,
-        replays=replays,
-        budgets=forces,
+        replays=shown,
+        budgets=budgets,
         quality=data.quality,
-        comparison=score_all(motions, replays),
-        growth=grown,
-        where=where,
+        comparison=scored.comparison,
+        growth=scored.growth,
+        steps=tuple(scored.steps),
+        forces=BudgetTotals(runs=forces),
+        where=list_conditions([search.found for search in searches]),
+        drawn=_choose_drawn(scored.comparison, models[-1].name, list(data.motions)),
     )
+
+
+def _choose_drawn(comparison: Comparison, model: str, runs: Sequence[str]) -> tuple[str, ...]:
+    """Runs that have figures: all, or those on which the model errs most, in their order."""
+    if len(runs) <= DRAWN:
+        return tuple(runs)
+    found = comparison.models[model].runs
+    rmse = np.array([found[run].windows[SHOWN].velocity_rmse.array() for run in runs])
+    rmse = np.nan_to_num(rmse[:, np.isfinite(rmse).any(axis=0)], nan=np.inf)  # diverged: the worst
+    worst = np.argsort(-np.mean(rmse / np.median(rmse, axis=0), axis=1), kind="stable")
+    return tuple(runs[k] for k in sorted(worst[:DRAWN].tolist()))
+
+
+def _searches(
+    data: Measured, models: Sequence[Model], settings: SimulationSettings
+) -> list[ConditionSearch]:
+    splits = [data.quality[run].split for run in data.motions]
+    moving = [model for model in models if not model.inert]
+    return [ConditionSearch(m, splits, settings.signals, settings.replay) for m in moving]

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Mapping, Sequence
 
-from rovsim.application.pipeline.replays import replay_models
+from rovsim.application.pipeline.replays import score_models
 from rovsim.application.sections import SimulationSettings
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.held_out.pitfalls import measure_pitfalls
@@ -12,7 +12,6 @@ from rovsim.evaluation.held_out.published_errors import (
     find_demanded,
     read_published,
 )
-from rovsim.evaluation.scores import score_all
 from rovsim.learning.learner import LearnerSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison
@@ -23,7 +22,7 @@ def score_held_out(
     models: Sequence[Model], motion: Motion, settings: SimulationSettings
 ) -> Comparison:
     """Scores of one run."""
-    return score_all([motion], replay_models(models, [motion], settings))
+    return score_models(models, {motion.run.id: motion}, settings).comparison
 
 
 def compare_with_published(

@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Mapping
 
 import numpy as np
 
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
+from rovsim.core.remade import Remade
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
 from rovsim.measurement.quality import report_quality, usable_reason
@@ -27,18 +29,22 @@ from rovsim.simulation.command_columns import mark_angles
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A campaign as measured: motions by run, their poses before the filter, quality reports."""
+    """A campaign as measured: motions by run, their poses before the filter, quality reports.
+
+    Runs beyond what memory should hold are read again when they are asked for.
+    """
 
     campaign: Campaign
     vehicle: Vehicle
-    motions: dict[str, Motion]
+    motions: Mapping[str, Motion]
     quality: dict[str, Quality]
-    stages: dict[str, Stage]
+    stages: Mapping[str, Stage]
 
     @property
     def runs(self) -> Runs:
         """The usable runs, as a diagnosis takes them."""
-        return Runs(self.motions, self.stages)
+        splits = {run: self.quality[run].split for run in self.motions}
+        return Runs(self.motions, self.stages, splits)
 
 
 def open_campaign(folder: str | None) -> Campaign:
@@ -89,14 +95,20 @@ def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = 
     Raises:
         BadInput: it cannot be read, or no run can be used, unless that is a result.
     """
-    motions, quality, stages = {}, {}, {}
+    quality: dict[str, Quality] = {}
+
+    def read(run: str) -> Stage:
+        return resampled(read_recording(campaign, run, settings)[0], settings)
+
+    def derive(run: str) -> Motion:
+        return derive_motion(filtered(stages[run], settings), quality[run], settings)
+
+    stages, motions = Remade((), read), Remade((), derive)
     for run in counted(campaign.runs, "reading"):
         recording, quality[run.id] = read_recording(campaign, run.id, settings)
         if usable_reason(recording) is None:
-            stages[run.id] = resampled(recording, settings)
-            motions[run.id] = derive_motion(
-                filtered(stages[run.id], settings), quality[run.id], settings
-            )
+            stages.keep(run.id, resampled(recording, settings))
+            motions.keep(run.id, derive(run.id))
     found = Measured(campaign, load_campaign_vehicle(campaign), motions, quality, stages)
     if not even_unusable:
         refuse_unusable(found)

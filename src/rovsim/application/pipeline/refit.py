@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.diagnosis.observer.observed_run import prepare_runs
+from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.selection.nominal_refit import refit_nominal
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
@@ -15,8 +15,11 @@ def refit(
     runs: Runs, base: Model, settings: ReplaySettings, catalogue: Catalogue, out: Path
 ) -> Model:
     """Refit a model's own parameters on the train runs, and write it as a model file."""
-    train = prepare_runs(runs, "train", settings, catalogue, base.body.free)
+    train = prepare_train(runs, settings, catalogue, base.body.free).runs
     model = refit_nominal(base, train)
-    story = {"base": base.name, "train_runs": [one.motion.run.id for one in train]}
+    story = {
+        "base": base.name,
+        "train_runs": list(dict.fromkeys(one.motion.run.id for one in train)),
+    }
     write_model(model, out, provenance=story)
     return model

@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Sequence
 
-from rovsim.application.pipeline.replays import Replays, climb, measure_growth
+from rovsim.application.pipeline.replays import Replays
+from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
@@ -29,8 +30,9 @@ def summarize(
         diagnosis: its effects stand in the ladder one by one.
         out: the folder.
     """
-    ladder = Ladder.with_diagnosis(climb(motions, replays), diagnosis.ladder.steps)
+    scored = Scored.of(motions, replays)
+    ladder = Ladder.with_diagnosis(scored.steps, diagnosis.ladder.steps)
     ErrorConditions.merged(searches).write(out / "where.json")
-    measure_growth(motions, replays).write(out / "growth.json")
+    scored.growth.write(out / "growth.json")
     ladder.write(out / "ladder.json")
     Comparison.merged(scores).write(out / "comparison.json")

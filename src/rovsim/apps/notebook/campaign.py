@@ -61,11 +61,10 @@ class Campaign:
     @property
     def runs(self) -> DataFrame:
         """The runs: split, control, length, and what is the matter with those that are not used."""
-        used = self.data.motions
         rows = {
             run.id: (
                 run.split, run.control,
-                float(used[run.id].time[-1] - used[run.id].time[0]) if run.id in used else None,
+                self.data.quality[run.id].duration_s if run.id in self.data.motions else None,
                 self.data.quality[run.id].unusable or "",
             )
             for run in self.data.campaign.runs

@@ -11,7 +11,6 @@ from pandas import DataFrame, Series
 
 from rovsim import AXES
 from rovsim.application.export.sizes import Sized
-from rovsim.application.pipeline.replays import climb
 from rovsim.apps.notebook import html
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
@@ -82,7 +81,7 @@ class ShownComparison(Figures):
     @cached_property
     def ladder(self) -> Ladder:
         """A step for each model, on the test runs."""
-        return Ladder(steps=tuple(climb(list(self.data.motions.values()), self.data.replays)))
+        return Ladder(steps=self.data.steps)
 
     @property
     def errors(self) -> Series:

@@ -46,7 +46,7 @@ class Add:
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench, self.draft, self.place = bench, bench.draft, place
-        train = [r for r, m in bench.data.motions.items() if m.run.split == "train"]
+        train = bench.data.runs.of("train")
         self.runs = train or list(bench.data.motions)
         run = first_run(bench)
         first = {"run": run, "axes": excited(bench, run), "horizon": HORIZON}

@@ -67,8 +67,9 @@ class Compare:
 
     def _controls(self) -> None:
         runs = {
-            r: f"{r} ({m.run.split}, {m.time[-1] - m.time[0]:.0f} s)"
-            for r, m in self.bench.data.motions.items()
+            r: f"{r} ({q.split}, {q.duration_s:.0f} s)"
+            for r, q in self.bench.data.quality.items()
+            if r in self.bench.data.motions
         }
         with ui.row().classes("controls"):
             self._choice("run", ui.select(runs, label="Run"))

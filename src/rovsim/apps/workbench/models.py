@@ -74,7 +74,7 @@ class Models:
         """Build the screen."""
         heading(TITLE, QUESTION)
         known = list(self.bench.known_models())
-        runs = {r: f"{r} ({m.run.split})" for r, m in self.bench.data.motions.items()}
+        runs = {r: f"{r} ({split})" for r, split in self.bench.data.runs.splits.items()}
         with ui.row().classes("controls"):
             self.sides = [
                 self._choice(side, ui.select(known, label=side.capitalize())) for side in SIDES

@@ -82,7 +82,7 @@ def report_into(
     models = load_models(settings.model, data.vehicle, catalogue)
     shown = replace(compare(data, models, settings), ladder=ladder, diagnosis=diagnosis)
     wanted = [(figure, "") for figure in ONCE if figure != "ranking" or diagnosis]
-    tests = [run for run, motion in data.motions.items() if motion.run.split == "test"]
+    tests = [run for run in data.runs.of("test") if run in shown.drawn]
     wanted += [(figure, run) for run in tests for figure in PER_RUN]
     origin = provenance(select(settings, CampaignSettings), catalogue)
     present(out, data.campaign.name, shown, wanted, origin, catalogue)

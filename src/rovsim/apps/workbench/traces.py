@@ -50,9 +50,7 @@ def horizon_slider(horizon: float | None, changed: Callable[[float | None], Any]
 
 def first_run(bench: Workbench) -> str:
     """The first train run: test runs stay closed until somebody asks for them."""
-    motions = bench.data.motions
-    train = (name for name, motion in motions.items() if motion.run.split == "train")
-    return next(train, next(iter(motions)))
+    return next(iter([*bench.data.runs.of("train"), *bench.data.motions]))
 
 
 def excited(bench: Workbench, run: str) -> list[str]:

@@ -16,12 +16,13 @@ from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import Work
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_text, write_text
+from rovsim.core.remade import Recent
 from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
 from rovsim.dynamics.model_file import read_model, write_model
-from rovsim.evaluation.error_conditions.search import SearchedModel, search_conditions
+from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scores import subtract, summarize
 from rovsim.results.comparison import OPEN_LOOP, Metrics
@@ -31,7 +32,6 @@ from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import replay
 
 OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and measured
-KEPT = 200  # replays; one of a minute takes 2 MB
 
 
 @dataclass(eq=False)
@@ -47,7 +47,7 @@ class Workbench:
     study: Ladder | None = None  # ladder.json beside a diagnosis that was given
     choices: dict[str, Any] = field(default_factory=dict)  # what a screen remembers
     work: Work | None = None  # long work, one at a time
-    _replays: dict[tuple, Replay] = field(default_factory=dict)
+    _replays: Recent[Replay] = field(default_factory=Recent)
     _steps: dict[Model, Step] = field(default_factory=dict)
     _searched: dict[Model, SearchedModel] = field(default_factory=dict)
 
@@ -217,15 +217,12 @@ class Workbench:
     def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
         """One run replayed in windows of `horizon` s, or open loop (None)."""
         key = (model, run, horizon)
-        if key not in self._replays:
-            if len(self._replays) >= KEPT:
-                self._replays.pop(next(iter(self._replays)))
-            spans = () if horizon is None else (horizon,)
-            how = self.settings.replay.model_copy(update={"horizons": spans})
-            self._replays[key] = replay(
-                model, self.data.motions[run], self.settings.signals, how, not spans
-            )
-        return self._replays[key]
+        spans = () if horizon is None else (horizon,)
+        how = self.settings.replay.model_copy(update={"horizons": spans})
+        return self._replays.get(
+            key,
+            lambda: replay(model, self.data.motions[run], self.settings.signals, how, not spans),
+        )
 
     def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
         """What the model predicts in windows of `horizon` s, or open loop (None)."""
@@ -239,15 +236,15 @@ class Workbench:
     def run_error(self, model: Model, run: str) -> float | None:
         """`windows_2s` of one run alone."""
         motion = self.data.motions[run]
-        replays = [self.replayed(model, run, 2.0)]
-        return score_step(model.name, [motion], replays, motion.run.split).windows_2s
+        replayed = self.replayed(model, run, 2.0)
+        return score_step(model.name, [(motion, replayed)], motion.run.split).windows_2s
 
     def step(self, model: Model) -> Step:
         """The ladder's step of one model; this opens the test runs."""
         if model not in self._steps:
-            tests = [m for m in self.data.motions.values() if m.run.split == "test"]
-            replays = [self.replayed(model, m.run.id, 2.0) for m in tests]
-            self._steps[model] = score_step(model.name, tests, replays)
+            tests = self.data.runs.of("test")
+            pairs = ((self.data.motions[r], self.replayed(model, r, 2.0)) for r in tests)
+            self._steps[model] = score_step(model.name, pairs)
         return self._steps[model]
 
     def ladder(self) -> Ladder:
@@ -266,9 +263,8 @@ class Workbench:
     def searched(self, model: Model) -> SearchedModel:
         """Where a model fails."""
         if model not in self._searched:
-            motions = list(self.data.motions.values())
-            self._searched[model] = search_conditions(
-                model, motions, self.settings.signals, self.settings.replay
+            self._searched[model] = search_runs(
+                model, self.data.runs, self.settings.signals, self.settings.replay
             )
         return self._searched[model]
 

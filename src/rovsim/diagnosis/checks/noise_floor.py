@@ -7,7 +7,7 @@ fitted to the train runs.
 """
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import Iterable, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -18,7 +18,7 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import normalize, rms
+from rovsim.evaluation.scores import Moments, normalize, root_mean
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import filter_eta
 
@@ -26,22 +26,34 @@ DRAWS = 8
 PAD = 1.0  # s before and after, so that the filter has settled
 
 
+class NoiseFloor(NamedTuple):
+    """The `windows_2s` error (see scores.normalize) of a perfect model, in so many windows."""
+
+    error: float | None
+    windows: int
+
+
 def simulate_noise_floor(
     model: Model,
-    runs: Sequence[ObservedRun],
+    runs: Iterable[ObservedRun],
     noise: Noise,
     signals: SignalSettings,
     seed: int = 0,
-) -> float | None:
-    """The `windows_2s` error (see scores.normalize) of a perfect model on these runs.
+) -> NoiseFloor | None:
+    """What a perfect model would score on these runs, of which there is one at least.
 
     None where only parts of the pose were measured: how their noise passes is not known here.
     """
-    if any(run.motion.measured is not None for run in runs):
-        return None
     perfect = _PerfectModel(model, noise, signals, np.random.default_rng(seed))
-    errors = [perfect.errors(run) for run in runs]
-    return normalize([run.motion for run in runs], rms(np.concatenate(errors)))
+    squares, count, windows, measured = np.zeros(6), 0, 0, Moments.nothing()
+    for run in runs:
+        if run.motion.measured is not None:
+            return None
+        errors = perfect.errors(run)
+        squares, count = squares + np.square(errors).sum(axis=0), count + len(errors)
+        windows += len(Windows(run).spans)
+        measured += Moments.of(run.motion.nu[run.motion.usable])
+    return NoiseFloor(normalize(measured.std, root_mean(squares, count)), windows)
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,7 @@ def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
     depend on where a model believes the markers to be, so no such belief is favoured by its noise.
     """
     readings, starts = _see(models, run)
-    time = run.edges - run.edges[0]
+    time = run.since_start(run.edges)
     seen = Correction(
         readings,
         run.seen.astype(float),
@@ -103,7 +103,7 @@ def _accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> 
     drive = run.replay_drives.of([model])[0].at(np.minimum(at, len(edges) - 2))
     memory = recall([model], run, edges, at).reshape(-1, 6)
     return np.stack(
-        [batch.accelerations(drive, edges[at] - edges[0], own, memory) for own in states]
+        [batch.accelerations(drive, run.since_start(edges)[at], own, memory) for own in states]
     )
 
 

@@ -2,18 +2,18 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.remade import Recent
 from rovsim.core.rotations import normalized
 from rovsim.diagnosis.observer.kalman import BIN_MEAN, POSE, SUM
-from rovsim.dynamics.actuation import Between, ThrustPath
+from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
-from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion, Poses
@@ -44,11 +44,11 @@ class ObservedRun:
 
     `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
     velocities were measured; `group` of them, an odd number, make a reading, which holds at step
-    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of `parts` (s,) of one
-    length, over each of which the thrust is steady. It starts at the first reading of each of the
-    `spans`, at the state of that sample, and reads up to the last. `between` two lines of the log,
-    commands are held or joined; `wrenches` are those that the models of a diagnosis may have,
-    `free` (6,) the axes in which the vehicle can move at all.
+    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s. It starts at the first reading of
+    each of the `spans`, at the state of that sample, and reads up to the last. `drives` are of
+    models over the steps of the observer, `replay_drives` over those of a replay; `wrenches` are
+    those that the models of a diagnosis may have, `free` (6,) the axes in which the vehicle can
+    move at all.
     """
 
     motion: Motion
@@ -58,14 +58,18 @@ class ObservedRun:
     group: int
     ends: Array
     edges: Array
-    parts: Array
-    between: Between
+    drives: Drives
+    replay_drives: Drives
     wrenches: tuple[type[Wrench], ...]
     free: Array
 
     def limited(self, kept: Array) -> "ObservedRun":
         """The same run of which only some samples or bins (n,) are usable."""
         return replace(self, motion=replace(self.motion, usable=self.motion.usable & kept))
+
+    def since_start(self, edges: Array) -> Array:
+        """Ends of steps as s since the start of the recording, of which this may be a part."""
+        return np.asarray(edges - edges[0] + self.motion.commands.before)
 
     @cached_property
     def spans(self) -> tuple[tuple[int, int], ...]:
@@ -75,19 +79,6 @@ class ObservedRun:
             for a, b in self.motion.segments()
             if _lasts(self.motion, a, b)
         )
-
-    @cached_property
-    def drives(self) -> Drives:
-        """What drives models over the steps of the observer."""
-        fine = np.linspace(self.edges[0], self.edges[-1], int(self.parts.sum()) + 1)
-        return Drives(self.motion.commands, fine, self.between, self.parts)
-
-    @cached_property
-    def replay_drives(self) -> Drives:
-        """What drives models over the steps of a replay."""
-        if self.motion.binned:
-            return self.drives
-        return Drives(self.motion.commands, self.grid, self.between)
 
     @cached_property
     def sample(self) -> Array:
@@ -226,24 +217,15 @@ class ObservedRun:
             return np.empty((0, 2))
         change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
         lost = (steps > GAP * np.median(steps)) & (change > np.quantile(change, USUAL))
-        at = path.arrival(commands.time - self.edges[0])
+        before = commands.before
+        at = path.arrival(commands.time - self.edges[0] + before) - before
         return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
-def prepare_runs(
-    runs: Runs, split: str, settings: ReplaySettings, catalogue: Catalogue, free: Array
-) -> list[ObservedRun]:
-    """The runs of one split as the observer sees them. See `prepare_run`."""
-    chosen = {name: motion for name, motion in runs.motions.items() if motion.run.split == split}
-    return [
-        prepare_run(runs.stages[name], motion, settings, catalogue, free)
-        for name, motion in chosen.items()
-    ]
-
-
 def prepare_run(
-    stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue, free: Array
-) -> ObservedRun:
+    stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue, free: Array,
+    kept: Recent | None = None,
+) -> ObservedRun:  # fmt: skip
     """A run as the observer sees it; without usable stretches it has no spans.
 
     Args:
@@ -252,25 +234,41 @@ def prepare_run(
         settings: the longest integration step, and how commands are held.
         catalogue: effects that may act in it.
         free: axes (6,) in which the vehicle can move.
+        kept: where its drives are kept, perhaps with those of other runs.
     """
     grid = StepGrid.over(motion, settings.step)
     wrenches = tuple(c for c in catalogue.values() if issubclass(c, Wrench))
-    make = _observe_bins if motion.binned else _observe_samples
-    return make(stage, motion, grid, settings.commands, wrenches, free)
+    found = (_step_bins if motion.binned else _step_samples)(stage, motion, grid)
+    fine = np.linspace(found.edges[0], found.edges[-1], int(found.parts.sum()) + 1)
+    drives = Drives(motion.commands, fine, settings.commands, found.parts, kept)
+    replayed = drives
+    if not motion.binned:
+        replayed = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
+    return ObservedRun(
+        motion, found.grid, found.at, found.frames, found.group, found.ends, found.edges, drives,
+        replayed, wrenches, free,
+    )  # fmt: skip
 
 
-def _observe_bins(
-    stage: Stage, motion: Motion, grid: StepGrid, between: Between,
-    wrenches: tuple[type[Wrench], ...], free: Array,
-) -> ObservedRun:  # fmt: skip
+class _Steps(NamedTuple):
+    """As in `ObservedRun`; each step between `edges` is made of `parts` (s,) of steady thrust."""
+
+    grid: Array
+    at: Array
+    frames: Array
+    group: int
+    ends: Array
+    edges: Array
+    parts: Array
+
+
+def _step_bins(stage: Stage, motion: Motion, grid: StepGrid) -> _Steps:
     """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
     begins = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
     frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
     steps, ends = _divide(begins, GROUP / grid.h)
     edges = motion.time[0] + grid.h * steps
-    return ObservedRun(
-        motion, edges, ends, frames, 1, ends, edges, np.diff(steps), between, wrenches, free
-    )
+    return _Steps(edges, ends, frames, 1, ends, edges, np.diff(steps))
 
 
 def _divide(at: Array, most: float) -> tuple[Array, Array]:
@@ -285,10 +283,7 @@ def _divide(at: Array, most: float) -> tuple[Array, Array]:
     return np.append(np.repeat(at[:-1], count) + within, at[-1]), ends
 
 
-def _observe_samples(
-    stage: Stage, motion: Motion, grid: StepGrid, between: Between,
-    wrenches: tuple[type[Wrench], ...], free: Array,
-) -> ObservedRun:  # fmt: skip
+def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> _Steps:
     """A group of frames is a reading, and one step leads from it to the next."""
     assert isinstance(stage, Poses)
     count, period = len(motion.time), float(motion.time[1] - motion.time[0])
@@ -297,10 +292,8 @@ def _observe_samples(
     steps, ends = _divide(np.arange(readings) * group * grid.stride, GROUP / grid.h)
     edges = motion.time[0] + group // 2 * period + grid.h * steps
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
-    return ObservedRun(
-        motion, grid.edges, np.arange(count) * grid.stride, frames, group, ends, edges,
-        np.diff(steps), between, wrenches, free,
-    )  # fmt: skip
+    at = np.arange(count) * grid.stride
+    return _Steps(grid.edges, at, frames, group, ends, edges, np.diff(steps))
 
 
 def _lasts(motion: Motion, a: int, b: int) -> bool:

@@ -15,7 +15,7 @@ from scipy.integrate import cumulative_simpson
 from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import normalize, rms
+from rovsim.evaluation.scores import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.carried import carry
@@ -45,7 +45,8 @@ def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Windo
     rmse[[m.possible for m in models]] = [
         rms(np.concatenate([p[k] for p in parts])) for k in range(len(able))
     ]
-    return WindowErrors(rmse, [normalize([run.motion for run in runs], row) for row in rmse])
+    spread = measured_spread(run.motion for run in runs)
+    return WindowErrors(rmse, [normalize(spread, row) for row in rmse])
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +129,7 @@ class Windows:
         first = self._steps
         steps = np.array([run.at[b] for _, b in self.spans], np.int64) - first
         begins = Starts(begin, first, steps, recall(models, run, run.grid, first))
-        batch, time = serve_all(models, run), run.grid - run.grid[0]
+        batch, time = serve_all(models, run), run.since_start(run.grid)
         begins = carry(batch, drives, begins, time, find_measured(run.motion.measured))
         return batch.trajectories(drives, begins, time)
 

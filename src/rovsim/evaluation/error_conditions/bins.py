@@ -18,6 +18,7 @@ BINS = 8
 VISITS = 4  # stretches that must have visited a bin before it is judged
 SHORTEST, LONGEST = 2.0, 10.0  # s, of a stretch
 FLAT = 1e-6  # N, m, rad, s, or of them a second: less is rounding
+MANY = 2000  # stretches: chance is known well by then, and memory goes with their number
 TIMES = 3.0  # correlation times a stretch should last
 
 
@@ -50,9 +51,10 @@ class Table:
 
 def number_stretches(blocks: Blocks, error: Array) -> Array:
     """Number (n,) of the stretch each block belongs to, 0 .. g-1, for errors (n,) of one axis."""
-    length = float(
-        np.clip(TIMES * correlation_time(_unexplained(blocks, error), blocks), SHORTEST, LONGEST)
+    usual = np.clip(
+        TIMES * correlation_time(_unexplained(blocks, error), blocks), SHORTEST, LONGEST
     )
+    length = max(float(usual), len(error) * BLOCK / MANY)
     key = np.stack([blocks.run, np.floor(blocks.time / length)], axis=1)
     return np.unique(key, axis=0, return_inverse=True)[1].ravel()
 

@@ -1,12 +1,13 @@
 """Search the runs of a campaign for conditions in which a model fails."""
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import Collection, Sequence
 
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.error_conditions.conditions import average_blocks, join_blocks
+from rovsim.evaluation.error_conditions.conditions import Blocks, average_blocks, join_blocks
 from rovsim.evaluation.error_conditions.findings import Explanation, explain
-from rovsim.learning.pairs import Samples, sample_run
+from rovsim.learning.pairs import sample_run
+from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import ReplaySettings
@@ -22,24 +23,71 @@ class SearchedModel:
     explanation: Explanation
 
 
-def choose_runs(model: Model, motions: Sequence[Motion]) -> list[Motion]:
-    """The runs a model is searched on.
+def choose_split(model: Model, splits: Collection[str]) -> str:
+    """The split a model is searched on, of those that there are.
 
     Train runs: whoever decides by the findings what to add has not looked at the test runs yet.
     Test runs for a model with a trained residual, which knows the train runs by heart. Where the
     campaign has only the other split, that one.
     """
     split = "test" if model.residual is not None else "train"
-    return [m for m in motions if m.run.split == split] or list(motions)
+    return split if split in splits else next(iter(splits))
+
+
+class ConditionSearch:
+    """A search for conditions in which a model fails; takes in one run after the other.
+
+    Args:
+        model: the model.
+        splits: those of the runs that will come.
+        signals: how they were cleaned.
+        settings: how commands are held.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        splits: Collection[str],
+        signals: SignalSettings,
+        settings: ReplaySettings,
+    ) -> None:
+        self._model, self._how = model, (signals, settings)
+        self.split = choose_split(model, splits)
+        self._runs: list[str] = []
+        self._parts: list[Blocks] = []
+
+    def add(self, motion: Motion) -> None:
+        """Take in a run; one of the other split is passed by."""
+        if motion.run.split != self.split:
+            return
+        self._runs.append(motion.run.id)
+        samples = sample_run(self._model, motion, *self._how)
+        if len(samples.index) > 1:
+            self._parts.append(average_blocks(motion, samples))
+
+    @property
+    def found(self) -> SearchedModel:
+        """What the error varies with."""
+        parts = self._parts
+        explanation = explain(join_blocks(parts)) if parts else Explanation.nothing()
+        return SearchedModel(self._model.name, self.split, tuple(self._runs), explanation)
+
+
+def search_runs(
+    model: Model, runs: Runs, signals: SignalSettings, settings: ReplaySettings
+) -> SearchedModel:
+    """Search the runs of a campaign, one after the other, for conditions in which it fails."""
+    search = ConditionSearch(model, set(runs.splits.values()), signals, settings)
+    for name in runs.of(search.split):
+        search.add(runs.motions[name])
+    return search.found
 
 
 def search_conditions(
     model: Model, motions: Sequence[Motion], signals: SignalSettings, settings: ReplaySettings
 ) -> SearchedModel:
     """Search the runs of a campaign for conditions in which the model fails."""
-    runs = choose_runs(model, motions)
-    found: list[Samples] = [sample_run(model, m, signals, settings) for m in runs]
-    parts = [average_blocks(m, s) for m, s in zip(runs, found, strict=True) if len(s.index) > 1]
-    explanation = explain(join_blocks(parts)) if parts else Explanation.nothing()
-    names = tuple(m.run.id for m in runs)
-    return SearchedModel(model.name, runs[0].run.split, names, explanation)
+    search = ConditionSearch(model, [m.run.split for m in motions], signals, settings)
+    for motion in motions:
+        search.add(motion)
+    return search.found

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import normalize, rms, subtract
+from rovsim.evaluation.scores import measured_spread, normalize, rms, subtract
 from rovsim.learning.learner import LearnerSettings, Trained, train
 from rovsim.learning.pairs import Samples, sample_run
 from rovsim.measurement.signals.binned import backward_difference
@@ -47,7 +47,7 @@ def replay_error(
 ) -> float | None:
     """Velocity RMSE of an open-loop replay, each axis in units of how much it moves, their mean."""
     found = replay(model, motion, signals, settings).horizons[OPEN_LOOP]
-    return normalize([motion], rms(subtract(motion, found).nu))
+    return normalize(measured_spread([motion]), rms(subtract(motion, found).nu))
 
 
 def explained(predict: Callable[[Array], Array], X: Array, Y: Array) -> float:

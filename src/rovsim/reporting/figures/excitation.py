@@ -2,6 +2,7 @@
 
 from typing import Mapping
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -18,16 +19,18 @@ CAPTION = (
     "Per run: standard deviation of the body velocity on each axis (an axis that hardly moved "
     "cannot be judged), and the stretches in which the motion capture lost the vehicle."
 )
+MOST = 40  # runs: what fits on a page
 EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", "#D55E00"
 
 
 @styled()
 def draw(*, quality: Mapping[str, Quality]) -> Figure:
     """Draw the quality reports {run: quality/<run>.json}."""
-    figure = sheet(34 + 7 * max(len(quality), 2))
+    runs, remarks = _choose(quality), []
+    figure = sheet(34 + 7 * max(len(runs), 2))
     cells, timeline = figure.subplots(1, 2, width_ratios=[3, 2])
-    runs = list(quality)
-    remarks = []
+    if len(runs) < len(quality):
+        remarks.append(f"The {len(runs)} runs of {len(quality)} with most that was not seen.")
     for row, run in enumerate(runs):
         y = len(runs) - 1 - row
         _excitation(cells, y, quality[run].excitation)
@@ -53,6 +56,13 @@ def draw(*, quality: Mapping[str, Quality]) -> Figure:
     legend(figure, [Patch(facecolor=color, label=label, **edge) for color, label in labels])
     note(figure, remarks)
     return figure
+
+
+def _choose(quality: Mapping[str, Quality]) -> list[str]:
+    """Runs that fit on a page: all, or those that lack most, in their order."""
+    runs = list(quality)
+    lacking = [-q.not_found / q.frames - (q.unusable is not None) for q in quality.values()]
+    return [runs[k] for k in sorted(np.argsort(lacking, kind="stable")[:MOST].tolist())]
 
 
 def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:

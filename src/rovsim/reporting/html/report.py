@@ -25,7 +25,7 @@ from rovsim.reporting.tables import (
     tabulate_ladder,
     tabulate_published_errors,
 )
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import several, significant
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.published_errors import PublishedErrors
@@ -114,6 +114,7 @@ def render(report: Report) -> str:
             rates=RATES,
             quality=data.quality,
             axes=AXES,
+            undrawn=_tell_undrawn(data),
             pictures=_by_section(report.pictures),
             provenance=list_rows(report.provenance),
         )
@@ -130,6 +131,7 @@ def _environment() -> Environment:
     )
     environment.filters["significant"] = lambda value: significant(or_nan(value))
     environment.filters["mathml"] = lambda latex: Markup(mathml(latex))
+    environment.filters["several"] = several
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
     return environment
 
@@ -156,6 +158,16 @@ def _errors(comparison: Comparison) -> list[Table]:
 
 def _published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:
     return tabulate_published_errors(published_errors), tell_standings(published_errors)
+
+
+def _tell_undrawn(data: ReportData) -> str:
+    """Which runs have figures, where not all of them do."""
+    if len(data.drawn) in (0, len(data.motions)):
+        return ""
+    return (
+        f"Drawn are the {len(data.drawn)} runs on which {list(data.replays)[-1]} errs most, of "
+        f"{len(data.motions)}; the workbench shows each."
+    )
 
 
 def _by_section(pictures: Sequence[Picture]) -> dict[str, list[Picture]]:

@@ -5,7 +5,7 @@ from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.html.verdict import NO_TEST, Missing, explain
-from rovsim.reporting.wording import short, significant
+from rovsim.reporting.wording import several, short, significant
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis, FittedEffect
 from rovsim.results.error_conditions import ErrorConditions
@@ -46,7 +46,7 @@ def _findings(where: ErrorConditions) -> list[str]:
         return []
     name, model = list(where.models.items())[-1]
     told, rest = model.sentences[:MOST], len(model.sentences) - MOST
-    head = f"where {short(name)} fails ({model.split} runs {', '.join(model.runs)})"
+    head = f"where {short(name)} fails ({model.split} runs {several(model.runs)})"
     lines = ["", *textwrap.wrap(head, WIDTH), ""]
     for one in told:
         lines += textwrap.wrap(one, WIDTH, initial_indent="  - ", subsequent_indent="    ")

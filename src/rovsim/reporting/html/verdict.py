@@ -14,6 +14,7 @@ from rovsim.results.diagnosis import (
     DiagnosisErrors,
     FittedEffect,
     FittedValue,
+    LookedAt,
     RivalEffect,
     ScaleOfForces,
 )
@@ -68,6 +69,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         *unexplained_sentences(found),
         *still_sentences(found.not_excited),
         *silent_sentences(found),
+        *part_sentences(found.looked_at),
     ]
     missing = tuple(_missing(one, catalogue.get(one.effect)) for one in found.selected)
     return Verdict(
@@ -213,3 +215,15 @@ def silent_sentences(found: Diagnosis) -> list[str]:
     unmeasured = f"Nothing was measured of {listed(axes)}: errors have no value there."
     unseen = f"These recordings could not show {listed(effects)}, were they there."
     return [*([unmeasured] if axes else []), *([unseen] if effects else [])]
+
+
+def part_sentences(looked_at: LookedAt | None) -> list[str]:
+    """How much of long train runs was looked at, and what that costs."""
+    if looked_at is None or looked_at.wider <= 1.0:
+        return []
+    part, whole = (significant(s / 60.0, 3) for s in (looked_at.seconds, looked_at.of))
+    return [
+        f"Looked at: those {part} of the {whole} min of train runs that tell most. With all of "
+        f"them the intervals could be up to {looked_at.wider:.1f} times narrower "
+        "(search.most_seconds)."
+    ]

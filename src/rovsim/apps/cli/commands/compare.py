@@ -10,12 +10,10 @@ and prints a summary.
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import measure, open_campaign
-from rovsim.application.pipeline.replays import climb
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.evaluation.budget import total
 from rovsim.reporting.html.terminal import tell_comparison
 from rovsim.reporting.report_data import PER_RUN
 
@@ -36,15 +34,15 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     found = compare(data, models, settings)
     assert found.comparison is not None
     assert found.where is not None
+    assert found.forces is not None
     wanted = [(figure, "") for figure in ONCE]
-    wanted += [(figure, run) for run in found.motions for figure in PER_RUN]
+    wanted += [(figure, run) for run in found.drawn for figure in PER_RUN]
     origin = provenance(settings, catalogue)
     present(out, data.campaign.name, found, wanted, origin, catalogue)
     found.where.write(out / "where.json")
-    total(list(found.budgets.values())).write(out / "budget.json")
+    found.forces.write(out / "budget.json")
     found.comparison.write(out / "comparison.json")
-    steps = climb(list(data.motions.values()), found.replays)
-    tested = any(motion.run.split == "test" for motion in data.motions.values())
-    text = tell_comparison({step.model: step.windows_2s for step in steps}, found.where, tested)
+    errors = {step.model: step.windows_2s for step in found.steps}
+    text = tell_comparison(errors, found.where, tested=bool(data.runs.of("test")))
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
     say(settings, f"{text}\n\n{files}", found.comparison.to_json())

@@ -9,7 +9,7 @@ residual.k=1,3,5 control=3dof,6dof. Needs the extra rovsim[learn].
 
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
-from rovsim.application.pipeline.replays import climb, replay_models
+from rovsim.application.pipeline.replays import score_models
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
@@ -20,7 +20,6 @@ from rovsim.core.extras import require
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import ARRAYS
-from rovsim.evaluation.scores import score_all
 from rovsim.reporting.html.terminal import tell_comparison
 from rovsim.results.error_conditions import ErrorConditions
 
@@ -35,17 +34,14 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     """Train, write, score, and log."""
     require("learn", "tracking", by="rovsim train")
     data = measure(open_campaign(settings.campaign), settings.signals)
-    base, motions = (
-        load_one_model(settings.model, data.vehicle, catalogue),
-        [*data.motions.values()],
-    )
+    base = load_one_model(settings.model, data.vehicle, catalogue)
     kind = settings.learner.kind
     name = f"{kind}_{settings.control}"
     out = choose_folder(settings, f"results/{data.campaign.name}/trained/{name}")
     file, story = out / "model.yaml", provenance(settings, catalogue)
-    corrected = train(motions, base, settings, catalogue, file, story)
-    replays = replay_models([base, corrected], motions, settings)
-    found = score_all(motions, replays)
+    corrected = train([*data.motions.values()], base, settings, catalogue, file, story)
+    scored = score_models([base, corrected], data.motions, settings)
+    found = scored.comparison
     found.write(out / "comparison.json")
     with reported("logging to MLflow"):
         track(
@@ -57,8 +53,6 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             scores=found.models["model"].runs,
             files=[file, out / ARRAYS, out / "comparison.json"],
         )
-    steps = climb(motions, replays)
-    tested = any(motion.run.split == "test" for motion in motions)
-    errors = {step.model: step.windows_2s for step in steps}
-    text = tell_comparison(errors, ErrorConditions(models={}), tested)
+    errors = {step.model: step.windows_2s for step in scored.steps}
+    text = tell_comparison(errors, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
     say(settings, f"{text}\n\n{file}", {"model": str(file), "errors": errors})

@@ -1,0 +1,125 @@
+"""Values that are made again where they were let go of: more of them than memory holds."""
+
+from collections import OrderedDict
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from threading import RLock
+from typing import (
+    Callable,
+    Generic,
+    Hashable,
+    Iterable,
+    Iterator,
+    Mapping,
+    Sequence,
+    TypeVar,
+    overload,
+)
+
+import numpy as np
+
+T = TypeVar("T")
+MOST = 1 << 27  # bytes: fifteen runs of 5 min at 100 Hz
+
+
+class Recent(Generic[T]):
+    """The values that were asked for last, up to `most` bytes.
+
+    The last one stays, however large; with `most` 0 none does.
+    """
+
+    def __init__(self, most: int = MOST) -> None:
+        self._most, self._size = most, 0
+        self._kept: OrderedDict[Hashable, tuple[T, int]] = OrderedDict()
+        self._lock = RLock()  # a server may ask from several threads
+
+    def get(self, key: Hashable, make: Callable[[], T]) -> T:
+        """The value of a key, made if it is not there."""
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+                return self._kept[key][0]
+            value = make()
+            self.keep(key, value)
+            return value
+
+    def keep(self, key: Hashable, value: T) -> None:
+        """Take in a value, and let go of those that were asked for longest ago."""
+        if not self._most:
+            return
+        with self._lock:
+            _, before = self._kept.pop(key, (None, 0))
+            self._kept[key] = value, size(value)
+            self._size += self._kept[key][1] - before
+            while len(self._kept) > 1 and self._size > self._most:
+                self._size -= self._kept.popitem(last=False)[1][1]
+
+
+class Remade(Mapping[str, T]):
+    """Values by name; those asked for last are kept, the others are made again.
+
+    Args:
+        names: of the values, in order.
+        make: a value from its name; every time the same.
+        most: bytes to keep.
+    """
+
+    def __init__(self, names: Iterable[str], make: Callable[[str], T], most: int = MOST) -> None:
+        self._names, self._make = dict.fromkeys(names), make
+        self._recent: Recent[T] = Recent(most)
+
+    def __getitem__(self, name: str) -> T:
+        if name not in self._names:
+            raise KeyError(name)
+        return self._recent.get(name, lambda: self._make(name))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def keep(self, name: str, value: T) -> None:
+        """Take in a value that is there already."""
+        self._names[name] = None
+        self._recent.keep(name, value)
+
+
+class ReadAgain(Sequence[T]):
+    """Values in files, read each time they are asked for."""
+
+    def __init__(self, paths: Sequence[Path], read: Callable[[Path], T]) -> None:
+        self._paths, self._read = paths, read
+
+    @overload
+    def __getitem__(self, index: int) -> T: ...
+    @overload
+    def __getitem__(self, index: slice) -> "ReadAgain[T]": ...
+    def __getitem__(self, index: int | slice) -> "T | ReadAgain[T]":
+        if isinstance(index, slice):
+            return ReadAgain(self._paths[index], self._read)
+        return self._read(self._paths[index])
+
+    def __len__(self) -> int:
+        return len(self._paths)
+
+
+def read_again(paths: Mapping[str, Path], read: Callable[[Path], T]) -> Remade[T]:
+    """Values in files by name, read each time they are asked for."""
+    return Remade(paths, lambda name: read(paths[name]), most=0)
+
+
+def size(value: object) -> int:
+    """Bytes of the arrays that a value is made of."""
+    if isinstance(value, np.ndarray):
+        return value.nbytes
+    if isinstance(value, Mapping):
+        return sum(map(size, value.values()))
+    if isinstance(value, tuple):
+        return sum(map(size, value))
+    if is_dataclass(value):
+        return sum(size(getattr(value, field.name)) for field in fields(value))
+    return 0

@@ -1,0 +1,133 @@
+"""The train runs as the observer sees them: all of them, or the parts that tell most.
+
+A diagnosis holds what every candidate would change of every reading; beyond ten minutes that takes
+more memory than a job should have, and tells little more. Of longer campaigns those parts of about
+a minute are looked at that together leave least open (D-optimal; Fedorov 1972, chosen one after the
+other) about forces linear in velocity, its square, acceleration, attitude, place, commands and time
+in the run. Which runs they come from does not matter.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Iterator, NamedTuple, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.remade import Recent
+from rovsim.core.rotations import unrotate
+from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
+from rovsim.diagnosis.settings import MOST
+from rovsim.dynamics.catalogue import Catalogue
+from rovsim.measurement.runs import Runs
+from rovsim.measurement.signals.motion import Motion, Poses
+from rovsim.results.diagnosis import LookedAt
+from rovsim.simulation.settings import ReplaySettings
+
+DRIVES = 1 << 29  # bytes of drives of all runs together: fifty of each in four minutes of runs
+PART = 60.0  # s: a fifth of it is kept apart by the gate, which takes windows of 2 s
+LEAD = 5.0  # s of commands before a part: propellers remember half a second
+SAMPLED = 0.2  # s between the samples that parts are compared by: half a period of 2.5 Hz
+LEAST = 1e-6  # of what all parts tell: a direction that hardly any of them shows
+
+
+@dataclass(frozen=True, eq=False)
+class TrainRuns:
+    """Train runs, or parts of them, of `seconds` in all; those of the campaign last `of` s."""
+
+    runs: tuple[ObservedRun, ...]
+    seconds: float
+    of: float
+
+    @property
+    def looked_at(self) -> LookedAt:
+        """How much of the campaign that is: standard deviations fall with the root of the time."""
+        wider = np.sqrt(self.of / self.seconds) if self.seconds else 1.0
+        return LookedAt(
+            seconds=round(self.seconds, 1), of=round(self.of, 1), wider=round(float(wider), 2)
+        )
+
+
+class _Part(NamedTuple):
+    """Samples of a run, how many s they last, and the squares (k, k) of what acted in them."""
+
+    run: str
+    at: slice
+    lasts: float
+    squares: Array
+
+
+def prepare_train(
+    runs: Runs, settings: ReplaySettings, catalogue: Catalogue, free: Array, most: float = MOST
+) -> TrainRuns:
+    """Train runs of up to `most` s as the observer sees them; see `prepare_run`."""
+    parts = [part for name in runs.of("train") for part in _divide(runs.motions[name])]
+    whole = sum(part.lasts for part in parts)
+    chosen = [(name, slice(None)) for name in runs.of("train")]
+    if whole > most:
+        parts = _choose(parts, most)
+        chosen = [(part.run, part.at) for part in parts]
+    kept: Recent = Recent(DRIVES)
+    found = [_prepare(runs, *one, settings, catalogue, free, kept) for one in chosen]
+    return TrainRuns(tuple(found), sum(part.lasts for part in parts), whole)
+
+
+def prepare_test(
+    runs: Runs, settings: ReplaySettings, catalogue: Catalogue, free: Array
+) -> Iterator[ObservedRun]:
+    """Test runs as the observer sees them, one after the other."""
+    for name in runs.of("test"):
+        yield _prepare(runs, name, slice(None), settings, catalogue, free, Recent())
+
+
+def _prepare(
+    runs: Runs, name: str, at: slice, settings: ReplaySettings, catalogue: Catalogue, free: Array,
+    kept: Recent,
+) -> ObservedRun:  # fmt: skip
+    stage, motion = runs.stages[name], runs.motions[name]
+    if at != slice(None):
+        first = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD))
+        whole = slice(first, at.stop)
+        stage = stage.part(whole) if isinstance(stage, Poses) else stage
+        led = np.arange(at.stop - first) >= at.start - first
+        motion = motion.part(whole)
+        motion = replace(motion, usable=motion.usable & led)
+    return prepare_run(stage, motion, settings, catalogue, free, kept)
+
+
+def _choose(parts: Sequence[_Part], most: float) -> list[_Part]:
+    """Parts in their order, up to `most` s: each next one adds most to what is known."""
+    squares = np.array([part.squares for part in parts])
+    size = np.sqrt(np.maximum(np.einsum("pkk->k", squares), np.finfo(float).tiny))
+    squares /= size[:, None] * size
+    known, chosen, left = LEAST * np.eye(len(size)), set[int](), most
+    while fits := [k for k, p in enumerate(parts) if k not in chosen and p.lasts <= left]:
+        best = fits[int(np.argmax(np.linalg.slogdet(known + squares[fits])[1]))]
+        chosen.add(best)
+        known, left = known + squares[best], left - parts[best].lasts
+    return [parts[k] for k in sorted(chosen)]
+
+
+def _divide(motion: Motion) -> Iterator[_Part]:
+    """A run in equal parts, each as close to `PART` as can be."""
+    acting, whole = _list_acting(motion), motion.end - motion.time[0]
+    ends = np.linspace(motion.time[0], motion.end, max(1, round(whole / PART)) + 1)
+    places = np.searchsorted(motion.time, ends)
+    places[-1] = len(motion.time)
+    step = max(1, round(SAMPLED / float(np.median(np.diff(motion.time)))))
+    for a, b in pairwise(places.tolist()):
+        some = acting[a:b:step][motion.usable[a:b:step]]
+        lasts = len(motion.time[a:b]) / len(motion.time) * whole
+        yield _Part(motion.run.id, slice(a, b), float(lasts), some.T @ some)
+
+
+def _list_acting(motion: Motion) -> Array:
+    """What forces may depend on, at the samples (n, k)."""
+    nu, time = motion.state_nu, motion.time
+    commands = motion.commands.value, motion.commands.time
+    held = np.clip(np.searchsorted(commands[1], time, side="right") - 1, 0, None)
+    commanded = commands[0][held] if len(commands[1]) else np.zeros((len(time), 0))
+    down = unrotate(motion.eta[:, 3:], np.array([0.0, 0.0, 1.0]))
+    since = (time - time[0])[:, None]
+    columns = [nu, np.abs(nu) * nu, motion.nu_dot, down, motion.eta[:, :3], since, commanded]
+    return np.nan_to_num(np.hstack(columns))

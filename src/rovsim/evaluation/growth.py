@@ -1,0 +1,52 @@
+"""How the error of a model grows with the time since the anchor of a window."""
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.measurement.signals.motion import Motion
+from rovsim.results.base import or_none
+from rovsim.results.growth import Curve
+from rovsim.simulation.prediction import Prediction
+from rovsim.simulation.windows import find_windows
+
+HORIZON = "5"  # s, of the windows
+BINS = 25  # of 0.2 s: wider than the spacing of bins that were recorded as means
+
+
+class GrowthScore:
+    """Squared velocity errors (25, 6) by the time since the anchor, summed over test runs."""
+
+    def __init__(self) -> None:
+        self._edges = np.linspace(0.0, float(HORIZON), BINS + 1)
+        self._count, self._squares = np.zeros(BINS), np.zeros((BINS, 6))
+
+    def add(self, motion: Motion, prediction: Prediction) -> None:
+        """Take in a run and its windows of 5 s; a train run is passed by."""
+        if motion.run.split != "test":
+            return
+        age = _age(motion, float(HORIZON))
+        known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
+        member = np.digitize(age, self._edges) - 1
+        known &= (member >= 0) & (member < BINS)
+        self._count += np.bincount(member[known], minlength=BINS)
+        with np.errstate(over="ignore"):  # of a model that diverged: infinite
+            squares = np.square((prediction.nu - motion.nu)[known])
+        np.add.at(self._squares, member[known], squares)
+
+    @property
+    def curve(self) -> Curve:
+        """Velocity RMSE against time; nothing without test runs."""
+        seen = np.flatnonzero(self._count)
+        rows = np.sqrt(self._squares[seen] / self._count[seen, None])
+        columns = {a: tuple(map(or_none, row)) for a, row in zip(AXES, rows.T, strict=True)}
+        return Curve(horizon_s=tuple(self._edges[seen + 1].tolist()), velocity_rmse=columns)
+
+
+def _age(motion: Motion, horizon: float) -> Array:
+    """Time since the anchor of the window each sample belongs to, s."""
+    age = np.full(len(motion.time), np.nan)
+    for a, b in find_windows(motion, horizon):
+        at = slice(a, b) if motion.binned else slice(a + 1, b + 1)
+        age[at] = motion.time[at] - motion.time[a]
+    return age

@@ -1,0 +1,76 @@
+"""All that is said of some models' errors, taken in run by run: nothing of a run is held."""
+
+from typing import Iterable, Mapping
+
+from rovsim.evaluation.growth import HORIZON as LONG
+from rovsim.evaluation.growth import GrowthScore
+from rovsim.evaluation.ladder import HORIZON, StepScore
+from rovsim.evaluation.scores import subtract, summarize
+from rovsim.measurement.signals.motion import Motion
+from rovsim.results.comparison import OPEN_LOOP, Comparison, ModelErrors, RunErrors
+from rovsim.results.growth import Growth
+from rovsim.results.ladder import Step
+from rovsim.simulation.prediction import Replay
+
+
+class Scored:
+    """Errors of models by run, how they grow, and the models' steps of the ladder."""
+
+    def __init__(self, models: Iterable[str]) -> None:
+        self._models = {name: _Score(name) for name in models}
+
+    @staticmethod
+    def of(motions: Iterable[Motion], replays: Mapping[str, Mapping[str, Replay]]) -> "Scored":
+        """Of replays by model and run."""
+        found = Scored(replays)
+        for motion in motions:
+            for runs in replays.values():
+                found.add(motion, runs[motion.run.id])
+        return found
+
+    def add(self, motion: Motion, replay: Replay) -> None:
+        """Take in the replay of a run by one of the models."""
+        self._models[replay.model].add(motion, replay)
+
+    @property
+    def comparison(self) -> Comparison:
+        """`comparison.json`."""
+        models = {name: ModelErrors(runs=one.runs) for name, one in self._models.items()}
+        return Comparison(models=models)
+
+    @property
+    def growth(self) -> Growth:
+        """`growth.json`."""
+        return Growth(models={name: one.growth.curve for name, one in self._models.items()})
+
+    @property
+    def steps(self) -> list[Step]:
+        """A step of the ladder for each model, on the test runs."""
+        return [one.step.step for one in self._models.values()]
+
+
+def score(motion: Motion, replay: Replay) -> RunErrors:
+    """All metrics of one model on one run."""
+    one = _Score(replay.model)
+    one.add(motion, replay)
+    return one.runs[motion.run.id]
+
+
+class _Score:
+    def __init__(self, model: str) -> None:
+        self.runs: dict[str, RunErrors] = {}
+        self.growth, self.step = GrowthScore(), StepScore(model)
+
+    def add(self, motion: Motion, replay: Replay) -> None:
+        found = {}
+        for name, prediction in replay.horizons.items():
+            errors = subtract(motion, prediction)
+            found[name] = summarize(errors)
+            if name == HORIZON:
+                self.step.add(motion, errors)
+            if name == LONG:
+                self.growth.add(motion, prediction)
+        run = motion.run
+        self.runs[run.id] = RunErrors(
+            split=run.split, control=run.control, open_loop=found.pop(OPEN_LOOP), windows=found
+        )
