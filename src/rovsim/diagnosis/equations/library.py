@@ -225,22 +225,34 @@ def project(
         block: number (m,) of the part of the runs that each lies in.
         middle: see `push`.
     """
-    pushes = [push(terms, run, model, middle) for run in bank.runs]
-    square = sum(np.sum(own**2, axis=(1, 2)) for own in pushes)
-    size = np.sqrt(square / sum(own.shape[1] for own in pushes))
+    size = _measure_size(terms, model, bank.runs, middle)
     acts = np.flatnonzero(size > 0.0)
-    parts = [
-        respond_to(own[acts] / size[acts, None, None], model, run, tuning)
-        for own, run, tuning in zip(pushes, bank.runs, tunings, strict=True)
-    ]
-    columns = np.concatenate(parts, axis=2)
-    rows = np.concatenate([white[:, None], columns, fitted.swapaxes(0, 1)], axis=1)
-    found = []
-    for k in np.unique(block):
-        own = rows[:, :, block == k].astype(np.float32)
-        found.append(np.asarray(sum(axis @ axis.T for axis in own), dtype=float))
     kept = tuple(terms[int(k)] for k in acts)
-    return Columns(kept, size[acts], tuple(_without(found, 1 + len(acts))))
+    rows = 1 + len(acts) + len(fitted)
+    found = {int(k): np.zeros((rows, rows)) for k in np.unique(block)}
+    first = 0
+    for run, tuning in zip(bank.runs, tunings, strict=True):  # columns of one run at a time
+        pushes = push(kept, run, model, middle) / size[acts, None, None]
+        columns = respond_to(pushes, model, run, tuning)
+        at = slice(first, first + columns.shape[2])
+        every = [white[:, None, at], columns, fitted[:, :, at].swapaxes(0, 1)]
+        whole = np.concatenate(every, axis=1, dtype=np.float32)
+        for k in np.unique(block[at]):
+            own = whole[:, :, block[at] == k]
+            found[int(k)] += sum(axis @ axis.T for axis in own)
+        first = at.stop
+    return Columns(kept, size[acts], tuple(_without(list(found.values()), 1 + len(acts))))
+
+
+def _measure_size(
+    terms: Sequence[LawTerm], model: Model, runs: Sequence[ObservedRun], middle: Array
+) -> Array:
+    """Root mean square (c,) of the wrench of each term with a coefficient of 1, over all runs."""
+    square, count = np.zeros(len(terms)), 0
+    for run in runs:
+        own = push(terms, run, model, middle)
+        square, count = square + np.sum(own**2, axis=(1, 2)), count + own.shape[1]
+    return np.asarray(np.sqrt(square / count))
 
 
 def _without(parts: Sequence[Array], kept: int) -> list[Array]:
