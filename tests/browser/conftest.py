@@ -47,7 +47,8 @@ def workbench(campaign, tmp_path_factory):
     yield address, folder
     process.terminate()
     process.wait(20)
-    assert "(most recent call last)" not in (folder / LOG).read_text()
+    # of ours: a page that leaves in the middle of an answer may end in one of the server's own
+    assert "src/rovsim/" not in (folder / LOG).read_text()
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,6 @@
 """The workbench shows what the commands write; long work reports, ends, can be cancelled."""
 
+import logging
 import shutil
 import socket
 import time
@@ -14,7 +15,7 @@ from chores import counting, dying, failing
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
-from rovsim.apps.workbench import charts, path, tasks
+from rovsim.apps.workbench import app, charts, path, tasks
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.totals import list_totals, tell_total
 from rovsim.apps.workbench.traces import panels
@@ -378,3 +379,13 @@ def test_a_port_in_use_is_one_message(capsys):
             main(["ui", f"port={taken.getsockname()[1]}", "open=false"])
     assert refused.value.code == 2
     assert "cannot be used" in capsys.readouterr().err
+
+
+def test_a_page_that_is_closed_while_it_asks_is_no_fault():
+    def told(error):
+        return app._stayed(logging.LogRecord("", 40, "", 0, "", (), (type(error), error, None)))
+
+    assert not told(RuntimeError("No response returned."))
+    assert told(RuntimeError("another"))
+    assert told(ValueError("No response returned."))
+    assert app._stayed(logging.LogRecord("", 40, "", 0, "", (), None))

@@ -1,5 +1,6 @@
 """The page: header, navigation, progress of long work; the screens fill the rest."""
 
+import logging
 from functools import partial
 from pathlib import Path
 from types import ModuleType
@@ -186,9 +187,19 @@ def _module(name: str) -> ModuleType:
     return importlib.import_module(f"rovsim.apps.workbench.{name}")
 
 
+def _stayed(record: logging.LogRecord) -> bool:
+    """Whether a record is not of a page that was closed while it asked for something.
+
+    Starlette's middleware then has no answer to pass on, and says so at length.
+    """
+    error = record.exc_info[1] if record.exc_info else None
+    return not (isinstance(error, RuntimeError) and str(error) == "No response returned.")
+
+
 def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
     shared = State(settings, catalogue)
+    logging.getLogger("uvicorn.error").addFilter(_stayed)
     server.add_middleware(Gate)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
 
