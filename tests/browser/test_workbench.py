@@ -34,18 +34,23 @@ SAME = """() => {
   return Math.abs(now / before - 1) < 1e-3;
 }"""
 NUMBER = "document.querySelector(\"input[aria-label='thruster_lag, time_constant, number']\")"
-# Least distance in px between the lower edge of a chart's legend and its icons.
-APART = """Math.min(1e6, ...[...document.querySelectorAll('.chart')].flatMap(div => {
-  const of = type => getElement(div.id.slice(1)).chart._componentsViews.find(v => v.type == type);
+# Least distance in px between the lower edge of a chart's legend and its icons, once all is drawn.
+APART = """() => {
+  const charts = [...document.querySelectorAll('.chart')].map(
+    div => getElement(div.id.slice(1))?.chart?._componentsViews);
+  if (charts.includes(undefined)) return null;  // what draws them is loaded on first use
   const box = view => {
     const rect = view.group.getBoundingRect().clone();
     rect.applyTransform(view.group.transform ?? [1, 0, 0, 1, 0, 0]);
     return rect;
   };
-  const [legend, icons] = [of("legend.scroll"), of("toolbox")];
-  const middle = icons && box(icons).y + 0.5 * box(icons).height;  // room for labels is around
-  return legend && icons ? [middle - 8 - box(legend).y - box(legend).height] : [];
-}))"""
+  return {px: Math.min(1e6, ...charts.flatMap(views => {
+    const of = type => views.find(v => v.type == type);
+    const [legend, icons] = [of("legend.scroll"), of("toolbox")];
+    const middle = icons && box(icons).y + 0.5 * box(icons).height;  // room for labels is around
+    return legend && icons ? [middle - 8 - box(legend).y - box(legend).height] : [];
+  }))};
+}"""
 LATER = (
     "([name, v]) => Number(document.querySelector(`[role=slider][aria-label='${name}']`)"
     ".getAttribute('aria-valuenow')) > v"
@@ -353,8 +358,10 @@ def test_every_screen_fits_a_desk_and_a_phone(tab, phone, screen):
         if screen in ("why", "add", "ladder"):
             found(one)
         one.go(screen)
-        one.page.wait_for_timeout(700)
         page = one.page
+        page.wait_for_selector(READY[screen])
+        apart = page.wait_for_function(APART).json_value()["px"]
+        assert apart > 0, f"{screen}: icons cover the legend by {-apart} px"
         wide = page.evaluate("document.scrollingElement.scrollWidth - innerWidth")
         assert wide <= 0, f"{screen} is {wide} px too wide"
         small = page.evaluate(
@@ -363,8 +370,6 @@ def test_every_screen_fits_a_desk_and_a_phone(tab, phone, screen):
             ".map(e => parseFloat(getComputedStyle(e).fontSize)))"
         )
         assert small >= 11
-        apart = one.page.evaluate(APART)
-        assert apart > 0, f"{screen}: icons cover the legend by {-apart} px"
     if screen == "why":
         phone.picture("phone-why")
 
