@@ -227,7 +227,7 @@ def simulated(seconds=6.0, gap=None):
 
 # motion of the pilot only: a cut-off far above it leaves the prediction as it was
 OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
-SHORT = ReplaySettings().model_copy(update={"horizons": (0.5,)})
+SHORT = ReplaySettings().only(0.5)
 
 
 def test_the_model_that_moved_the_vehicle_predicts_it():

@@ -22,6 +22,7 @@ from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step
 from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import LADDER
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
@@ -73,8 +74,7 @@ def _climb(
 
     Where a law is proposed, it and what is beside it come last, before the noise floor.
     """
-    models, horizons = _list_models(found), (float(HORIZON),)
-    how = settings.replay.model_copy(update={"horizons": horizons})
+    models, how = _list_models(found), settings.replay.only(LADDER)
     scores = [StepScore(model.name) for model in models]
     for name in runs.of("test"):
         motion = runs.motions[name]

@@ -7,8 +7,9 @@ from rovsim.evaluation.scores import Errors, Moments, Sums, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
+from rovsim.simulation.settings import LADDER
 
-HORIZON = "2"  # s, of the windows
+HORIZON = f"{LADDER:g}"  # s, as replays name it
 
 
 @dataclass(eq=False)

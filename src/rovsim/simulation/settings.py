@@ -15,6 +15,10 @@ class ReplaySettings(Section):
     commands: Between = "held"  # what an autopilot does with a set-point
     horizons: tuple[PositiveFloat, ...] = (0.5, LADDER, 5.0)  # s, contract section 3
 
+    def only(self, *horizons: float) -> "ReplaySettings":
+        """The same with these windows, perhaps none."""
+        return self.model_copy(update={"horizons": horizons})
+
     @field_validator("horizons")
     @classmethod
     def _has_that_of_the_ladder(cls, horizons: tuple[float, ...]) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.prediction import Replay
 from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import LADDER
 
 Replays = Mapping[str, Mapping[str, Replay]]  # by model and run
 
@@ -17,12 +18,16 @@ Replays = Mapping[str, Mapping[str, Replay]]  # by model and run
 def replay_when_asked(
     models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
 ) -> dict[str, Remade[Replay]]:
-    """Replays of every run by every model, made when they are asked for."""
+    """Replays of every run by every model, in windows of 2 s and open loop, as figures show them.
+
+    Made when they are asked for.
+    """
+    how = settings.replay.only(LADDER)
 
     def by(model: Model) -> Remade[Replay]:
         return Remade(
             motions,
-            lambda run: replay(model, motions[run], settings.signals, settings.replay),
+            lambda run: replay(model, motions[run], settings.signals, how),
             MOST // len(models),
         )
 

@@ -218,7 +218,7 @@ class Workbench:
         """One run replayed in windows of `horizon` s, or open loop (None)."""
         key = (model, run, horizon)
         spans = () if horizon is None else (horizon,)
-        how = self.settings.replay.model_copy(update={"horizons": spans})
+        how = self.settings.replay.only(*spans)
         return self._replays.get(
             key,
             lambda: replay(model, self.data.motions[run], self.settings.signals, how, not spans),
