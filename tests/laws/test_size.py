@@ -139,3 +139,14 @@ def test_of_too_much_data_the_parts_are_chosen_that_tell_something(flown):
     used = np.concatenate([r.motion.time[r.motion.usable] for r in some.runs])
     np.testing.assert_array_equal(used, moving.time[moving.usable])
     assert some.runs[1].motion.time[0] == pytest.approx(moving.time[6000] - 5.0, abs=0.02)
+
+
+def test_a_part_keeps_the_line_that_holds_when_it_begins(flown):
+    """A log may have a line only where commands change."""
+    motion = flown.motion
+    few = replace(
+        motion.commands, time=np.array([0.0, 100.0]), value=motion.commands.value[[50, 90]]
+    )
+    part = replace(motion, commands=few).part(slice(6000, 7000))
+    held = part.commands.value[np.searchsorted(part.commands.time, part.time, side="right") - 1]
+    np.testing.assert_array_equal(held, np.tile(few.value[0], (1000, 1)))

@@ -46,9 +46,19 @@ class Commands:
     after: float = 0.0
 
     def within(self, begin: float, end: float) -> "Commands":
-        """The lines of a part of the recording, between two times."""
-        first, last = np.searchsorted(self.time, [begin, end])
-        return replace(self, time=self.time[first:last], value=self.value[first:last])
+        """The lines between two times, and one on either side: what holds then, what comes next."""
+        first, last = np.searchsorted(self.time, [begin, end], side="right")
+        at = slice(max(int(first) - 1, 0), int(last) + 1)
+        return replace(self, time=self.time[at], value=self.value[at])
+
+    def recording(self, edges: Array) -> tuple[float, float]:
+        """When the recording began and how long it lasted, s; steps between `edges` cover this."""
+        start = float(edges[0]) - self.before
+        return start, float(edges[-1]) + self.after - start
+
+    def since_start(self, times: Array) -> Array:
+        """Times as s since the start of the recording; the first is where this begins."""
+        return np.asarray(times - times[0] + self.before)
 
 
 @dataclass(frozen=True, eq=False)

@@ -186,13 +186,12 @@ class ThrustPath:
         Before the first line its command holds, after the last one too. The mean is exact for held
         commands wherever a line falls inside a step.
         """
-        start = float(edges[0]) - commands.before
+        start, duration = commands.recording(edges)
         arrival = start + self.arrival(commands.time - start)  # clocks agree at the start
-        duration = float(edges[-1]) + commands.after - start
         lines = replace(commands, time=arrival)
         some = [edges[k : k + AT_ONCE + 1] for k in range(0, len(edges) - 1, AT_ONCE)]
         static = Thrust.joined(
-            [self.arrived(_around(lines, e), e, start, duration, between) for e in some]
+            [self.arrived(lines.within(e[0], e[-1]), e, start, duration, between) for e in some]
         )
         force, _ = self.respond(static.force, float(edges[1] - edges[0]), None)
         return replace(static, force=force)
@@ -260,14 +259,6 @@ class ThrustPath:
         """Whether the same command makes the same static force at all times."""
         timed = "voltage" in lines.auxiliary or any(not s.steady for s in self.strengths)
         return len(lines.time) > 0 and not timed
-
-
-def _around(lines: Commands, edges: Array) -> Commands:
-    """The lines that steps between `edges` depend on."""
-    first = int(np.searchsorted(lines.time, edges[0], side="right")) - 1
-    last = int(np.searchsorted(lines.time, edges[-1], side="right")) + 1
-    at = slice(max(first, 0), last)
-    return replace(lines, time=lines.time[at], value=lines.value[at])
 
 
 def _between(time: Array, value: Array, at: Array, between: Between) -> Array:

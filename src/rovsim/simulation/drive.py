@@ -178,8 +178,7 @@ class Drives:
     def _drive(self, model: Model, key: tuple) -> Drive:
         mean, *growth = self._kept.get((key,), lambda: self._actuate(model))
         commands, edges, _ = self._given
-        lasts = float(edges[-1]) + commands.after - (float(edges[0]) - commands.before)
-        drive = mean.drive(model, lasts)
+        drive = mean.drive(model, commands.recording(edges)[1])
         return replace(drive, ramp=growth[0].push(model)) if growth else drive
 
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:

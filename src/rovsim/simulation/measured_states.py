@@ -42,7 +42,7 @@ def interpolate(times: Array, values: Array, time: float) -> Array:
 def accelerate_as_measured(model: Model, motion: Motion, drive: Drive) -> Array:
     """Acceleration (n, 6) of a model at the states of a true motion, as it is driven there (n)."""
     memory = measured_memory(model, motion, motion.time)
-    times = motion.time - motion.time[0] + motion.commands.before
+    times = motion.commands.since_start(motion.time)
     return Batch([model], motion.site).accelerations(drive, times, motion.state, memory)
 
 

@@ -77,12 +77,12 @@ def prepare_test(
 ) -> Iterator[ObservedRun]:
     """Test runs as the observer sees them, one after the other."""
     for name in runs.of("test"):
-        yield _prepare(runs, name, slice(None), settings, catalogue, free, Recent())
+        yield _prepare(runs, name, slice(None), settings, catalogue, free)
 
 
 def _prepare(
     runs: Runs, name: str, at: slice, settings: ReplaySettings, catalogue: Catalogue, free: Array,
-    kept: Recent,
+    kept: Recent | None = None,
 ) -> ObservedRun:  # fmt: skip
     stage, motion = runs.stages[name], runs.motions[name]
     if at != slice(None):
@@ -110,24 +110,24 @@ def _choose(parts: Sequence[_Part], most: float) -> list[_Part]:
 
 def _divide(motion: Motion) -> Iterator[_Part]:
     """A run in equal parts, each as close to `PART` as can be."""
-    acting, whole = _list_acting(motion), motion.end - motion.time[0]
+    whole = motion.end - motion.time[0]
     ends = np.linspace(motion.time[0], motion.end, max(1, round(whole / PART)) + 1)
     places = np.searchsorted(motion.time, ends)
     places[-1] = len(motion.time)
     step = max(1, round(SAMPLED / float(np.median(np.diff(motion.time)))))
     for a, b in pairwise(places.tolist()):
-        some = acting[a:b:step][motion.usable[a:b:step]]
+        at = slice(a, b, step)
+        some = _list_acting(motion, at)[motion.usable[at]]
         lasts = len(motion.time[a:b]) / len(motion.time) * whole
         yield _Part(motion.run.id, slice(a, b), float(lasts), some.T @ some)
 
 
-def _list_acting(motion: Motion) -> Array:
-    """What forces may depend on, at the samples (n, k)."""
-    nu, time = motion.state_nu, motion.time
-    commands = motion.commands.value, motion.commands.time
-    held = np.clip(np.searchsorted(commands[1], time, side="right") - 1, 0, None)
-    commanded = commands[0][held] if len(commands[1]) else np.zeros((len(time), 0))
-    down = unrotate(motion.eta[:, 3:], np.array([0.0, 0.0, 1.0]))
-    since = (time - time[0])[:, None]
-    columns = [nu, np.abs(nu) * nu, motion.nu_dot, down, motion.eta[:, :3], since, commanded]
+def _list_acting(motion: Motion, at: slice) -> Array:
+    """What forces may depend on, at some samples (n, k)."""
+    nu, time, eta, log = motion.state_nu[at], motion.time[at], motion.eta[at], motion.commands
+    held = np.clip(np.searchsorted(log.time, time, side="right") - 1, 0, None)
+    commanded = log.value[held] if len(log.time) else np.zeros((len(time), 0))
+    down = unrotate(eta[:, 3:], np.array([0.0, 0.0, 1.0]))
+    since = (time - motion.time[0])[:, None]
+    columns = [nu, np.abs(nu) * nu, motion.nu_dot[at], down, eta[:, :3], since, commanded]
     return np.nan_to_num(np.hstack(columns))
