@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 import worlds
 from flown import observed
 from rovsim.core.run import Commands
+from rovsim.diagnosis.checks.unknown_thrust import find_different, find_lost_commands
 from rovsim.diagnosis.observer.observed_run import prepare_run
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.thrusters import ThrusterDeadband
 from rovsim.dynamics.mocap_view import NO_CHANGE
 from rovsim.simulation.drive import Actuation
 from rovsim.simulation.settings import ReplaySettings
@@ -62,12 +64,32 @@ def test_a_line_that_was_lost_in_a_fast_ramp_is_known_to_be(tmp_path):
     kept = np.isin(np.arange(400), (100, 390), invert=True)
     commands = Commands(time[kept], value[kept], "thruster")
     lossy = replace(run, motion=replace(run.motion, commands=commands))
-    found = lossy.find_lost_commands(base.thrust_path)
+    found = find_lost_commands(lossy, base.thrust_path)
     np.testing.assert_allclose(run.edges[0] + found, [[7.78, 7.82]])
     later = Commands(time[kept] + 3.0, value[kept], "thruster")  # of a clock that was not set
     motion = replace(run.motion, commands=later)
-    moved = replace(run, motion=motion, edges=run.edges + 3.0).find_lost_commands(base.thrust_path)
-    np.testing.assert_allclose(moved, found)
+    moved = replace(run, motion=motion, edges=run.edges + 3.0)
+    np.testing.assert_allclose(find_lost_commands(moved, base.thrust_path), found)
+
+
+def test_near_the_edge_of_a_deadband_nobody_knows_whether_a_thruster_turned(tmp_path):
+    base, (run,) = observed(tmp_path, duration=20.0)
+    narrow, wide = (base + ThrusterDeadband(width=width) for width in (0.08, 0.085))
+    found = find_different(run, narrow, wide)
+    begins, ends = found.T
+    assert len(found)
+    assert np.all(begins < ends)
+    assert np.all(ends[:-1] < begins[1:])
+    command = run.motion.commands
+    near = ((np.abs(command.value) > 0.08) & (np.abs(command.value) <= 0.085)).any(axis=1)
+    at = command.time[near] - run.edges[0]
+    at = at[(at > 0.0) & (at < run.edges[-1] - run.edges[0])]
+    held = at[:, None] + np.array([0.0, 0.02])  # the line holds until the next
+    shown = [((begins < b) & (ends > a)).any() for a, b in held]
+    assert len(at)
+    assert np.mean(shown) > 0.99
+    assert np.sum(ends - begins) < 0.5 * (run.edges[-1] - run.edges[0])
+    assert not len(find_different(run, wide, wide))
 
 
 def test_a_reading_is_the_pose_in_the_middle_of_its_frames(tmp_path):

@@ -150,9 +150,9 @@ def _diagnose(
         # neither is complete, so that what a likelihood takes for noise is physics
         better = gate.prefers(found.selection, joint.selection)
         found = found if better or (better is None and found.score >= joint.score) else joint
-    if found.structures and len(found.fit.hypothesis.x):
+    if found.lasting and len(found.fit.hypothesis.x):
         found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
-    proposed = _propose(found, base, gate, usable) if found.structures else None
+    proposed = _propose(found, base, gate, usable) if found.lasting else None
     rivals = found.selection.named_rivals
     wider, scale = include_rest(found.fit, usable.runs)
     selected = rank_selected(base, wider, rivals, usable.runs)
@@ -195,21 +195,28 @@ class _Settled:
     score: float
     structures: Sequence[Structure]
 
+    @property
+    def lasting(self) -> bool:
+        """Whether more is left than single pushes: then names may stand for what has none."""
+        return not all(one.moment for one in self.structures)
+
 
 def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
     """What passes the gate, at its final values on all runs, and all that it leaves unexplained."""
     selection, whole = gate.judge(selection)
-    found, bank = _polish(selection, usable.runs)
-    structures = find_structure(found, bank)
-    fewer = gate.keep_earning(selection) if structures else selection
+    settled = _settle_values(selection, usable)
+    fewer = gate.keep_earning(selection) if settled.lasting else selection
     if fewer.found is not selection.found:
-        selection = fewer
-        found, bank = _polish(selection, usable.runs)
-        structures = find_structure(found, bank)
+        settled = _settle_values(fewer, usable)
+    if not whole and not settled.structures:
+        settled = replace(settled, structures=[REFUSED])
+    return settled
+
+
+def _settle_values(selection: Selection, usable: UsableRuns) -> _Settled:
+    found, bank = _polish(selection, usable.runs)
     score = selection.workspace.score(found)
-    if not whole and not structures:
-        structures = [REFUSED]
-    return _Settled(selection, found, bank, score, structures)
+    return _Settled(selection, found, bank, score, find_structure(found, bank))
 
 
 def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:

@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from scipy.signal import lfilter
 
 from rovsim import AXES
+from rovsim.diagnosis.checks.unknown_thrust import find_lost_commands, mark_undecided
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.kalman import AxisFilter
 from rovsim.diagnosis.observer.least_squares import solve
@@ -27,13 +28,15 @@ SPIN = 0.3  # s within which propellers and motors follow a command
 class Structure:
     """Something the remainder varies with.
 
-    `share` of the remaining disturbance's power, `surprise` = its chi-square above the limit.
+    `share` of the remaining disturbance's power, `surprise` = its chi-square above the limit;
+    `moment`: it is a single push, for which no effect can stand in.
     """
 
     axis: str
     what: str
     share: float
     surprise: float
+    moment: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +44,8 @@ class AxisResidual:
     """Whitened settled innovations (n_run,) of one axis, and the filter that made each run white.
 
     `fitted` (k, n), over all runs, are their derivatives to what was fitted, whose directions are
-    not judged again; `level` that of the disturbance, m/s2 or rad/s2.
+    not judged again; `level` that of the disturbance, m/s2 or rad/s2; `undecided` (n_run,): where
+    nobody knows whether a thruster turned.
     """
 
     axis: str
@@ -50,6 +54,7 @@ class AxisResidual:
     runs: tuple[ObservedRun, ...]
     filters: tuple[AxisFilter, ...]
     level: float
+    undecided: tuple[Array, ...]
 
     @property
     def _margin(self) -> float:
@@ -62,7 +67,7 @@ class AxisResidual:
         return np.concatenate([respond(push, f, run) for push, f, run in each])
 
     def weigh(
-        self, what: str, *, size: float, statistic: float, limit: float
+        self, what: str, *, size: float, statistic: float, limit: float, moment: bool = False
     ) -> Iterator[Structure]:
         """A structure where it is beyond chance, and large enough beside the disturbance.
 
@@ -71,11 +76,12 @@ class AxisResidual:
             size: RMS of the push, m/s2 or rad/s2.
             statistic: chi-square of what it explains.
             limit: what chance allows this to be.
+            moment: it is a single push.
         """
         limit *= self._margin
         if statistic > limit and size > MATTERS * self.level:
             share = min(1.0, (size / self.level) ** 2)
-            yield Structure(self.axis, what, float(share), float(statistic / limit))
+            yield Structure(self.axis, what, float(share), float(statistic / limit), moment)
 
 
 def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
@@ -94,8 +100,10 @@ def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
     """
     J = bank.whiten(found.seen.J, found.noise)
     white = _split_by_run(bank.whiten(found.seen.e, found.noise), bank.runs)
-    path, tunings = found.hypothesis.model.thrust_path, bank.tune(found.noise)
-    unknown = [run.find_lost_commands(path) for run in bank.runs]
+    tunings = bank.tune(found.noise)
+    path = found.hypothesis.model.thrust_path
+    unknown = [find_lost_commands(run, path) for run in bank.runs]
+    undecided = tuple(mark_undecided(found.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
         if not all(run.shown[:, i].all() for run in bank.runs):
@@ -104,7 +112,7 @@ def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
         each = zip(white, filters, bank.runs, unknown, strict=True)
         cleared = tuple(_clear(own[i], f, run, spans) for own, f, run, spans in each)
         level = float(found.noise.level[i])
-        residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, level))
+        residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, level, undecided))
     return residuals
 
 

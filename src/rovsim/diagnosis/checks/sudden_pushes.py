@@ -40,30 +40,39 @@ def _add_neighbours(w: Array, few: int) -> Array:
 
 
 def find_kicks(residual: AxisResidual) -> Iterator[Structure]:
-    """A single push that lasts a moment, at any time of any run."""
-    for w, f, run in zip(residual.white, residual.filters, residual.runs, strict=True):
+    """A single push that lasts a moment, at any time of any run at which thrusters were known."""
+    every = zip(residual.white, residual.filters, residual.runs, residual.undecided, strict=True)
+    for w, f, run, undecided in every:
         for duration in KICKS:
-            template = _kick(duration, f, run)
+            few = max(1, round(duration / run.period))
+            template = _kick(few, f, run)
             if len(template) < len(w):
-                yield from _judge_kick(residual, w, template, duration, run)
+                known = np.convolve(undecided, np.ones(few), "full")[few - 1 :] == 0.0
+                yield from _judge_kick(residual, w, template, duration, run, known)
 
 
-def _kick(duration: float, f: AxisFilter, run: ObservedRun) -> Array:
-    """How a kick of unit size shows in the innovations, until it is forgotten."""
-    push = np.ones(max(1, round(duration / run.period)))
-    return lfilter(*f.response, np.concatenate([push, np.zeros(round(ECHO / run.period))]))
+def _kick(few: int, f: AxisFilter, run: ObservedRun) -> Array:
+    """How a kick of unit size over so many readings shows, until it is forgotten."""
+    push = np.concatenate([np.ones(few), np.zeros(round(ECHO / run.period))])
+    return lfilter(*f.response, push)
 
 
 def _judge_kick(
-    residual: AxisResidual, w: Array, template: Array, duration: float, run: ObservedRun
+    residual: AxisResidual,
+    w: Array,
+    template: Array,
+    duration: float,
+    run: ObservedRun,
+    known: Array,
 ) -> Iterator[Structure]:
-    """The largest kick of that duration in one run."""
+    """The largest kick of that duration in one run that begins where `known` (n,) says."""
     power = float(template @ template)
     factor = np.correlate(w, template, "valid") / power
+    factor *= known[: len(factor)]
     k = int(np.argmax(np.abs(factor)))
     limit = chi2.isf(FALSE_ALARM / (2 * len(KICKS) * len(AXES) * len(factor)), 1)
     at = run.edges[0] + run.time[run.settled][k]
     yield from residual.weigh(
         f"a push of {duration:g} s at {at:.1f} s in run {run.motion.run.id}",
-        size=abs(factor[k]) / MOMENT, statistic=factor[k] ** 2 * power, limit=limit,
+        size=abs(factor[k]) / MOMENT, statistic=factor[k] ** 2 * power, limit=limit, moment=True,
     )  # fmt: skip

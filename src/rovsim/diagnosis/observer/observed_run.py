@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Sequence
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,7 +10,6 @@ from numpy import ndarray as Array
 from rovsim.core.remade import Recent
 from rovsim.core.rotations import normalized
 from rovsim.diagnosis.observer.kalman import BIN_MEAN, POSE, SUM
-from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
@@ -27,8 +26,6 @@ SETTLING = 1.0  # s
 # 3 s for a small vehicle at usual speeds.
 SETTLING_UNREAD = 9.0  # s
 SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
-GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
-USUAL = 0.95  # quantile of the changes from line to line: more is a jump, of few lines at most
 # Frames are read in groups of about this length: what a vehicle of this size does is slower than
 # 5 Hz, and so are its propellers (5 / s, docs/simulator.md).
 GROUP = 0.05  # s
@@ -36,28 +33,36 @@ BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are indep
 
 
 @dataclass(frozen=True, eq=False)
-class ObservedRun:
-    """One run, ready to be observed.
+class Steps:
+    """When a run is read, and over which steps models go from reading to reading.
 
-    Replays of it take steps between `grid` (k+1,) s; `at` (n,) those at which the samples or bins
-    begin.
-
+    Replays take steps between `grid` (k+1,) s; `at` (n,) those at which the samples or bins begin.
     `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
     velocities were measured; `group` of them, an odd number, make a reading, which holds at step
-    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s. It starts at the first reading of
-    each of the `spans`, at the state of that sample, and reads up to the last. `drives` are of
-    models over the steps of the observer, `replay_drives` over those of a replay; `wrenches` are
-    those that the models of a diagnosis may have, `free` (6,) the axes in which the vehicle can
-    move at all.
+    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of `parts` (s,) of one
+    length, over each of which the thrust is steady.
     """
 
-    motion: Motion
     grid: Array
     at: Array
     frames: Array
     group: int
     ends: Array
     edges: Array
+    parts: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedRun(Steps):
+    """One run, ready to be observed.
+
+    It starts at the first reading of each of the `spans`, at the state of that sample, and reads up
+    to the last. `drives` are of models over the steps of the observer, `replay_drives` over those
+    of a replay; `wrenches` are those that the models of a diagnosis may have, `free` (6,) the axes
+    in which the vehicle can move at all.
+    """
+
+    motion: Motion
     drives: Drives
     replay_drives: Drives
     wrenches: tuple[type[Wrench], ...]
@@ -69,7 +74,7 @@ class ObservedRun:
 
     def since_start(self, edges: Array) -> Array:
         """Ends of steps as s since the start of the recording, of which this may be a part."""
-        return np.asarray(edges - edges[0] + self.motion.commands.before)
+        return self.motion.commands.since_start(edges)
 
     @cached_property
     def spans(self) -> tuple[tuple[int, int], ...]:
@@ -206,21 +211,6 @@ class ObservedRun:
             kept[first:last] = self.time[first:last] > self.instants[a] + settling
         return kept
 
-    def find_lost_commands(self, path: ThrustPath) -> Array:
-        """Begins and ends (g, 2) of lost lines of the command log over which commands jumped.
-
-        In s since the start of the run, as `time`; `path` says when a logged command takes effect.
-        """
-        commands = self.motion.commands
-        steps = np.diff(commands.time)
-        if not len(steps):
-            return np.empty((0, 2))
-        change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
-        lost = (steps > GAP * np.median(steps)) & (change > np.quantile(change, USUAL))
-        before = commands.before
-        at = path.arrival(commands.time - self.edges[0] + before) - before
-        return np.column_stack([at[:-1][lost], at[1:][lost]])
-
 
 def prepare_run(
     stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue, free: Array,
@@ -245,30 +235,18 @@ def prepare_run(
     if not motion.binned:
         replayed = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
     return ObservedRun(
-        motion, found.grid, found.at, found.frames, found.group, found.ends, found.edges, drives,
-        replayed, wrenches, free,
+        **vars(found), motion=motion, drives=drives, replay_drives=replayed, wrenches=wrenches,
+        free=free,
     )  # fmt: skip
 
 
-class _Steps(NamedTuple):
-    """As in `ObservedRun`; each step between `edges` is made of `parts` (s,) of steady thrust."""
-
-    grid: Array
-    at: Array
-    frames: Array
-    group: int
-    ends: Array
-    edges: Array
-    parts: Array
-
-
-def _step_bins(stage: Stage, motion: Motion, grid: StepGrid) -> _Steps:
+def _step_bins(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
     """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
     begins = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
     frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
     steps, ends = _divide(begins, GROUP / grid.h)
     edges = motion.time[0] + grid.h * steps
-    return _Steps(edges, ends, frames, 1, ends, edges, np.diff(steps))
+    return Steps(edges, ends, frames, 1, ends, edges, np.diff(steps))
 
 
 def _divide(at: Array, most: float) -> tuple[Array, Array]:
@@ -283,7 +261,7 @@ def _divide(at: Array, most: float) -> tuple[Array, Array]:
     return np.append(np.repeat(at[:-1], count) + within, at[-1]), ends
 
 
-def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> _Steps:
+def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
     """A group of frames is a reading, and one step leads from it to the next."""
     assert isinstance(stage, Poses)
     count, period = len(motion.time), float(motion.time[1] - motion.time[0])
@@ -293,7 +271,7 @@ def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> _Steps:
     edges = motion.time[0] + group // 2 * period + grid.h * steps
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
     at = np.arange(count) * grid.stride
-    return _Steps(grid.edges, at, frames, group, ends, edges, np.diff(steps))
+    return Steps(grid.edges, at, frames, group, ends, edges, np.diff(steps))
 
 
 def _lasts(motion: Motion, a: int, b: int) -> bool:

@@ -1,0 +1,62 @@
+"""When a log does not say what the thrusters did: what the vehicle did then is no physics."""
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.actuation import ThrustPath
+from rovsim.dynamics.effects.base import Shaping
+from rovsim.dynamics.model import Model
+
+GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
+USUAL = 0.95  # quantile of the changes from line to line: more is a jump, of few lines at most
+
+
+def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
+    """Begins and ends (g, 2) of lost lines of the command log over which commands jumped.
+
+    In s since the start of the run, as its `time`; `path` says when a logged command takes effect.
+    """
+    commands = run.motion.commands
+    steps = np.diff(commands.time)
+    if not len(steps):
+        return np.empty((0, 2))
+    change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
+    lost = (steps > GAP * np.median(steps)) & (change > np.quantile(change, USUAL))
+    before = commands.before
+    at = path.arrival(commands.time - run.edges[0] + before) - before
+    return np.column_stack([at[:-1][lost], at[1:][lost]])
+
+
+def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
+    """Innovations (n,) of readings at which nobody knows whether a thruster turned.
+
+    A command is rounded before it is logged, so that near the edge of a deadband the log does not
+    say on which side it was.
+    """
+    found = np.zeros(len(run.time), bool)
+    for narrow, wide in _list_either_side(h):
+        for begin, end in find_different(run, narrow, wide):
+            found |= (run.time > begin) & (run.time <= end + run.period)
+    return found
+
+
+def find_different(run: ObservedRun, one: Model, other: Model) -> Array:
+    """Times (g, 2) at which two models' thrusters push differently under the same commands."""
+    forces = [drive.force for drive in run.drives.of([one, other])]
+    differ = (forces[0] != forces[1]).any(axis=1)
+    turns = np.flatnonzero(np.diff(np.concatenate([[False], differ, [False]])))
+    return np.asarray((run.edges - run.edges[0])[turns].reshape(-1, 2))
+
+
+def _list_either_side(h: Hypothesis) -> list[tuple[Model, Model]]:
+    """Models with the values between which a log cannot tell where thrusters start."""
+    found = []
+    for term, columns in zip(h.terms, h.columns, strict=True):
+        for parameter, column in zip(term.parameters, columns, strict=True):
+            if isinstance(term.effect, Shaping) and parameter.grain:
+                half = np.zeros(len(h.x))
+                half[column] = 0.5 * parameter.grain / parameter.scale
+                found.append((h.at(h.x - half).model, h.at(h.x + half).model))
+    return found

@@ -1,0 +1,44 @@
+"""A single push is told from noise, but where nobody knows whether a thruster turned."""
+
+from types import SimpleNamespace
+
+import numpy as np
+from scipy.signal import lfilter
+
+from rovsim.diagnosis.checks.residual import AxisResidual
+from rovsim.diagnosis.checks.sudden_pushes import find_kicks
+from rovsim.diagnosis.observer.kalman import POSE, AxisMotion, AxisNoise, design_filter
+
+PERIOD, COUNT, KICK = 0.05, 1200, 600
+NOISE = AxisNoise(level=0.02, memory=1.0, reading=1e-3)
+
+
+def residual_with(size, undecided):
+    """Noise and one push of 0.2 s, m/s2, in the innovations of an axis."""
+    f = design_filter(POSE, PERIOD, AxisMotion(1.0), NOISE)
+    push = np.zeros(COUNT)
+    push[KICK : KICK + 4] = size
+    white = np.random.default_rng(3).normal(size=COUNT) + lfilter(*f.response, push)
+    time = PERIOD * np.arange(COUNT)
+    run = SimpleNamespace(
+        period=PERIOD, time=time, edges=time, settled=np.ones(COUNT, bool),
+        motion=SimpleNamespace(run=SimpleNamespace(id="a"), measured=None),
+    )  # fmt: skip
+    return AxisResidual("surge", (white,), np.empty((0, COUNT)), (run,), (f,), 0.02, (undecided,))
+
+
+def test_a_push_is_found_at_its_time():
+    (found, *_) = find_kicks(residual_with(0.6, np.zeros(COUNT, bool)))
+    assert found.moment
+    assert "30.0 s in run a" in found.what
+
+
+def test_noise_alone_is_no_push():
+    assert not list(find_kicks(residual_with(0.0, np.zeros(COUNT, bool))))
+
+
+def test_a_push_while_a_thruster_was_at_the_edge_of_its_deadband_is_none():
+    undecided = np.zeros(COUNT, bool)
+    assert list(find_kicks(residual_with(0.25, undecided)))
+    undecided[KICK - 4 : KICK + 8] = True
+    assert not [one for one in find_kicks(residual_with(0.25, undecided)) if "0.2 s" in one.what]
