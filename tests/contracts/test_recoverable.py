@@ -13,20 +13,15 @@ from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Smoothing
+from rovsim.dynamics.effects.base import Smoothing, Wander
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import build_effect
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 
 
-UNSEEN = pytest.mark.xfail(strict=True, reason="the observer does not know of it yet")
-LATER = ("current_drift",)
-EVERY = [
-    pytest.param(name, marks=UNSEEN if name in LATER else ())
-    for name, cls in built_in().items()
-    if not issubclass(cls, Smoothing)  # told by the noise of the cameras: recovery/test_camera.py
-]
+# Told by the noise: recovery/test_camera.py, recovery/test_drifting_current.py.
+EVERY = [name for name, cls in built_in().items() if not issubclass(cls, Smoothing | Wander)]
 
 
 @pytest.fixture(scope="module")

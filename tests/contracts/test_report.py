@@ -321,3 +321,13 @@ def test_what_was_not_looked_at_is_said():
     assert said.startswith("Looked at: those 15.0 of the 800 min of train runs that tell most.")
     assert "7.3 times narrower" in said
     assert part_sentences(LookedAt(seconds=60.0, of=60.0, wider=1.0)) == []
+
+
+def test_what_wanders_is_said_to_be_unforeseeable_and_not_worth_nothing(content):
+    drift = FittedEffect(
+        effect="current_drift", parameters={"rate": FittedValue(value=0.012, std=0.001)},
+        error_reduction=0.0, probability=0.9999,
+    )  # fmt: skip
+    found = content["diagnosis"].model_copy(update={"selected": (drift,)})
+    (said,) = explain(found, built_in()).missing
+    assert said.worth == "cannot be foreseen, probability above 0.999"

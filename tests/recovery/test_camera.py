@@ -38,7 +38,7 @@ def test_a_slow_error_of_the_cameras_is_told_from_noise_and_from_turbulence(tmp_
         base, runs = observed(tmp_path / str(colour), duration=60.0, camera=camera)
         bank = FilterBank.design(runs, base, FIRST_NOISE)
         e = [one[0] for one in bank.evaluate([base])]
-        noise, _ = bank.fit_noise(e, FIRST_NOISE, colour=True)
+        noise, _ = bank.fit_noise(e, FIRST_NOISE, thorough=True)
         levels.append(noise.colour)
     assert np.all(levels[0][3:] == 0.0)
     assert np.count_nonzero(levels[0]) <= 1

@@ -77,7 +77,7 @@ def value(
     for k, (run, rival) in enumerate(zip(runs, known.rivals, strict=True)):
         if exact or motions is None:
             motions = _mix_motions(run, rival, known)
-        bank = _observe(run, known, motions, exact)
+        bank = _observe(run, rival, known, motions, exact)
         own = bank.linearise(rival.hypothesis if exact or len(runs) == 1 else rival.as_it_is)
         told.append(_told(bank, own, rival, known, exact))
         if len(runs) > 1:
@@ -98,11 +98,12 @@ def _mix_motions(run: ObservedRun, rival: Known, known: Knowledge) -> tuple[Axis
 
 
 def _observe(
-    run: ObservedRun, known: Knowledge, motions: tuple[AxisMotion, ...], exact: bool
+    run: ObservedRun, rival: Known, known: Knowledge, motions: tuple[AxisMotion, ...], exact: bool
 ) -> FilterBank:
     """Filters for the flight, which is the last run, and where exact for the train runs."""
     runs = (*known.runs, run) if exact else (run,)
-    return FilterBank(runs, motions, tuple(tune(known.noise.white, motions, w) for w in runs))
+    tunings = tuple(tune(known.noise.white, motions, w) for w in runs)
+    return FilterBank(runs, motions, tunings, rival.hypothesis.model)
 
 
 def _told(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge, exact: bool) -> Array:

@@ -43,6 +43,7 @@ from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
     Ranked,
     Selected,
+    name_drift,
     rank_alone,
     rank_selected,
     rank_smoothing,
@@ -158,6 +159,10 @@ def _diagnose(
     selected = rank_selected(base, wider, rivals, usable.runs)
     if smoothing:
         selected = [rank_smoothing(base, smoothing, usable.runs), *selected]
+    if found.fit.noise.drift:
+        drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
+        if drift.sure:
+            selected = [*selected, name_drift(drift)]
     return TrainDiagnosis(
         base, usable, found.fit, selected=selected,
         ranking=rank_alone(workspace, nothing, found.fit),
@@ -180,8 +185,12 @@ def _observe(
     noise, _ = first.fit_noise(first.innovations(base), FIRST_NOISE)
     close = first.redesign(base, noise)
     candidates = list_candidates(runs, catalogue, base.vehicle)
-    sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
-    noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
+    while True:
+        sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
+        noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
+        if not noise.drift or close.paths:
+            break
+        close = close.redesign(base, noise)  # forces differ where the water moves
     return SearchWorkspace(close, sensitivities, noise, settings).redesign(Hypothesis(base), noise)
 
 

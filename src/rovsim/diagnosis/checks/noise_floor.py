@@ -14,6 +14,7 @@ from numpy import ndarray as Array
 from scipy.signal import lfilter
 
 from rovsim.core import rotations
+from rovsim.diagnosis.observer.drifting_current import push_by_current
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import Windows
@@ -88,7 +89,20 @@ class _PerfectModel:
         for k, kick in enumerate(kicks):
             x = fade[k] * x + kick
             a[k] = x
-        return (a * self.noise.level).swapaxes(0, 1) @ self.model.body.M.T
+        pushed = (a * self.noise.level).swapaxes(0, 1)
+        if self.noise.drift:
+            pushed += self._drift(run, self.noise.drift.rate)
+        return np.asarray(pushed @ self.model.body.M.T)
+
+    def _drift(self, run: ObservedRun, rate: float) -> Array:
+        """Accelerations (draws, k, 6) by a current that wanders, over the integration steps."""
+        push = push_by_current(self.model, run, np.zeros((len(run.time), 2)))
+        at, steps = run.grid[:-1] - run.edges[0], np.diff(run.grid)
+        here = np.stack([[np.interp(at, run.time, a) for a in own.T] for own in push])  # (2, 6, k)
+        began = run.motion.commands.before
+        kicks = self.random.normal(size=(DRAWS, 2, len(steps)))
+        kicks *= rate * np.sqrt(np.append(began, steps[:-1]))
+        return np.asarray(np.einsum("dck,cik->dki", np.cumsum(kicks, axis=2), here))
 
     def _report(self, run: ObservedRun) -> Array:
         """States (n, 13) as another measurement of the same motion would have reported them."""

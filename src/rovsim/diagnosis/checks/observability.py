@@ -18,7 +18,7 @@ from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Means
+from rovsim.dynamics.effects.base import Means, Wander
 from rovsim.dynamics.vehicle import Vehicle
 
 SURELY = 2.0  # standard deviations: found in 97 of 100 such recordings
@@ -42,6 +42,8 @@ def list_not_observable(
         shown |= _find_shown(sizes, driven, workspace.price)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
+    if not workspace.bank.shows_drift(workspace.noise):
+        silent |= {name for name, effect in catalogue.items() if issubclass(effect, Wander)}
     silent -= {term.id for term in selection.found.hypothesis.terms}
     silent -= {rival.effect for rival in selection.named_rivals}  # tried in the place of a name
     return tuple(name for name in catalogue.on(vehicle) if name in silent)

@@ -4,6 +4,8 @@ observed_run    a run as read, before any filter
 usable_runs     those with something to observe, and whether that is enough
 noise           what no model predicts: noise of the readings, a disturbance with memory
 noise_fit       how large it most likely is
+random_walk     pushes that wander: how they show, and how likely they are
+drifting_current  does the water wander?
 kalman          the steady filters that suit it, axis by axis
 innovations     many models on one run, in one compiled call
 filter_bank     all runs, each with its filters: innovations, whitened

@@ -4,38 +4,55 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Sequence
 
+import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.autoregression import COUPLED, Stretches, fit_autoregression
+from rovsim.diagnosis.observer.drifting_current import DriftFit, MovingWater
 from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.innovations import estimate_errors, observe
 from rovsim.diagnosis.observer.kalman import AxisMotion
-from rovsim.diagnosis.observer.noise import Noise, Tuning, tune, whiten
+from rovsim.diagnosis.observer.noise import (
+    DriftingCurrent,
+    Noise,
+    Path,
+    Tuning,
+    tune,
+    whiten,
+    whiten_run,
+)
 from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 
+ROUNDS = 3  # at most: what wanders and what pushes for a second are told apart by then
+CLOSE = 0.05  # of a drift, which its standard deviation exceeds
+
 
 @dataclass(frozen=True, eq=False)
 class FilterBank:
-    """The runs, and the filters they are observed with.
+    """The runs, and the filters they are observed with, which suit a model.
 
     `coupled`: axes drive each other (autoregression.py). Innovations found with the filters of one
-    noise are then those of another only nearly.
+    noise are then those of another only nearly. `paths`: of a current that wanders, about which all
+    is linearised.
     """
 
     runs: tuple[ObservedRun, ...]
     motions: tuple[AxisMotion, ...]
     tunings: tuple[Tuning, ...]
+    model: Model
     coupled: bool = False
+    paths: tuple[Path, ...] = ()
 
     @staticmethod
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
         errors = estimate_errors(base, runs)
         found = tuple(tune(noise.white, errors.motions, w) for w in runs)
-        return FilterBank(tuple(runs), errors.motions, found, errors.coupling > COUPLED)
+        coupled, paths = errors.coupling > COUPLED, noise.drift.paths if noise.drift else ()
+        return FilterBank(tuple(runs), errors.motions, found, base, coupled, paths)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""
@@ -44,22 +61,38 @@ class FilterBank:
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
         return [
-            evaluate_possible(models, len(run.time), partial(self._of_run, run, own))
-            for run, own in zip(self.runs, self.tunings, strict=True)
+            evaluate_possible(models, len(run.time), partial(self._of_run, k))
+            for k, run in enumerate(self.runs)
         ]
 
     def innovations(self, model: Model) -> list[Array]:
         """Innovations (6, n) of each run of one model."""
         return [e[0] for e in self.evaluate([model])]
 
-    def _of_run(self, run: ObservedRun, tuning: Tuning, models: Sequence[Model]) -> Array:
-        return observe(models, run, tuning)
+    def _of_run(self, k: int, models: Sequence[Model]) -> Array:
+        pushed = np.array([self._water.bends[k]] * len(models)) if self.paths else None
+        return observe(models, self.runs[k], self.tunings[k], pushed)
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
-        by_axis = whiten(e, self.runs, self.tunings, self.tune(noise))
-        past = noise.autoregression
-        return by_axis if past is None else past.whiten(by_axis, self._stretches)
+        tunings, past = self.tune(noise), noise.autoregression
+        z = whiten(e, self.runs, self.tunings, tunings)
+        if noise.drift:
+            z = self._water.walk.whiten(z, noise.drift.rate, tunings)
+        return z if past is None else past.whiten(z, self._stretches)
+
+    @property
+    def looks_for_drift(self) -> bool:
+        """Whether a current that wanders is looked for: every axis has its own, steady filter."""
+        return not self.coupled and all(run.motion.measured is None for run in self.runs)
+
+    def shows_drift(self, noise: Noise) -> bool:
+        """Whether a usual drift of the current would be told from none."""
+        return self.looks_for_drift and self._water.shows_drift(self.tune(noise))
+
+    @cached_property
+    def _water(self) -> MovingWater:
+        return MovingWater(self.model, self.runs, self.tunings, self.paths)
 
     @cached_property
     def _stretches(self) -> Stretches:
@@ -74,26 +107,81 @@ class FilterBank:
         """Filters of each run that suit another noise."""
         return [tune(noise, self.motions, w) for w in self.runs]
 
-    def fit_noise(self, e: Sequence[Array], start: Noise, colour: bool = False) -> NoiseFit:
-        """The most likely noise of innovations (6, n) of each run; see `fit_noise`."""
-        found = self.fit_axes(e, start, colour)
+    def fit_noise(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
+        """The most likely noise of innovations (6, n) of each run; see `fit_noise`.
+
+        `thorough`: whether to look for slow errors of the readings and for a current that wanders.
+        """
+        found = self.fit_axes(e, start, thorough)
         if not self.coupled:
-            return found
-        draws, runs = self._draws(e), len(self.runs)
-        white = [self.whiten(e[k * runs : (k + 1) * runs], found.noise) for k in range(draws)]
+            return self._fit_drift(e, found) if thorough and self.looks_for_drift else found
+        white = [self.whiten(own, found.noise) for own in self._draws(e)]
         past, gain = fit_autoregression(white, self._stretches)
         return NoiseFit(replace(found.noise, autoregression=past), found.likelihood + gain)
 
-    def fit_axes(self, e: Sequence[Array], start: Noise, colour: bool = False) -> NoiseFit:
-        """The same, each axis by itself, also where they are coupled."""
+    def fit_axes(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
+        """The same, each axis by itself, also where they are coupled; beside a drift as it is."""
         draws = self._draws(e)
+        if start.drift is None:
+            return self._fit_calm(draws, start, thorough)
+        each = [self._take_out(own, start, start.drift.rate) for own in draws]
+        rests, walks = [rest for rest, _ in each], each[0][1]
+        found = self._fit_calm(rests, start, thorough)
+        paths = (Path(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
+        noise = replace(found.noise, drift=start.drift._replace(paths=tuple(paths)))
+        gains = [
+            self._gain_by_drift(own, rest, noise, start.drift.rate)
+            for own, rest in zip(draws, rests, strict=True)
+        ]
+        return NoiseFit(noise, found.likelihood + float(np.mean(gains)))
+
+    def _fit_calm(self, draws: Sequence[Sequence[Array]], start: Noise, colour: bool) -> NoiseFit:
+        count = len(draws)
+        e = [one for own in draws for one in own]
         return fit_noise(
-            e, self.runs * draws, self.tunings * draws, self.motions, start, colour, draws
+            e, self.runs * count, self.tunings * count, self.motions, start, colour, count
         )
 
-    def _draws(self, e: Sequence[Array]) -> int:
-        """How often there are innovations of every run."""
-        return len(e) // len(self.runs)
+    def _draws(self, e: Sequence[Array]) -> list[Sequence[Array]]:
+        """Innovations of every run, as often as there are any."""
+        count = len(self.runs)
+        return [e[first : first + count] for first in range(0, len(e), count)]
+
+    def _fit_drift(self, e: Sequence[Array], found: NoiseFit) -> NoiseFit:
+        """The noise with a current that wanders, if it does."""
+        for _ in range(ROUNDS):
+            drift, known = self.measure_drift(self._draws(e)[0], found.noise), found.noise.drift
+            now = DriftingCurrent(drift.rate.value) if drift.sure else None
+            if now is None and known is None:
+                break
+            if now and known and abs(now.rate - known.rate) < CLOSE * known.rate:
+                break
+            found = self.fit_axes(e, replace(found.noise, drift=now), thorough=True)
+        return found
+
+    def measure_drift(self, e: Sequence[Array], noise: Noise) -> DriftFit:
+        """How the current most likely wanders, from innovations (6, n) of each run."""
+        return self._water.find_drift(self._split(e, noise), self.tune(noise))
+
+    def _take_out(
+        self, e: Sequence[Array], noise: Noise, rate: float
+    ) -> tuple[list[Array], list[Array]]:
+        """Innovations of each run less the likeliest drift, and that current (n, 2)."""
+        z, tunings = self._split(e, noise), self.tune(noise)
+        return self._water.walk.take_out(e, z, rate, tunings)
+
+    def _gain_by_drift(
+        self, e: Sequence[Array], rest: Sequence[Array], noise: Noise, rate: float
+    ) -> float:
+        """By how much likelier innovations are with a drift than what it left is without."""
+        z, left = self._split(e, noise), self._split(rest, noise)
+        more = sum(float(np.sum(a**2) - np.sum(b**2)) for a, b in zip(left, z, strict=True))
+        return more + self._water.walk.gain(z, rate, self.tune(noise))
+
+    def _split(self, e: Sequence[Array], noise: Noise) -> list[Array]:
+        """Settled innovations (6, m) of each run, whitened axis by axis."""
+        each = zip(e, self.runs, self.tunings, self.tune(noise), strict=True)
+        return [whiten_run(*one) for one in each]
 
     def linearise(self, at: Hypothesis) -> Linearised:
         """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""

@@ -20,8 +20,12 @@ LASTING = 0.9
 NUDGE = 0.05  # m/s or rad/s, a tenth of usual speeds; m or rad
 
 
-def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
+def observe(
+    models: Sequence[Model], run: ObservedRun, tuning: Tuning, pushed: Array | None = None
+) -> Array:
     """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle.
+
+    `pushed` (m, n, 6): accelerations at the readings that models have besides.
 
     Each in the axes and at the point that the motion capture reports: there its noise does not
     depend on where a model believes the markers to be, so no such belief is favoured by its noise.
@@ -39,9 +43,20 @@ def observe(models: Sequence[Model], run: ObservedRun, tuning: Tuning) -> Array:
         run.motion.binned,
     )
     drives = run.drives.of(models)
+    if pushed is not None:
+        drives = [
+            drive.pushed(_between(run, own) @ model.body.M.T)
+            for drive, own, model in zip(drives, pushed, models, strict=True)
+        ]
     e = serve_all(models, run).innovations(drives, starts, seen)
     reported = np.stack([m.mocap_view.twists(own) for m, own in zip(models, e, strict=True)])
     return np.ascontiguousarray(reported.swapaxes(1, 2))
+
+
+def _between(run: ObservedRun, a: Array) -> Array:
+    """Of accelerations (n, 6) at the readings, those (s, 6) in the middle of the steps."""
+    middle = run.edges[:-1] + 0.5 * np.diff(run.edges) - run.edges[0]
+    return np.column_stack([np.interp(middle, run.time, own) for own in a.T])
 
 
 class ErrorDynamics(NamedTuple):
@@ -76,7 +91,7 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
         states = as_true(model, run.motion).state
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
         states = _nudge(states[index], level=bool(run.known[4]))
-        found = _accelerate(model, run, index, states)
+        found = accelerate(model, run, index, states)
         slopes.append((found[0] - found[1:]) / NUDGE)
     slope = np.concatenate(slopes, axis=1)
     mean, largest = np.mean(slope, axis=1), np.sqrt(np.mean(slope[:6] ** 2, axis=1))
@@ -97,8 +112,8 @@ def _nudge(states: Array, level: bool) -> Array:
     return found
 
 
-def _accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:
-    """Accelerations (s, k, 6) at states (s, k, 13) of some readings (k,)."""
+def accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:
+    """Accelerations (s, k, 6) at states (s, k, 13) of some samples or bins (k,)."""
     at, edges, batch = run.at[index], run.grid, serve_all([model], run)
     drive = run.replay_drives.of([model])[0].at(np.minimum(at, len(edges) - 2))
     memory = recall([model], run, edges, at).reshape(-1, 6)

@@ -13,7 +13,7 @@ candidates be compared, without observing anew.
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -30,12 +30,34 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
 
 
+class Path(NamedTuple):
+    """A current (n, 2), north and east in m/s, at the readings of a run (n,) s."""
+
+    time: Array
+    current: Array
+
+    def at(self, time: Array) -> Array:
+        """The current (k, 2) at other times (k,); before and after as at the ends."""
+        return np.column_stack([np.interp(time, self.time, c) for c in self.current.T])
+
+
+class DriftingCurrent(NamedTuple):
+    """A current that wanders by `rate` m/s per sqrt(s), and where it most likely went on each run.
+
+    Without `paths` the water is thought to rest.
+    """
+
+    rate: float
+    paths: tuple[Path, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Noise:
     """Per axis (6,): `level` m/s2 or rad/s2 and `memory` s of the disturbance, `reading` noise.
 
     `colour` is a slow error of the readings, which lasts `colour_memory` s; 0 where there is none.
     `autoregression`: what the axes foretell of each other, where they hang together.
+    `drift`: of the current, where it wanders.
     """
 
     level: Array
@@ -44,6 +66,7 @@ class Noise:
     colour: Array = field(default_factory=lambda: np.zeros(6))
     colour_memory: Array = field(default_factory=lambda: np.full(6, 0.5))
     autoregression: Autoregression | None = None
+    drift: DriftingCurrent | None = None
 
     def of_axis(self, i: int) -> AxisNoise:
         """The noise of one axis."""
@@ -111,11 +134,12 @@ def whiten(
         wanted: the tuning that should make them white.
     """
     return np.concatenate(
-        [_white_run(*one) for one in zip(e, runs, found, wanted, strict=True)], axis=-1
+        [whiten_run(*one) for one in zip(e, runs, found, wanted, strict=True)], axis=-1
     )
 
 
-def _white_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Array:
+def whiten_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Array:
+    """The same (..., 6, m) of the innovations (..., 6, n) of one run."""
     pairs = zip(wanted.filters, found.filters, strict=True)
     b, a = map(_stack, zip(*(new.whitening(old) for new, old in pairs), strict=True))
     rows = e.reshape(int(np.prod(e.shape[:-2])), *e.shape[-2:])

@@ -36,7 +36,7 @@ def list_candidates(
     site, means = runs[0].motion.site, list_means(runs, vehicle)
     found = []
     for cls in catalogue.on(vehicle).values():
-        if issubclass(cls, Smoothing | Wander):  # camera.py tells of the one, none of the other
+        if issubclass(cls, Smoothing | Wander):  # told by camera.py and drifting_current.py
             continue
         if cls.through not in means:
             continue

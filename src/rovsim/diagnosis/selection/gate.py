@@ -20,6 +20,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.model import Model
+from rovsim.evaluation.scores import measured_spread
 
 Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 
@@ -56,8 +57,7 @@ class Gate:
     @cached_property
     def spread(self) -> Array:
         """Standard deviation (6,) of the measured velocity."""
-        nu = np.concatenate([run.motion.nu[run.motion.usable] for run in self.whole])
-        return np.maximum(np.std(nu, axis=0), SMALLEST)
+        return np.maximum(measured_spread(run.motion for run in self.whole), SMALLEST)
 
     def judge(self, selection: Selection) -> tuple[Selection, bool]:
         """What passes, and whether that is all that was selected."""

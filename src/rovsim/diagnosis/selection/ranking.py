@@ -7,12 +7,14 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.camera import Smoothing
+from rovsim.diagnosis.observer.drifting_current import DriftFit
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.rivals import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
 
@@ -65,8 +67,24 @@ def rank_smoothing(base: Model, smoothing: Smoothing, runs: Sequence[ObservedRun
     before, after = _score([base, base + effect], runs)
     return Selected(
         Term(effect, ("cutoff",)), {"cutoff": smoothing.std}, float((before - after) / before),
-        float(1.0 / (1.0 + np.exp(-0.5 * min(smoothing.gain, 700.0)))),
+        _odds(smoothing.gain),
     )  # fmt: skip
+
+
+def name_drift(drift: DriftFit) -> Selected:
+    """A current that wanders, as a selected effect; forces that wander were tried in its place.
+
+    Nobody can foresee it, so it removes no error.
+    """
+    effect = CurrentDrift(rate=drift.rate.value)
+    return Selected(
+        Term(effect, ("rate",)), {"rate": drift.rate.std}, 0.0, _odds(drift.surplus)
+    )  # fmt: skip
+
+
+def _odds(surplus: float) -> float:
+    """Probability of a name that is so much likelier, in twice the log likelihood."""
+    return float(1.0 / (1.0 + np.exp(-0.5 * min(surplus, 700.0))))
 
 
 def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:

@@ -129,7 +129,7 @@ def fit_remaining_noise(
 
     It is close to the true one whatever is still missing: candidates are compared under it. What is
     left depends on the noise in turn, so that this takes up to `rounds`; the last looks for slow
-    errors of the readings.
+    errors of the readings and for a current that wanders.
 
     Where axes hang together, a wrong noise of one can pass for an effect on another, and the two
     then hold each other. So it is the noise of the hypothesis alone where that is likelier by more
@@ -144,7 +144,7 @@ def fit_remaining_noise(
         noise = bank.fit_axes(_remainder(bank, e, columns, known), known).noise
         if np.max(np.abs(np.log(noise.level / known.level))) < CLOSE:
             break
-    found = bank.fit_noise(_remainder(bank, e, columns, noise), noise, colour=True)
+    found = bank.fit_noise(_remainder(bank, e, columns, noise), noise, thorough=True)
     own = _fit_own_noise(bank, at.model, found.noise)
     return (own if own.likelihood > found.likelihood + sensitivities.count else found).noise
 
@@ -154,7 +154,9 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
 
     Each round starts from the first guess: a level that once fell to zero does not come back.
     """
-    first = replace(FIRST_NOISE, colour=noise.colour, colour_memory=noise.colour_memory)
+    first = replace(
+        FIRST_NOISE, colour=noise.colour, colour_memory=noise.colour_memory, drift=noise.drift
+    )
     found = NoiseFit(noise, -np.inf)
     for _ in range(ROUNDS):
         bank = bank.redesign(model, found.noise)

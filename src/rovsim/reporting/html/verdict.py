@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 from rovsim import AXES
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.reporting.wording import listed, significant
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
@@ -81,7 +81,10 @@ def _missing(one: FittedEffect, known: type[Effect] | None) -> Missing:
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
     equation, cause = (known.equation, known.cause) if known else ("", "")
     values = tuple(f"{name} {interval(v)}" for name, v in one.parameters.items())
-    worth = f"removes {percent(one.error_reduction)} of the error, {_sure(one.probability)}"
+    removed = f"removes {percent(one.error_reduction)} of the error"
+    if known and issubclass(known, Wander):
+        removed = "cannot be foreseen"
+    worth = f"{removed}, {_sure(one.probability)}"
     return Missing(one.effect, meaning, values, worth, equation, cause)
 
 

@@ -1,0 +1,159 @@
+"""Pushes that wander: a random walk on every run, and what it adds to whitened innovations.
+
+A walk W of rate 1 over T s is the sum of independent normal numbers times
+sqrt(2 T) / w sin(w t / T), w = pi/2, 3 pi/2, ... (Karhunen-Loeve; Loeve 1978, Probability Theory
+II, section 37). Its slow terms hold nearly all of it; what is faster the disturbance takes.
+Whitened innovations without it have the covariance I, with it I + r^2 D'D, D their columns.
+"""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.optimize import minimize_scalar
+
+from rovsim.core.remade import Recent
+from rovsim.diagnosis.observer.noise import Tuning, whiten_run
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+
+FASTEST = 0.5  # Hz; what is faster is too little to be told from the disturbance
+LEAD = 60.0  # s for which it has wandered when a recording begins: a flight made ready
+EMPTY = 1e-9  # of the largest: directions that show nothing
+LEAST, MOST, TRIED = 1e-5, 10.0, 80  # rates, from none that shows to larger than any
+STEP = 0.05  # of the log of a rate: for its second derivative
+
+
+class Rate(NamedTuple):
+    """The likeliest rate, its standard deviation, and its gain in twice the log likelihood."""
+
+    value: float
+    std: float
+    gain: float
+
+
+class _Principal(NamedTuple):
+    """Of one run: orthonormal directions (k, 6 m) in which a walk shows, and its power (k,) there.
+
+    `mix` (c, k): the terms of the walk that make them up.
+    """
+
+    directions: Array
+    power: Array
+    mix: Array
+
+
+def list_terms(run: ObservedRun) -> Array:
+    """Terms (k, n) of a walk of rate 1 at the readings of a run, the first where it begins."""
+    before, lasts = run.motion.commands.before, float(run.time[-1])
+    w = np.pi * (np.arange(max(1, round(2.0 * FASTEST * lasts))) + 0.5)
+    terms = np.sqrt(2.0 * lasts) / w[:, None] * np.sin(w[:, None] * run.time / lasts)
+    return np.vstack([np.full(len(run.time), np.sqrt(LEAD + before)), terms])
+
+
+@dataclass(frozen=True, eq=False)
+class RandomWalk:
+    """One walk for each of d directions on each run.
+
+    `columns` (c, 6, n) of each run: innovations by all terms in all directions, not white, as
+    filters `found` saw them.
+    """
+
+    runs: tuple[ObservedRun, ...]
+    columns: tuple[Array, ...]
+    found: tuple[Tuning, ...]
+    _kept: Recent[list[_Principal]] = field(default_factory=Recent)
+
+    def _decompose(self, wanted: Sequence[Tuning]) -> list[_Principal]:
+        key = tuple(f.gain.tobytes() for one in wanted for f in one.filters)
+        each = zip(self.columns, self.runs, self.found, wanted, strict=True)
+        return self._kept.get(key, lambda: [_decompose(whiten_run(*one)) for one in each])
+
+    def whiten(self, z: Array, rate: float, tunings: Sequence[Tuning]) -> Array:
+        """Innovations (..., 6, m) of all runs, whitened axis by axis, white beside this walk."""
+        out, first = np.array(z), 0
+        for own in self._decompose(tunings):
+            at = slice(first, first + own.directions.shape[1] // 6)
+            rows = z[..., at].reshape(-1, own.directions.shape[1])
+            shrunk = 1.0 - 1.0 / np.sqrt(1.0 + rate**2 * own.power)
+            taken = (rows @ own.directions.T * shrunk) @ own.directions
+            out[..., at] -= taken.reshape(out[..., at].shape)
+            first = at.stop
+        return out
+
+    def gain(self, z: Sequence[Array], rate: float, tunings: Sequence[Tuning]) -> float:
+        """By how much likelier it makes whitened innovations (6, m) of each run, twice the log."""
+        return _Evidence.of(z, self._decompose(tunings)).gain(rate)
+
+    def fit_rate(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> Rate:
+        """The likeliest rate for whitened innovations (6, m) of each run."""
+        return _Evidence.of(z, self._decompose(tunings)).fit()
+
+    def promise(self, rate: float, tunings: Sequence[Tuning]) -> float:
+        """What a walk of that rate would gain on average."""
+        power = np.concatenate([own.power for own in self._decompose(tunings)])
+        return _Evidence(1.0 + rate**2 * power, power).gain(rate)
+
+    def take_out(
+        self, e: Sequence[Array], z: Sequence[Array], rate: float, tunings: Sequence[Tuning]
+    ) -> tuple[list[Array], list[Array]]:
+        """Innovations (6, n) of each run less the likeliest walk, and that walk (n, d).
+
+        Args:
+            e: the innovations.
+            z: the same, whitened (6, m).
+            rate: of the walk.
+            tunings: the filters that made them white.
+        """
+        rests, walks = [], []
+        every = zip(self._decompose(tunings), z, e, self.columns, self.runs, strict=True)
+        for own, white, one, columns, run in every:
+            x = own.mix @ (own.directions @ white.ravel() / (own.power + rate**-2.0))
+            rests.append(one - np.tensordot(x, columns, axes=1))
+            terms = list_terms(run)
+            walks.append(terms.T @ x.reshape(len(terms), -1))
+        return rests, walks
+
+
+def _decompose(columns: Array) -> _Principal:
+    """Of whitened columns (c, 6, m)."""
+    columns = columns.reshape(len(columns), -1)
+    power, vectors = np.linalg.eigh((columns @ columns.T).astype(float))
+    shown = power > EMPTY * max(power[-1], 1e-300)
+    power, vectors = power[shown], vectors[:, shown]
+    directions = (vectors / np.sqrt(power)).T @ columns
+    return _Principal(directions, power, vectors * np.sqrt(power))
+
+
+@dataclass(frozen=True, eq=False)
+class _Evidence:
+    """Squares (k,) of innovations along the directions of a walk, and its power (k,) there."""
+
+    squares: Array
+    power: Array
+
+    @staticmethod
+    def of(z: Sequence[Array], principal: Sequence[_Principal]) -> "_Evidence":
+        """Of all runs."""
+        pairs = zip(z, principal, strict=True)
+        squares = np.concatenate([(own.directions @ one.ravel()) ** 2 for one, own in pairs])
+        return _Evidence(squares, np.concatenate([own.power for own in principal]))
+
+    def gain(self, rate: float) -> float:
+        """In twice the log likelihood."""
+        more = rate**2 * self.power
+        return float(np.sum(self.squares * more / (1.0 + more) - np.log1p(more)))
+
+    def fit(self) -> Rate:
+        """The likeliest rate."""
+        tried = np.linspace(np.log(LEAST), np.log(MOST), TRIED)
+        best = tried[int(np.argmax([self.gain(np.exp(x)) for x in tried]))]
+        width = tried[1] - tried[0]
+        found = minimize_scalar(
+            lambda x: -self.gain(np.exp(x)), bounds=(best - width, best + width), method="bounded"
+        )
+        x, gain = float(found.x), -float(found.fun)
+        sides = self.gain(np.exp(x - STEP)) + self.gain(np.exp(x + STEP))
+        bend = (2.0 * gain - sides) / STEP**2  # of twice the log likelihood
+        std = np.exp(x) * np.sqrt(2.0 / bend) if bend > 0.0 else np.inf
+        return Rate(float(np.exp(x)), float(std), gain)
