@@ -19,6 +19,7 @@ from rovsim.diagnosis.observer.kalman import (
     characteristic,
     design_filter,
     filter_kept,
+    negative_log_likelihood,
     sum_of_squares,
 )
 from rovsim.diagnosis.observer.noise import Noise, Tuning
@@ -149,6 +150,22 @@ def test_what_is_not_shown_is_passed_over():
         np.testing.assert_allclose(out[0, i], expected[kept], atol=1e-12)
         _, count = sum_of_squares(b[i], a[i], e[0, i], spans, kept, there)
         assert count == np.sum(there & kept)
+
+
+@pytest.mark.parametrize(("level", "reading"), [(1e-300, 1e-3), (0.1, 1e-300), (1e200, 1e-3)])
+def test_a_noise_that_cannot_be_ends_no_search(level, reading):
+    """A search may ask for it on its way."""
+    motion, usual = AxisMotion(0.5), AxisNoise(0.1, 1.0, 1e-3)
+    f, every = design_filter(POSE, H, motion, usual), np.ones(500, bool)
+    e = np.sqrt(f.variance) * np.random.default_rng(0).normal(size=500)
+
+    def cost(noise):
+        return negative_log_likelihood(
+            np.array(noise), POSE, H, motion.over(H, POSE), f.poles, f.forgets, e,
+            np.array([[0, 500]]), every, every,
+        )  # fmt: skip
+
+    assert not cost(usual._replace(level=level, reading=reading)) < cost(usual)
 
 
 def test_the_noise_of_made_innovations_is_found():

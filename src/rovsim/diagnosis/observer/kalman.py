@@ -263,7 +263,7 @@ def convolve(a, b):
     return out
 
 
-@njit(nogil=True, error_model="numpy", **FROM_PYTHON)
+@njit(nogil=True, **FROM_PYTHON)
 def negative_log_likelihood(noise, kind, h, moved, poles, forgets, e, spans, kept, shown):
     """Of innovations e (n,) of one run under a noise (5,), up to a constant.
 

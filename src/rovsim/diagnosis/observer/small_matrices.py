@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+# A division by zero gives what is not finite: it ends no search among noises that cannot be.
+FROM_PYTHON: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy"}
 # Called by compiled functions alone; what makes one callable from outside takes as long to compile.
-INTERNAL: dict[str, Any] = {"cache": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-FROM_PYTHON: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True}
+INTERNAL: dict[str, Any] = {**FROM_PYTHON, "no_cpython_wrapper": True}
 
 
 @njit(**INTERNAL)
