@@ -1,6 +1,7 @@
 """Readings are groups of frames, steps lead from one to the next: nothing of either is lost."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,12 +11,16 @@ from hypothesis import strategies as st
 import worlds
 from flown import observed
 from rovsim.core.run import Commands
+from rovsim.diagnosis.checks.residual import split_by_axis
 from rovsim.diagnosis.checks.unknown_thrust import find_different, find_lost_commands
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import prepare_run
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.thrusters import ThrusterDeadband
 from rovsim.dynamics.mocap_view import NO_CHANGE
-from rovsim.simulation.drive import Actuation
+from rovsim.simulation.drive import Actuation, Drives
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import Camera
 
@@ -70,6 +75,28 @@ def test_a_line_that_was_lost_in_a_fast_ramp_is_known_to_be(tmp_path):
     motion = replace(run.motion, commands=later)
     moved = replace(run, motion=motion, edges=run.edges + 3.0)
     np.testing.assert_allclose(find_lost_commands(moved, base.thrust_path), found)
+
+
+@pytest.mark.parametrize("at", [6.004, 6.026, 6.043])
+def test_what_thrusters_did_under_a_lost_line_is_not_held_against_a_model(tmp_path, at):
+    """Wherever between two readings it was lost, and commands were turned round."""
+    base, (run,) = observed(tmp_path, duration=12.0, camera=Camera(**STILL))
+    log = run.motion.commands
+    turned = np.where(log.time[:, None] - run.edges[0] < at, log.value, -log.value)
+    kept = np.arange(len(log.time)) != np.argmax(log.time - run.edges[0] >= at)
+    logs = replace(log, value=turned), replace(log, time=log.time[kept], value=turned[kept])
+    fine = np.linspace(run.edges[0], run.edges[-1], int(run.parts.sum()) + 1)
+    drives = [Drives(one, fine, "held", run.parts) for one in logs]
+    motions = [replace(run.motion, commands=one) for one in logs]
+    each = zip(motions, drives, strict=True)
+    told, lossy = (replace(run, motion=own, drives=driven) for own, driven in each)
+    bank = FilterBank.design([told], base, FIRST_NOISE)
+    other = replace(bank, runs=(lossy,))
+    e = [other.innovations(base)[0] - bank.innovations(base)[0]]
+    seen = SimpleNamespace(e=e, J=[np.empty((0, *e[0].shape))])
+    found = SimpleNamespace(seen=seen, noise=FIRST_NOISE, hypothesis=Hypothesis(base))
+    left = np.stack([one.white[0] for one in split_by_axis(found, other)])
+    assert np.linalg.norm(left) < 0.2 * np.linalg.norm(other.whiten(e, FIRST_NOISE))
 
 
 def test_near_the_edge_of_a_deadband_nobody_knows_whether_a_thruster_turned(tmp_path):

@@ -126,6 +126,6 @@ def _clear(w: Array, f: AxisFilter, run: ObservedRun, unknown: Array) -> Array:
     if not len(unknown):
         return w
     later = np.column_stack([unknown[:, 1], unknown[:, 1] + SPIN])
-    spans = [(run.time > begin) & (run.time <= end) for begin, end in (*unknown, *later)]
-    columns = np.stack([respond(span.astype(float), f, run) for span in spans])
+    steps = [run.overlapping(begin, end) for begin, end in (*unknown, *later)]
+    columns = np.stack([respond(some.astype(float), f, run) for some in steps])
     return w - solve(columns @ columns.T, columns @ w) @ columns

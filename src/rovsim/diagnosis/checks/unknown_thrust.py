@@ -38,7 +38,7 @@ def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
     found = np.zeros(len(run.time), bool)
     for narrow, wide in _list_either_side(h):
         for begin, end in find_different(run, narrow, wide):
-            found |= (run.time > begin) & (run.time <= end + run.period)
+            found |= run.overlapping(begin, end)
     return found
 
 

@@ -189,6 +189,10 @@ class ObservedRun(Steps):
         parts = [self.instants[a + 1 : b + 1] for a, b in self.spans]
         return np.concatenate([np.empty(0), *parts])
 
+    def overlapping(self, begin: float, end: float) -> Array:
+        """From which readings (n,) a step to the next lies partly between two times, as `time`."""
+        return np.asarray((self.time < end) & (self.time + self.period > begin))
+
     @cached_property
     def shown(self) -> Array:
         """Which axes (n, 6) each innovation belongs to."""
