@@ -29,6 +29,8 @@ STEP = 0.05  # of the logarithm, for the curvature
 # What is left of the motion falls off at least as fast as a force without memory moves a mass; the
 # slow error of a camera, with the second power, lies below it.
 STEEP = 4.0
+NOTHING, MUCH = 1e-8, 1e8  # power of a part beside the noise
+ROUNDED = 0.03  # the same at most, of poses written in units of up to 0.6 of the noise: 0.6^2 / 12
 
 
 @dataclass(frozen=True)
@@ -60,23 +62,32 @@ class _Spectrum:
     def cost(self, cutoff: float | None) -> float:
         """Negative log likelihood of noise that was smoothed; None: of noise that was not."""
         motion = (self.frequency / self.frequency[0]) ** -STEEP
-        flat = np.ones_like(self.frequency)
-        if cutoff is None:
-            return sum(self._cost(power, (flat, motion)) for power in self.power)
-        return sum(self._cost(power, (self.response(cutoff), motion, flat)) for power in self.power)
+        noise, others, most = np.ones_like(motion), [motion], [MUCH]
+        if cutoff is not None:
+            noise = self.response(cutoff)
+            others, most = [noise * motion, np.ones_like(motion)], [MUCH, ROUNDED]
+        each = (_misfit(power, noise, np.array(others), most) for power in self.power)
+        return self.count * sum(each)
 
-    def _cost(self, power: Array, shapes: Sequence[Array]) -> float:
-        """The same for one channel, each part of any size."""
-        parts = np.array(shapes) * np.mean(power) / np.mean(shapes, axis=1)[:, None]
 
-        def cost(x: Array) -> float:
-            model = np.exp(x) @ parts
-            return self.count * float(np.sum(np.log(model) + power / model))
+def _misfit(power: Array, noise: Array, others: Array, most: Sequence[float]) -> float:
+    """Whittle's cost, least over sizes, of a periodogram (f,) of noise and other parts (k, f).
 
-        start = np.log([1.0, *[1e-2] * (len(parts) - 1)])
-        options = {"fatol": 0.05, "xatol": 0.05}
-        found = minimize(cost, start, method="Nelder-Mead", options=options)  # type: ignore[call-overload]
-        return float(found.fun)
+    `most` (k,): how large these may be beside the noise.
+    """
+
+    def cost(x: Array) -> tuple[float, Array]:
+        parts = np.exp(x)[:, None] * others
+        shape = noise + np.sum(parts, axis=0)
+        ratio = power / shape
+        size = np.mean(ratio)  # the likeliest
+        slope = np.sum(parts / shape * (1.0 - ratio / size), axis=1)
+        return float(np.sum(np.log(shape)) + len(power) * np.log(size)), slope
+
+    bounds = [(np.log(NOTHING), np.log(one)) for one in most]
+    start = [0.5 * (low + high) for low, high in bounds]
+    least = minimize(cost, start, jac=True, method="L-BFGS-B", bounds=bounds)
+    return float(least.fun)
 
 
 def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None:
