@@ -96,15 +96,11 @@ def _curve(axes: Axes, curve: BinCurve, look: Look, order: int) -> None:
 def _counts(axes: Axes, table: ConditionTable) -> None:
     """How many blocks lie in each bin, as grey bars along the lower edge."""
     count, edges = np.array(table.blocks, float), chart_bins(table).edges
-    below = axes.twinx()
-    below.set_zorder(axes.get_zorder() - 1)
-    axes.patch.set_visible(False)
-    below.bar(edges[:-1], count, np.diff(edges), align="edge", color="#e3e3e3", linewidth=0)
-    below.set_ylim(0, 4.0 * max(count.max(), 1.0))
-    below.set_yticks([])
-    below.grid(False)
-    for spine in below.spines.values():
-        spine.set_visible(False)
+    share = 0.25 * count / max(count.max(), 1.0)
+    axes.bar(
+        edges[:-1], share, np.diff(edges), align="edge", color="#e3e3e3", linewidth=0,
+        zorder=0.4, transform=axes.get_xaxis_transform(),
+    )  # fmt: skip
 
 
 def _remarks(models: Mapping[str, ModelConditions]) -> Sequence[str]:
