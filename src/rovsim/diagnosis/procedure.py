@@ -6,7 +6,7 @@ sensitivities   how each candidate would change what the filter could not forese
 search          add, refit, swap, prune; against what chance gives to the best of all candidates
 held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows
 gate            it must replay stretches well that took no part in choosing
-structure       what is left, and no candidate explains
+structure       what is left, and no candidate explains; then those too that nobody would notice
 common scale    does a factor of all forces stay open?
 joint fit       where there is some: all that could be wrong together, pruned; it competes
 replay fit      where there is some: values that replay best, rather than foresee the next reading
@@ -35,7 +35,7 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.forward_selection import search
+from rovsim.diagnosis.selection.forward_selection import search, search_unnoticed
 from rovsim.diagnosis.selection.gate import Gate, keep_apart
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, polish
 from rovsim.diagnosis.selection.held_out import drop_idle
@@ -139,11 +139,11 @@ def _diagnose(
     workspace = _observe(seen, chosen, settings, catalogue)
     nothing = workspace.fit(Hypothesis(seen))
     stage("searching")
-    selection = drop_idle(search(workspace, nothing, seed))
+    selection = search(workspace, nothing, seed)
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
     gate = Gate(apart, usable.runs)
-    found = _settle(selection, usable, gate)
+    found = _settle_noticed(selection, usable, gate, seed)
     stage("checking")
     if found.structures:
         seen = seen_through(base, smoothing)
@@ -208,6 +208,19 @@ class _Settled:
     def lasting(self) -> bool:
         """Whether more is left than single pushes: then names may stand for what has none."""
         return not all(one.moment for one in self.structures)
+
+
+def _settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> _Settled:
+    """Names that a user would notice; where they leave something, the others too if they do not."""
+    noticed = drop_idle(selection)
+    found = _settle(noticed, usable, gate)
+    if not found.lasting:
+        return found
+    every = search_unnoticed(selection, seed)
+    if every.found is noticed.found:
+        return found
+    complete = _settle(every, usable, gate)
+    return found if complete.structures else complete
 
 
 def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:

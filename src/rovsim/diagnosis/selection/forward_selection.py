@@ -214,3 +214,10 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
     current = prefer_file(workspace, current)
     current, rivals = contest(workspace, current, settings.trials)
     return Selection(workspace, current, tuple(rivals), complete=True)
+
+
+def search_unnoticed(selection: Selection, seed: int) -> Selection:
+    """From where a search ended on, by effects too that hardly change the error in 2 s windows."""
+    workspace = selection.workspace
+    settings = workspace.settings.model_copy(update={"relevant": 0.0})
+    return search(replace(workspace, settings=settings), selection.found, seed)
