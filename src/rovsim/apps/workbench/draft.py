@@ -32,6 +32,7 @@ class Draft:
     values: dict[str, dict[str, float]] = field(default_factory=dict)
     _before: list[tuple[list[str], dict[str, dict[str, float]]]] = field(default_factory=list)
     _changing: tuple[object, float] = (None, 0.0)  # what the last change was of, and when
+    _found: dict[str, Model] = field(default_factory=dict)  # by what they lack
 
     def __post_init__(self) -> None:
         self.ticked = [one.effect for one in self.chosen]
@@ -111,6 +112,16 @@ class Draft:
         return extend(
             self.base, [build_effect(self.entry(name), self.catalogue) for name in self.ticked]
         )
+
+    def found(self, but: str = "") -> Model:
+        """The base and the chosen effects as they were fitted, perhaps all but one; made once."""
+        if but not in self._found:
+            entries = list_entries(
+                [one for one in self.chosen if one.effect != but], Path("diagnosis.json")
+            )
+            effects = [build_effect(entry, self.catalogue) for entry in entries]
+            self._found[but] = extend(self.base, effects)
+        return self._found[but]
 
 
 def reach(parameter: Parameter, value: float) -> tuple[float, float]:

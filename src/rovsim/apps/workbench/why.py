@@ -7,6 +7,7 @@ from nicegui import ui
 
 from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.gallery import picture
+from rovsim.apps.workbench.on_your_data import show_lowered
 from rovsim.apps.workbench.parts import (
     bar,
     cell,
@@ -44,8 +45,7 @@ async def show(bench: Workbench, place: Place) -> None:
         sanitize=False,
     ).classes("verdict")
     _errors(found.error)
-    for missing in said.missing:
-        await _effect(bench, missing)
+    seen = {missing.effect: _effect(missing) for missing in said.missing}
     await _left(bench, found)
     if found.selected:
         onward("Add what is missing", "/add")
@@ -60,6 +60,9 @@ async def show(bench: Workbench, place: Place) -> None:
     ui.button("Diagnose again", on_click=lambda: jobs.diagnose(bench)).props(
         "flat no-caps"
     ).classes("onward")
+    for effect, room in seen.items():
+        with room:
+            await _show_effect(bench, effect)
 
 
 def _ask(bench: Workbench) -> None:
@@ -85,8 +88,8 @@ def _errors(error: DiagnosisErrors) -> None:
     )  # fmt: skip
 
 
-async def _effect(bench: Workbench, missing: Missing) -> None:
-    """A card: what it is, its values, its equation, what makes it happen, its picture."""
+def _effect(missing: Missing) -> ui.column:
+    """A card: what it is, its values, its equation, what makes it happen; room for a picture."""
     with ui.row().classes("card effect"):
         with ui.column().classes("words"):
             ui.html(f"<h2>{escape(missing.effect)}</h2>", sanitize=False)
@@ -99,10 +102,16 @@ async def _effect(bench: Workbench, missing: Missing) -> None:
                 formula(missing.equation)
                 text(f"Usual cause: {missing.cause}")
                 ui.link("What it looks like, and how to be sure", f"/gallery/{missing.effect}")
-        if known := bench.catalogue.get(missing.effect):
-            with ui.column().classes("seen"):
-                await picture(bench, known)
-                ui.label("From the gallery: what it looks like in a calm tank, not your data.")
+        return ui.column().classes("seen")
+
+
+async def _show_effect(bench: Workbench, effect: str) -> None:
+    """What it does to the user's data; where accelerations do not show it, to the gallery's."""
+    if await show_lowered(bench, effect):
+        return
+    if known := bench.catalogue.get(effect):
+        await picture(bench, known)
+        ui.label("From the gallery: what it looks like in a calm tank, not your data.")
 
 
 async def _left(bench: Workbench, found: Diagnosis) -> None:
