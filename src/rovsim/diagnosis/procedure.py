@@ -145,7 +145,7 @@ def _diagnose(
     gate = Gate(apart, usable.runs)
     found = _settle_noticed(selection, usable, gate, seed)
     stage("checking")
-    if found.structures:
+    if found.lasting:
         seen = seen_through(base, smoothing)
         joint = _settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
         # neither is complete, so that what a likelihood takes for noise is physics
