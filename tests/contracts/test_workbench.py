@@ -175,6 +175,17 @@ def test_a_pose_is_shown_in_the_tank_and_turns_the_short_way(bench):
     assert np.nanmax(np.abs(missed)) <= np.pi
 
 
+def test_under_each_axis_is_what_the_commands_push_along_it(bench):
+    motion = bench.data.motions["6dof-1"]
+    thrust = bench.thrust("6dof-1")
+    assert thrust.shape == (len(motion.time), 6)
+    shown = panels(motion, {}, ["sway", "yaw"], "nu", thrust)
+    assert [(panel.title, panel.unit) for panel in shown[2::3]] == [
+        ("sway: thrust by the commands", "N"), ("yaw: thrust by the commands", "N m"),
+    ]  # fmt: skip
+    np.testing.assert_array_equal(shown[5].curves["commanded"], thrust[:, 5])
+
+
 def test_a_change_is_undone_and_a_drag_of_a_slider_is_one():
     draft = Draft(model(), diagnosis(), built_in())
     assert not draft.changed

@@ -119,11 +119,13 @@ class Compare:
                     self.bench.prediction, self.bench.models[name], run, chosen["horizon"]
                 )
         axes = [axis for axis in AXES if axis in chosen["axes"]]
-        first, *others = (
-            (self.bench.data.motions[run], panels(self.bench.data.motions[run], p, axes, quantity))
-            for quantity in [chosen["quantity"]]
+        first, *others = [
+            (
+                motion := self.bench.data.motions[run],
+                panels(motion, p, axes, chosen["quantity"], await computed(self.bench.thrust, run)),
+            )
             for run, p in found.items()
-        )
+        ]
         return beside(first, others), found
 
     async def draw(self) -> None:

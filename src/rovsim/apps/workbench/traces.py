@@ -20,6 +20,7 @@ from rovsim.simulation.prediction import Prediction
 
 Span = tuple[float | None, float | None]  # s, part of a run; None: from its start, to its end
 POSE_UNITS = ("m",) * 3 + ("rad",) * 3
+WRENCH_UNITS = ("N",) * 3 + ("N m",) * 3
 QUANTITIES = {
     "nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS),
     "eta": ("position and attitude", POSE_UNITS),
@@ -60,9 +61,13 @@ def excited(bench: Workbench, run: str) -> list[str]:
 
 
 def panels(
-    motion: Motion, predicted: Mapping[str, Prediction], axes: Sequence[str], quantity: str = "nu"
-) -> list[Panel]:
-    """A panel per axis, and under it what each model missed (measured minus model)."""
+    motion: Motion, predicted: Mapping[str, Prediction], axes: Sequence[str], quantity: str = "nu",
+    thrust: Array | None = None,
+) -> list[Panel]:  # fmt: skip
+    """A panel per axis, and under it what each model missed (measured minus model).
+
+    Under that `thrust` (n, 6), what the commands push along the axis of the body, N and N m.
+    """
     _, units = QUANTITIES[quantity]
     measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
     found = []
@@ -76,6 +81,11 @@ def panels(
             missed = {n: _turned(x) if k > 2 else x for n, x in missed.items()}
         found.append(Panel(title, units[k], {"measured": measured[:, k], **models}))
         found.append(Panel(f"{title}: measured − model", units[k], missed, short=True))
+        if thrust is not None:
+            push = {"commanded": thrust[:, k]}
+            found.append(
+                Panel(f"{axis}: thrust by the commands", WRENCH_UNITS[k], push, short=True)
+            )
     return found
 
 

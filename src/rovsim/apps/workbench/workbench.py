@@ -6,6 +6,8 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any, Sequence
 
+from numpy import ndarray as Array
+
 from rovsim.application.pipeline.kept import kept_diagnosis, kept_flight, kept_folder
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
@@ -28,6 +30,7 @@ from rovsim.evaluation.scores import subtract, summarize
 from rovsim.results.comparison import OPEN_LOOP, Metrics
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import EFFECTS, Ladder, Step
+from rovsim.simulation.measured_states import drive_as_measured
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import replay
 
@@ -50,6 +53,7 @@ class Workbench:
     _replays: Recent[Replay] = field(default_factory=Recent)
     _steps: dict[Model, Step] = field(default_factory=dict)
     _searched: dict[Model, SearchedModel] = field(default_factory=dict)
+    _thrusts: Recent[Array] = field(default_factory=Recent)
 
     @staticmethod
     def opened(settings: WorkbenchSettings, catalogue: Catalogue) -> "Workbench":
@@ -228,6 +232,11 @@ class Workbench:
         """What the model predicts in windows of `horizon` s, or open loop (None)."""
         name = OPEN_LOOP if horizon is None else f"{horizon:g}"
         return self.replayed(model, run, horizon).horizons[name]
+
+    def thrust(self, run: str) -> Array:
+        """What the base makes of the commands of a run at its samples or bins (n, 6), N and N m."""
+        motion, how = self.data.motions[run], self.settings.replay
+        return self._thrusts.get((run,), lambda: drive_as_measured(self.base, motion, how).wrench)
 
     def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
         """The errors of one run, as comparison.json has them."""

@@ -40,6 +40,7 @@ FAMILIES = {
     "svgp": Look("#CC79A7", (0, (3, 1, 1, 1, 1, 1))),
     "effects": Look("#E69F00", "-"),
     "zero_acceleration": Look("#999999", (0, (1, 1.2))),
+    "commanded": Look("#666666", "-"),
     "noise_floor": Look("#555555", (0, (8, 3))),
 }
 RESIDUALS = ("svgp", "knn", "gp")
