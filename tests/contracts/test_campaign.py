@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from recordings import campaign_content, write_campaign, write_run
+from rovsim.application.provenance import digest_files
 from rovsim.core.errors import BadInput
 from rovsim.measurement.campaign import load_campaign
 
@@ -20,6 +21,17 @@ def test_a_campaign_gives_absolute_paths_and_the_tank_in_ned(tmp_path, monkeypat
     assert campaign.commands_path(run).is_absolute()
     np.testing.assert_array_equal(campaign.tank_ned(), [[0, 10], [-5, 0], [-3, 0]])
     assert load_campaign(Path("c/campaign.yaml")) == campaign
+
+
+def test_a_result_tells_which_recordings_it_is_of(tmp_path):
+    folder = write_run(tmp_path)
+    campaign = load_campaign(folder)
+    before = digest_files(campaign)
+    assert {"campaign.yaml", "poses.tsv"} <= set(before)
+    (folder / "poses.tsv").write_bytes((folder / "poses.tsv").read_bytes() + b"\n")
+    after = digest_files(campaign)
+    assert [name for name in before if before[name] != after[name]] == ["poses.tsv"]
+    assert all(len(one) == 16 for one in after.values())
 
 
 def test_a_tank_may_be_absent_or_partial(tmp_path):

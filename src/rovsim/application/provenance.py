@@ -1,15 +1,20 @@
-"""Where a result came from: code, settings, versions. No clock: equal inputs, equal files."""
+"""Where a result came from: recordings, code, settings, versions, machine.
+
+No clock: equal inputs, equal files.
+"""
 
 import hashlib
 import platform
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+from os.path import relpath
 from pathlib import Path
 from typing import Any, Sequence
 
 import rovsim
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.measurement.campaign import Campaign
 
 SOURCE = Path(rovsim.__file__).parent
 MODEL = "rovsim.dynamics.model"
@@ -81,7 +86,24 @@ def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
     return {"code": digest("rovsim", effects=catalogue.files), "versions": versions}
 
 
-def provenance(settings: Section, catalogue: Catalogue) -> dict[str, Any]:
-    """Settings, code and versions behind a result; settings without influence are left out."""
+def provenance(
+    settings: Section, catalogue: Catalogue, campaign: Campaign | None
+) -> dict[str, Any]:
+    """Recordings, settings, code and versions behind a result.
+
+    Settings without influence are left out; so are recordings that these make (None).
+    """
     chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
-    return {"settings": chosen, **describe_origin(catalogue)}
+    files = {} if campaign is None else {"recordings": digest_files(campaign)}
+    return {"settings": chosen, **describe_origin(catalogue), **files}
+
+
+def digest_files(campaign: Campaign) -> dict[str, str]:
+    """The first 16 digits of the SHA-256 of every file of a campaign, by its path from there."""
+    files = (path for path in campaign.files if path.is_file())
+    return {relpath(path, campaign.folder): _sha256(path)[:16] for path in files}
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

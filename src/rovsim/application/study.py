@@ -195,7 +195,8 @@ class Study:
 
     def provenance(self) -> dict[str, Any]:
         """Settings, code and versions behind the study."""
-        return provenance(self.settings, self.catalogue)
+        campaign = self.campaign if isinstance(self.campaign, Campaign) else None
+        return provenance(self.settings, self.catalogue, campaign)
 
     def check(self) -> None:
         """Look at all that can be wrong with what was given, before anything is planned.

@@ -50,6 +50,12 @@ class Campaign:
             )
         return runs[run_id]
 
+    @property
+    def files(self) -> list[Path]:
+        """The campaign file and all that its runs are read from."""
+        raw = {path for run in self.runs for path in self.raw_files(run)}
+        return sorted({self.file} | raw)
+
     def mocap_path(self, run: Run) -> Path:
         """Absolute path of the run's poses."""
         return self.folder / run.mocap

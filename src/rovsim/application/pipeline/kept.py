@@ -39,9 +39,9 @@ def kept_flight(
 
 def _digest(campaign: Campaign, settings: Section, model: Model, code: str) -> str:
     content = hashlib.sha256()
-    files = {campaign.file} | {path for run in campaign.runs for path in campaign.raw_files(run)}
-    for path in sorted(p for p in files if p.is_file()):
-        content.update(path.read_bytes())
+    for path in campaign.files:
+        if path.is_file():
+            content.update(path.read_bytes())
     content.update(settings.model_dump_json().encode())
     content.update(json.dumps(describe_model(model), sort_keys=True).encode())
     content.update(code.encode())

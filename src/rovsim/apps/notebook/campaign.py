@@ -134,7 +134,8 @@ class Campaign:
         out = Path(path or self._folder / "trained" / named / f"{named}.yaml")
         motions = list(self.data.motions.values())
         with in_a_cell():
-            train(motions, base, how, self.catalogue, out, provenance(how, self.catalogue))
+            story = provenance(how, self.catalogue, self.data.campaign)
+            train(motions, base, how, self.catalogue, out, story)
         return self.model(out)
 
     def export(self, model: Spec, to: str, path: Spec | None = None) -> ShownExport:

@@ -56,7 +56,7 @@ def train_into(settings: WorkbenchSettings, path: Path) -> Path:
     data = measure(open_campaign(settings.campaign), settings.signals)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     motions, how = list(data.motions.values()), select(settings, TrainingSettings)
-    train(motions, base, how, catalogue, path, provenance(how, catalogue))
+    train(motions, base, how, catalogue, path, provenance(how, catalogue, data.campaign))
     return path
 
 
@@ -84,7 +84,7 @@ def report_into(
     wanted = [(figure, "") for figure in ONCE if figure != "ranking" or diagnosis]
     tests = [run for run in data.runs.of("test") if run in shown.drawn]
     wanted += [(figure, run) for run in tests for figure in PER_RUN]
-    origin = provenance(select(settings, CampaignSettings), catalogue)
+    origin = provenance(select(settings, CampaignSettings), catalogue, data.campaign)
     present(out, data.campaign.name, shown, wanted, origin, catalogue)
     for name in ("comparison", "where", "ladder", "diagnosis"):
         if result := getattr(shown, name):

@@ -37,7 +37,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     assert found.forces is not None
     wanted = [(figure, "") for figure in ONCE]
     wanted += [(figure, run) for run in found.drawn for figure in PER_RUN]
-    origin = provenance(settings, catalogue)
+    origin = provenance(settings, catalogue, data.campaign)
     present(out, data.campaign.name, found, wanted, origin, catalogue)
     found.where.write(out / "where.json")
     found.forces.write(out / "budget.json")

@@ -75,5 +75,5 @@ def _present(
     )
     force = found.diagnosis.unexplained.disturbance
     wanted = [(figure, "") for figure in (*FIGURES, *(["disturbance"] if force else []))]
-    origin = provenance(settings, catalogue)
+    origin = provenance(settings, catalogue, data.campaign)
     return present(out, data.campaign.name, shown, wanted, origin, catalogue)

@@ -38,7 +38,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     kind = settings.learner.kind
     name = f"{kind}_{settings.control}"
     out = choose_folder(settings, f"results/{data.campaign.name}/trained/{name}")
-    file, story = out / "model.yaml", provenance(settings, catalogue)
+    file, story = out / "model.yaml", provenance(settings, catalogue, data.campaign)
     corrected = train([*data.motions.values()], base, settings, catalogue, file, story)
     scored = score_models([base, corrected], data.motions, settings)
     found = scored.comparison
