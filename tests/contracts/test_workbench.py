@@ -16,6 +16,7 @@ from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import app, charts, path, tasks
+from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.totals import list_totals, tell_total
 from rovsim.apps.workbench.traces import panels
@@ -365,6 +366,13 @@ def test_the_room_is_the_tank_and_where_that_is_unknown_what_was_seen():
     low, high = path.room(seen, tank)
     np.testing.assert_array_equal(low, [0.0, 1.0, -4.0])
     np.testing.assert_array_equal(high, [3.0, 2.0, 0.0])
+
+
+def test_whatever_a_model_is_called_its_new_curve_travels_and_the_measured_one_stays():
+    time = np.arange(3.0)
+    shown = [Panel("surge", "m/s", {"measured": time, "m": time, "sure": time})]
+    sent = [one["id"] for one in charts.series_data(time, shown, ("measured",))]
+    assert sent == ["0/m", "0/sure"]
 
 
 def test_curves_are_thinned_and_keep_their_gaps():

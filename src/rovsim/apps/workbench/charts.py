@@ -49,8 +49,8 @@ def height(panels: Sequence[Panel]) -> int:
     return TOP + sum((SHORT if p.short else TALL) + GAP for p in panels) + 24
 
 
-def series_data(time: Array, panels: Sequence[Panel], but: str = "") -> list[Options]:
-    """The points of every curve, by id; `but` one that has not changed."""
+def series_data(time: Array, panels: Sequence[Panel], but: Sequence[str] = ()) -> list[Options]:
+    """The points of every curve, by id; `but` those that have not changed."""
     return [
         {"id": f"{k}/{name}", "data": points(time, values)}
         for k, panel in enumerate(panels)

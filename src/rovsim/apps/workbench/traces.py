@@ -27,6 +27,7 @@ QUANTITIES = {
 }  # fmt: skip
 # A pose belongs to the tank: what stands in place of the axis of the body.
 POSES = dict(zip(AXES, ("north", "east", "down", "roll", "pitch", "yaw"), strict=True))
+STEADY = ("measured", "commanded")  # curves that no model changes
 HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 
 
@@ -187,9 +188,7 @@ class Traces:
     def redraw(self, shown: Sequence[Panel]) -> None:
         """New values of the same curves: only these travel to the browser."""
         self.shown = list(shown)
-        self.chart.run_chart_method(
-            "setOption", {"series": series_data(self.time, shown, "measured")}
-        )
+        self.chart.run_chart_method("setOption", {"series": series_data(self.time, shown, STEADY)})
 
     def mark(self, time: float | None) -> None:
         """Mark an instant in every panel."""
