@@ -206,6 +206,17 @@ def test_a_change_is_undone_and_a_drag_of_a_slider_is_one():
     assert draft.entry("thruster_lag").values == {"time_constant": 0.5}
 
 
+def test_what_was_found_stays_whatever_is_ticked_or_moved():
+    draft = Draft(model(), diagnosis(), built_in())
+    draft.move("thruster_lag", "time_constant", 0.9)
+    draft.tick("thruster_lag", False)
+    (lag,) = draft.found().added
+    assert lag.id == "thruster_lag"
+    assert lag["time_constant"] != 0.9
+    assert not draft.found(but="thruster_lag").added
+    assert draft.found() is draft.found()  # what is computed of it is found again
+
+
 def test_a_value_moved_again_later_is_another_change(monkeypatch):
     draft = Draft(model(), diagnosis(), built_in())
     draft.move("thruster_lag", "time_constant", 0.2)

@@ -8,6 +8,7 @@ from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.parts import chart, computed
 from rovsim.apps.workbench.where import BLUE, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.lowered import Lowered, find_most_lowered
@@ -21,7 +22,10 @@ LOOKS = {"without it": (MARK, "dashed"), "with it": (BLUE, "solid")}
 
 async def show_lowered(bench: Workbench, effect: str) -> bool:
     """Show where a found effect lowers the error most, if that can be seen in accelerations."""
-    models = bench.draft.found(but=effect), bench.draft.found()
+    try:
+        models = bench.draft.found(but=effect), bench.draft.found()
+    except RovsimError:  # a diagnosis from elsewhere, of effects that are not known here
+        return False
     before, after = [await computed(_search, bench, model) for model in models]
     found = find_most_lowered(before, after)
     if found is None or found.removed < SEEN:
