@@ -22,14 +22,9 @@ from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import several, significant
 from rovsim.results.comparison import Comparison
-from rovsim.results.diagnosis import (
-    DiagnosisErrors,
-    FittedEffect,
-    FittedValue,
-    LookedAt,
-    Unexplained,
-)
+from rovsim.results.diagnosis import DiagnosisErrors, LookedAt, Unexplained
 from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.fitted import FittedEffect, FittedValue
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import MissedCell
 from synthetic_study import study

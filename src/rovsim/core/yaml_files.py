@@ -19,9 +19,9 @@ DEEPEST = 100  # brackets inside each other; the parser's time grows with the sq
 MOST_NODES = 1_000_000  # with everything written out that aliases repeat
 
 
-def write_yaml(path: Path, content: Any) -> None:
-    """Write plain YAML atomically, keys in the order given."""
-    write_text(path, yaml_text(content))
+def write_yaml(path: Path, content: Any, rows: bool = False) -> None:
+    """Write plain YAML atomically, keys in the order given; `rows`: see `yaml_text`."""
+    write_text(path, yaml_text(content, rows))
 
 
 def yaml_text(content: Any, rows: bool = False) -> str:

@@ -163,9 +163,7 @@ def separate(model: Model) -> Hypothesis:
     """A model as a hypothesis in which all is free that its file says was fitted."""
     fitted = [one for one in model.added if one.std]
     kept = tuple(one for one in model.effects if one not in fitted)
-    return Hypothesis(
-        replace(model, effects=kept), tuple(Term(one, tuple(one.std)) for one in fitted)
-    )
+    return Hypothesis(model.with_effects(kept), tuple(Term(one, tuple(one.std)) for one in fitted))
 
 
 def _free(
@@ -201,7 +199,7 @@ def _without(h: Hypothesis, *names: str) -> Hypothesis:
     """Without what was added of these effects, fitted or not."""
     nominal = h.base.vehicle.effects()
     kept = [e for e in h.base.effects[len(nominal) :] if e.id not in names]
-    base = replace(h.base, effects=(*h.base.effects[: len(nominal)], *kept))
+    base = h.base.with_effects((*h.base.effects[: len(nominal)], *kept))
     return Hypothesis(base, tuple(t for t in h.terms if t.id not in names))
 
 

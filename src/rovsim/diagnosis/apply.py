@@ -1,6 +1,5 @@
 """A model file from a diagnosis."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Container, Sequence
 
@@ -9,8 +8,17 @@ from rovsim.core.schema import checked
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import EffectEntry, build_effect, build_model, load_model
-from rovsim.results.diagnosis import Diagnosis, FittedEffect
+from rovsim.dynamics.model_file import (
+    EffectEntry,
+    UncertaintyEntry,
+    build_effects,
+    build_model,
+    describe_model,
+    load_model,
+    with_uncertainty,
+)
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.fitted import FittedEffect
 
 
 def add_effects(
@@ -43,7 +51,33 @@ def add_effects(
     base = load_model(to, vehicle, catalogue)
     entries = list_entries([fitted[name] for name in names], source)
     there = catalogue.on(vehicle)
-    return extend(base, [build_effect(entry, there) for entry in entries]), names
+    model = extend(base, build_effects(entries, there))
+    return add_uncertainty(model, names, base, diagnosis, source, there), names
+
+
+def add_uncertainty(
+    model: Model, names: Sequence[str], base: Model, diagnosis: Diagnosis, source: Path,
+    catalogue: Catalogue,
+) -> Model:  # fmt: skip
+    """The base with effects as they were fitted, and how sure a diagnosis is of them.
+
+    Of a model that it did not end with nothing is known.
+    """
+    posterior, whole = diagnosis.posterior, sorted(one.effect for one in diagnosis.selected)
+    if posterior is None or sorted(names) != whole or describe_model(base) != diagnosis.base:
+        return model
+    instead = [
+        {
+            "probability": one.probability,
+            "effects": [entry.plain() for entry in list_entries(one.effects, source)],
+            "correlation": one.correlation,
+        }
+        for one in posterior.instead
+    ]
+    content = {
+        "noise": diagnosis.noise, "correlation": posterior.correlation, "instead": instead,
+    }  # fmt: skip
+    return with_uncertainty(model, checked(UncertaintyEntry, content, source), catalogue)
 
 
 def choose_effects(diagnosis: Diagnosis, known: Container[str]) -> tuple[FittedEffect, ...]:
@@ -75,6 +109,6 @@ def extend(base: Model, effects: Sequence[Effect]) -> Model:
     Raises:
         BadInput: values no model can have.
     """
-    model = replace(base, name="new", effects=(*base.effects, *effects))
+    model = base.with_effects((*base.effects, *effects)).called("new")
     _ = model.body.M  # refuse a model that cannot move
     return model

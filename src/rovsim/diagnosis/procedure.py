@@ -22,6 +22,7 @@ from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import find_doubtful
+from rovsim.diagnosis.checks.left_open import name_parameters
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
@@ -56,7 +57,9 @@ from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
+from rovsim.dynamics.uncertainty import correlate
 from rovsim.results.diagnosis import Verdict
+from rovsim.results.fitted import Correlation
 
 Stages = Callable[[str], None]
 
@@ -70,14 +73,15 @@ class TrainDiagnosis:
     """What was found on the train runs.
 
     `usable` runs; `fit` of the base and all selected effects, None where there was too little to
-    judge; `scale` of all forces, where it is unknown; `not_observable` effects that the runs could
-    not show; `proposed`: a law for what is left, where one holds; `disturbance`: the force in
-    time, where none does.
+    judge, and the `correlation` of its values; `scale` of all forces, where it is unknown;
+    `not_observable` effects that the runs could not show; `proposed`: a law for what is left, where
+    one holds; `disturbance`: the force in time, where none does.
     """
 
     base: Model
     usable: UsableRuns
     fit: Fit | None = None
+    correlation: Correlation | None = None
     selected: Sequence[Selected] = ()
     ranking: Sequence[Ranked] = ()
     rivals: Sequence[Rival] = ()
@@ -164,7 +168,8 @@ def _diagnose(
         if drift.sure:
             selected = [*selected, name_drift(drift)]
     return TrainDiagnosis(
-        base, usable, found.fit, selected=selected,
+        base, usable, found.fit,
+        correlate(wider.covariance, name_parameters(wider.hypothesis)), selected,
         ranking=rank_alone(workspace, nothing, found.fit),
         rivals=rivals, structures=found.structures, scale=scale,
         not_observable=list_not_observable(found.selection, catalogue, base.vehicle),

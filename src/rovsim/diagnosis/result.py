@@ -9,26 +9,30 @@ from scipy.sparse.csgraph import connected_components
 from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
+from rovsim.diagnosis.checks.left_open import name_parameters
 from rovsim.diagnosis.equations.describe import (
     describe_force,
     describe_law,
     describe_values,
     rounded,
 )
+from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.ranking import find_std
 from rovsim.diagnosis.selection.rivals import SURE, Rival
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.uncertainty import correlate
 from rovsim.results.diagnosis import (
     Diagnosis,
     DiagnosisErrors,
-    FittedEffect,
-    FittedNoise,
     LookedAt,
     RivalEffect,
     ScaleOfForces,
     Unexplained,
 )
 from rovsim.results.error_conditions import ConditionShare
+from rovsim.results.fitted import Correlation, FittedEffect, FittedNoise, Possibility, Posterior
 from rovsim.results.ladder import Ladder
 
 LISTED = 10  # effects of the ranking
@@ -74,6 +78,7 @@ def report(
             if np.isfinite(r.deficit)
         ),
         noise=_noise(found),
+        posterior=_describe_posterior(found),
         looked_at=looked_at,
         base=dict(base),
         ladder=ladder,
@@ -146,13 +151,45 @@ def describe_structures(found: TrainDiagnosis) -> Unexplained:
     )  # fmt: skip
 
 
+def _describe_posterior(found: TrainDiagnosis) -> Posterior | None:
+    """How the values hang together, and what else may act, by the odds of each name."""
+    if found.fit is None:
+        return None
+    near = [(r, r.fit) for r in found.rivals if r.deficit < SURE and r.fit is not None]
+    odds = [float(np.exp(-0.5 * max(r.deficit, 0.0))) for r, _ in near]
+    return Posterior(
+        correlation=found.correlation or Correlation(),
+        instead=tuple(
+            Possibility(
+                probability=float(f"{own / (1.0 + sum(odds)):.6g}"),
+                effects=_list_effects(fit),
+                correlation=correlate(fit.covariance, name_parameters(fit.hypothesis)),
+            )
+            for own, (_, fit) in zip(odds, near, strict=True)
+        ),
+    )
+
+
+def _list_effects(fit: Fit) -> tuple[FittedEffect, ...]:
+    """All effects of a fit that its vehicle does not have by itself."""
+    h = fit.hypothesis
+    known: list[tuple[Term, dict[str, float]]] = [(Term(one, ()), {}) for one in h.base.added]
+    known += [(term, find_std(fit, i)) for i, term in enumerate(h.terms)]
+    return tuple(
+        FittedEffect(effect=term.id, parameters=describe_values(term, std)) for term, std in known
+    )
+
+
 def _noise(found: TrainDiagnosis) -> FittedNoise:
     if found.fit is None:
         return FittedNoise()
     noise = found.fit.noise
+    slow = noise.colour.any()
     return FittedNoise(
         disturbance=tuple(map(rounded, noise.level)),
         memory_s=tuple(map(rounded, noise.memory)),
         reading=tuple(map(rounded, noise.reading)),
-        colour=tuple(map(rounded, noise.colour)) if noise.colour.any() else (),
+        period_s=rounded(found.usable.runs[0].period),
+        colour=tuple(map(rounded, noise.colour)) if slow else (),
+        colour_memory_s=tuple(map(rounded, noise.colour_memory)) if slow else (),
     )

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -14,7 +15,10 @@ from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
+from rovsim.dynamics.uncertainty import Uncertainty
 from rovsim.dynamics.vehicle import Thrusters, Vehicle
+
+TRIES = 20  # draws of a model until one is possible
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +26,7 @@ class Model:
     """Physical effects of a vehicle, and perhaps a learned residual on top of them.
 
     `effects` are all that act: the nominal ones of the vehicle first (`nominal` puts them there),
-    then those that were added, in order.
+    then those that were added, in order. `uncertainty` of those added, where they were fitted.
     """
 
     name: str
@@ -30,9 +34,28 @@ class Model:
     effects: tuple[Effect, ...]
     residual: Residual | None = None
     inert: bool = False  # keeps its body velocity whatever pushes: the baseline to beat
+    uncertainty: Uncertainty | None = None
 
     def __add__(self, added: Effect) -> "Model":
-        return replace(self, effects=(*self.effects, added))
+        return self.with_effects((*self.effects, added))
+
+    def with_effects(self, effects: Sequence[Effect]) -> "Model":
+        """The same with other effects; how sure these are is not known."""
+        return replace(self, effects=tuple(effects), uncertainty=None)
+
+    def draw(self, random: np.random.Generator) -> "Model":
+        """The model as it may as well be; as it is where its uncertainty is not known.
+
+        Values no body can have are drawn again.
+        """
+        if self.uncertainty is None:
+            return self
+        for _ in range(TRIES):
+            nominal, drawn = self.vehicle.effects(), self.uncertainty.draw(random)
+            found = self.with_effects((*nominal, *drawn))
+            if found.possible:
+                return found
+        return self
 
     def called(self, name: str) -> "Model":
         """The same model under another name."""

@@ -1,9 +1,10 @@
 """Model files, read and written: nothing else knows what stands in one."""
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Iterable, Literal, Self
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import plain
@@ -13,7 +14,9 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.learned.residual import StoredResidual, read_residual
 from rovsim.dynamics.model import BUILT_IN, Model
+from rovsim.dynamics.uncertainty import Draws, Uncertainty
 from rovsim.dynamics.vehicle import Vehicle, build_vehicle, known_vehicle, load_vehicle
+from rovsim.results.fitted import Correlation, FittedNoise
 
 SCHEMA = "rovsim.model/1"
 
@@ -53,6 +56,28 @@ class EffectEntry(Section):
         return {"effect": self.effect, "parameters": known}
 
 
+class PossibilityEntry(Section):
+    """Effects that may act instead, and how likely they are."""
+
+    probability: Annotated[Number, Field(ge=0.0, le=1.0)]
+    effects: tuple[EffectEntry, ...]
+    correlation: Correlation = Correlation()
+
+
+class UncertaintyEntry(Section):
+    """How sure the effects of a model file are: see `rovsim.dynamics.uncertainty`."""
+
+    noise: FittedNoise
+    correlation: Correlation = Correlation()
+    instead: tuple[PossibilityEntry, ...] = ()
+
+    @model_validator(mode="after")
+    def _leaves_something(self) -> Self:
+        if sum(other.probability for other in self.instead) > 1.0:
+            raise ValueError("probabilities that add up to 1 at most")
+        return self
+
+
 class ModelFile(Section):
     """A model file as it stands on disk: data only."""
 
@@ -60,6 +85,7 @@ class ModelFile(Section):
     vehicle: PathText | dict[str, Any]
     effects: tuple[EffectEntry, ...] = ()
     residual: dict[str, Any] | None = None
+    uncertainty: UncertaintyEntry | None = None
     provenance: dict[str, Any] | None = None
 
 
@@ -81,6 +107,40 @@ def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
             )
     std = {name: v.std for name, v in entry.parameters.items() if v.std is not None}
     return found.with_std(std)
+
+
+def build_effects(entries: Iterable[EffectEntry], catalogue: Catalogue) -> tuple[Effect, ...]:
+    """The effects that entries describe; see `build_effect`."""
+    return tuple(build_effect(entry, catalogue) for entry in entries)
+
+
+def with_uncertainty(model: Model, entry: UncertaintyEntry, catalogue: Catalogue) -> Model:
+    """The model whose added effects are known as an entry says.
+
+    Raises:
+        BadInput: an effect that may act instead is unknown, or a value out of range.
+    """
+    instead = tuple(
+        (one.probability, Draws(build_effects(one.effects, catalogue), one.correlation))
+        for one in entry.instead
+    )
+    own = Draws(model.added, entry.correlation)
+    return replace(model, uncertainty=Uncertainty(entry.noise, own, instead))
+
+
+def _describe_uncertainty(found: Uncertainty) -> UncertaintyEntry:
+    return UncertaintyEntry(
+        noise=found.noise,
+        correlation=found.own.correlation,
+        instead=tuple(
+            PossibilityEntry(
+                probability=probability,
+                effects=tuple(map(describe_effect, draws.effects)),
+                correlation=draws.correlation,
+            )
+            for probability, draws in found.instead
+        ),
+    )
 
 
 def describe_effect(effect: Effect) -> EffectEntry:
@@ -118,10 +178,12 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
         vehicle = build_vehicle(file.vehicle, f"{path}, vehicle")
     residual = read_residual(file.residual, path.parent) if file.residual else None
     known = catalogue.on(vehicle)
-    added = [build_effect(entry, known) for entry in file.effects]
+    added = build_effects(file.effects, known)
     model = Model(path.stem, vehicle, (*vehicle.effects(), *added), residual)
     _ = model.body.M  # refuse a model that cannot move
-    return model
+    if file.uncertainty is None or residual is not None:
+        return model
+    return with_uncertainty(model, file.uncertainty, known)
 
 
 def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:
@@ -164,8 +226,15 @@ def write_model(
     residual: StoredResidual | None = None,
     provenance: dict[str, Any] | None = None,
 ) -> None:
-    """Write a model file; `residual` describes arrays that lie beside it."""
+    """Write a model file; `residual` describes arrays that lie beside it.
+
+    How sure a model is was not learned with a residual on top of it, and is left out then.
+    """
     content = describe_model(model)
-    content |= {"residual": residual.model_dump(mode="json")} if residual else {}
+    if residual:
+        content |= {"residual": residual.model_dump(mode="json")}
+    elif model.uncertainty:
+        known = _describe_uncertainty(model.uncertainty)
+        content |= {"uncertainty": known.model_dump(mode="json", exclude_defaults=True)}
     content |= {"provenance": plain(provenance)} if provenance else {}
-    write_yaml(path, content)
+    write_yaml(path, content, rows=True)

@@ -5,28 +5,12 @@ from typing import ClassVar, Literal
 from pydantic import Field, JsonValue
 
 from rovsim.core.schema import Section
-from rovsim.results.base import ByAxis, Result, Sparse
+from rovsim.results.base import ByAxis, Result
 from rovsim.results.error_conditions import ConditionShare
+from rovsim.results.fitted import FittedEffect, FittedNoise, FittedValue, Posterior
 from rovsim.results.ladder import Ladder
 
 Verdict = Literal["missing_effects", "adequate", "unexplained", "insufficient_data"]
-
-
-class FittedValue(Sparse):
-    """A parameter's value; `std` where it was fitted together with all others that act."""
-
-    value: float | None
-    std: float | None = None
-    unit: str | None = None
-
-
-class FittedEffect(Section):
-    """An effect with its values, the share of the error it removes, how likely its name is."""
-
-    effect: str
-    parameters: dict[str, FittedValue]
-    error_reduction: float | None = None
-    probability: float | None = None
 
 
 class ProposedTerm(Section):
@@ -146,18 +130,6 @@ class LookedAt(Section):
     wider: float
 
 
-class FittedNoise(Sparse):
-    """Six values each: disturbance m/s2, rad/s2; its memory s; reading m, rad. Empty if unknown.
-
-    `colour` m, rad: the cameras' slow error, where there is one.
-    """
-
-    disturbance: tuple[float | None, ...] = ()
-    memory_s: tuple[float | None, ...] = ()
-    reading: tuple[float | None, ...] = ()
-    colour: tuple[float | None, ...] = ()
-
-
 class Answer(Section):
     """What any method says is missing, the part of a diagnosis that can be judged by the truth."""
 
@@ -194,6 +166,7 @@ class Diagnosis(Result):
     not_observable: tuple[str, ...] = ()
     rivals: tuple[RivalEffect, ...] = ()
     noise: FittedNoise = FittedNoise()
+    posterior: Posterior | None = None
     looked_at: LookedAt | None = None
     base: dict[str, JsonValue]
     ladder: Ladder

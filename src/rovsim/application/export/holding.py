@@ -98,11 +98,11 @@ def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
     for k, effect in enumerate(model.effects):
         held, why = hold(effect)
         if why and acts(effect):
-            before = replace(model, effects=tuple(effects))
+            before = model.with_effects(tuple(effects))
             effects[k] = held
-            yield Left(effect.id, why, before, replace(model, effects=tuple(effects)))
+            yield Left(effect.id, why, before, model.with_effects(tuple(effects)))
     if model.residual is not None:
-        before = replace(model, effects=tuple(effects))
+        before = model.with_effects(tuple(effects))
         yield Left(
             RESIDUAL,
             "a trained residual is arrays, no term",

@@ -21,7 +21,8 @@ from rovsim.reporting.report_data import ONCE, PER_RUN, ReportData, select_argum
 from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
-from rovsim.results.diagnosis import Diagnosis, FittedEffect
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.fitted import FittedEffect
 from rovsim.results.ladder import Ladder
 
 FITTED = ("value", "std", "unit")

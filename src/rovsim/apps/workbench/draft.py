@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from rovsim.diagnosis.apply import choose_effects, extend, list_entries
+from rovsim.diagnosis.apply import add_uncertainty, choose_effects, extend, list_entries
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import EffectEntry, Value, build_effect
-from rovsim.results.diagnosis import Diagnosis, FittedEffect
+from rovsim.dynamics.model_file import EffectEntry, Value, build_effects
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.fitted import FittedEffect
 
 MOVING = 1.0  # s between two values of one hand that goes on moving
 SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
@@ -109,8 +110,11 @@ class Draft:
         Raises:
             BadInput: values no model can have.
         """
-        return extend(
-            self.base, [build_effect(self.entry(name), self.catalogue) for name in self.ticked]
+        model = extend(self.base, build_effects(map(self.entry, self.ticked), self.catalogue))
+        if self.diagnosis is None or any(self.values.values()):
+            return model
+        return add_uncertainty(
+            model, self.ticked, self.base, self.diagnosis, Path("diagnosis.json"), self.catalogue
         )
 
     def found(self, but: str = "") -> Model:
@@ -119,7 +123,7 @@ class Draft:
             entries = list_entries(
                 [one for one in self.chosen if one.effect != but], Path("diagnosis.json")
             )
-            effects = [build_effect(entry, self.catalogue) for entry in entries]
+            effects = build_effects(entries, self.catalogue)
             self._found[but] = extend(self.base, effects)
         return self._found[but]
 

@@ -38,7 +38,7 @@ from rovsim.reporting.html.verdict import interval
 from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import significant
 from rovsim.results.comparison import OPEN_LOOP, Metrics
-from rovsim.results.diagnosis import FittedValue
+from rovsim.results.fitted import FittedValue
 
 TITLE, QUESTION = "Models", "Which of two models is better, and what sets them apart?"
 SIDES = ("left", "right")

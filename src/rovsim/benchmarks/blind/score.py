@@ -13,7 +13,8 @@ from rovsim.benchmarks.blind.case import Case
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Parameter
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Answer, Diagnosis, FittedEffect
+from rovsim.results.diagnosis import Answer, Diagnosis
+from rovsim.results.fitted import FittedEffect
 
 SURE = 1.96  # standard deviations of a 95 % interval
 

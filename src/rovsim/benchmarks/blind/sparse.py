@@ -23,7 +23,8 @@ from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Answer, FittedEffect, FittedValue
+from rovsim.results.diagnosis import Answer
+from rovsim.results.fitted import FittedEffect, FittedValue
 from rovsim.simulation.command_columns import mark_angles
 
 Regression = Callable[[Array, Array], Array]

@@ -9,16 +9,8 @@ from rovsim.diagnosis.equations.disturbance import ForceInTime
 from rovsim.diagnosis.equations.proposal import FILE, ID, ProposedLaw, list_quantities, name_target
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.results.base import ByAxis
-from rovsim.results.diagnosis import (
-    Disturbance,
-    FittedEffect,
-    FittedValue,
-    ForceOfRun,
-    Proposal,
-    ProposedTerm,
-    Push,
-    RivalLaw,
-)
+from rovsim.results.diagnosis import Disturbance, ForceOfRun, Proposal, ProposedTerm, Push, RivalLaw
+from rovsim.results.fitted import FittedEffect, FittedValue
 
 LINE = 0.2  # s between two lines of a force in time: what the readings resolve (sudden_pushes.py)
 

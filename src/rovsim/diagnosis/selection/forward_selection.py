@@ -118,13 +118,13 @@ def contest(
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_challengers(workspace, term, rest, trials):
-            deficit = rest.loss - workspace.price * term.choices - p.gain
+            deficit, trial = rest.loss - workspace.price * term.choices - p.gain, None
             if _explains(workspace, p) > PROMISING * rest.loss:
                 trial = workspace.fit(rest.hypothesis.with_term(p.term))
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -swap:
                     return contest(workspace, prune(workspace, trial), trials, swap)
-            rivals.append(Rival(p.term.id, term.id, deficit))
+            rivals.append(Rival(p.term.id, term.id, deficit, trial))
     return current, rivals
 
 

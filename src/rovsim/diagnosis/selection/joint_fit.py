@@ -43,7 +43,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
     found = _prune_together(best, found)
     named = {term.id for term in found.hypothesis.terms}
     rivals = tuple(
-        Rival(term.id, own.id, best.score(found) - other.score(fit))
+        Rival(term.id, own.id, best.score(found) - other.score(fit), fit)
         for other, fit in tried[1:]
         for own in found.hypothesis.terms
         for term in fit.hypothesis.terms

@@ -56,7 +56,7 @@ def rank_selected(
         gains.append(float((now - after[best]) / start))
         model, now = tried[best], after[best]
     return [
-        Selected(terms[i], _spread(found, i), gain, _share_of_odds(found, i, rivals))
+        Selected(terms[i], find_std(found, i), gain, _share_of_odds(found, i, rivals))
         for i, gain in zip(order, gains, strict=True)
     ]
 
@@ -92,7 +92,7 @@ def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
     return np.array([np.nan if e is None else e for e in errors])
 
 
-def _spread(found: Fit, i: int) -> dict[str, float]:
+def find_std(found: Fit, i: int) -> dict[str, float]:
     """Standard deviations by name; within its grain a value could be anywhere (uniform: / √12)."""
     term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
     return {

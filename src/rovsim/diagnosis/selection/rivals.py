@@ -1,6 +1,6 @@
 """Where a search ended, and what else the effects it found could be."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -12,12 +12,14 @@ SURE = 6.0  # twice a log likelihood: odds of 20 to 1
 class Rival:
     """An effect that could stand in for a selected one, and by how much it is less likely.
 
-    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1.
+    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1. `fit` with it in
+    the other's place, where it was refitted.
     """
 
     effect: str
     instead_of: str
     deficit: float
+    fit: Fit | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,8 @@ from rovsim.reporting.html.marked import replace_tables, table
 from rovsim.reporting.html.published_errors import tell_pitfalls, write_markdown
 from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.html.verdict import differs_from_zero, interval
-from rovsim.results.diagnosis import Diagnosis, FittedValue
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.fitted import FittedValue
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import Timing

@@ -12,12 +12,11 @@ from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
     Diagnosis,
     DiagnosisErrors,
-    FittedEffect,
-    FittedValue,
     LookedAt,
     RivalEffect,
     ScaleOfForces,
 )
+from rovsim.results.fitted import FittedEffect, FittedValue
 
 VERDICTS = {
     "missing_effects": "The model lacks physics that the catalogue knows.",

@@ -15,7 +15,7 @@ from rovsim.core.yaml_files import write_yaml
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import build_effect
+from rovsim.dynamics.model_file import build_effects
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.synthetic_tank.description import SEALED, describe, motion_file, seal
 from rovsim.simulation.synthetic_tank.exports import export_commands, export_poses
@@ -35,7 +35,7 @@ def true_model(
     """
     vehicle = load_vehicle(settings.vehicle)
     known = catalogue.on(vehicle)
-    hidden = [build_effect(entry, known) for entry in settings.effects]
+    hidden = build_effects(settings.effects, known)
     return Model("truth", vehicle, (*vehicle.effects(), *hidden, *unlisted))
 
 
