@@ -10,6 +10,7 @@ from numpy import ndarray as Array
 from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.bands import Bands
 from rovsim.results.base import Result
 from rovsim.results.budget import BudgetTotals
 from rovsim.results.comparison import OPEN_LOOP, Comparison
@@ -21,6 +22,7 @@ from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.quality import Quality
 from rovsim.results.timing import Timing
+from rovsim.simulation.bands import Band
 from rovsim.simulation.prediction import Replay
 
 SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
@@ -29,7 +31,7 @@ R = TypeVar("R", bound=Result)
 
 @dataclass(frozen=True, eq=False)
 class ReportData:
-    """Motions by run, replays by model and run, budgets of one model by run, and results.
+    """Motions by run, replays and bands by model and run, budgets of one model by run, and results.
 
     A result that is not known is None, and what would show it is left out. `drawn`: runs of which
     each has its figures.
@@ -37,9 +39,11 @@ class ReportData:
 
     motions: Mapping[str, Motion] = field(default_factory=dict)
     replays: Mapping[str, Mapping[str, Replay]] = field(default_factory=dict)
+    bands: Mapping[str, Mapping[str, Band | None]] = field(default_factory=dict)
     budgets: Mapping[str, Budget] = field(default_factory=dict)
     quality: Mapping[str, Quality] = field(default_factory=dict)
     comparison: Comparison | None = None
+    coverage: Bands | None = None
     growth: Growth | None = None
     steps: tuple[Step, ...] = ()
     forces: BudgetTotals | None = None
@@ -84,6 +88,11 @@ class ReportData:
             if run in self.replays.get(model, {})
         }
 
+    def banded(self, run: str, models: Sequence[str]) -> dict[str, Array]:
+        """Bands (2, n, 6) of the velocity by model, of those that have one."""
+        each = {model: self.bands[model][run] for model in models if model in self.bands}
+        return {model: band.nu for model, band in each.items() if band is not None}
+
 
 # Figures drawn once, from the results of those names; and those drawn for every run.
 ONCE = {
@@ -114,7 +123,8 @@ def select_arguments(
     common = {"time": motion.time, "usable": motion.usable}
     if figure == "velocities":
         nu = data.predicted(run, SHOWN, "nu", models)
-        return {**common, "nu": blank(motion.measured, motion.nu, np.nan), "predicted_nu": nu}
+        measured = blank(motion.measured, motion.nu, np.nan)
+        return {**common, "nu": measured, "predicted_nu": nu, "bands": data.banded(run, models)}
     if figure == "residual_series":
         nu_dot = data.predicted(run, SHOWN, "nu_dot", models)
         measured = blank(motion.measured, motion.nu_dot, np.nan)

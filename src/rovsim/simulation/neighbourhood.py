@@ -41,17 +41,21 @@ def embed(motion: Motion, spans: Sequence[tuple[int, int]], reach: int) -> list[
 
 
 def derive(
-    paths: Sequence[Array], windows: Sequence[Embedded], motion: Motion, signals: SignalSettings
+    paths: Sequence[Array],
+    windows: Sequence[Embedded],
+    motions: Sequence[Motion],
+    signals: SignalSettings,
 ) -> list[Array]:
     """Velocity and acceleration (2, n, 6) of each path, infinite where a window's motion diverged.
 
     Args:
         paths: poses (n, 7) as reported, from the first sample of a window to the last after it.
         windows: where they lie.
-        motion: the measured run.
+        motions: as measured, of one clock.
         signals: filter and derivative of the measurement.
     """
     found = [np.full((2, len(path), 6), np.inf) for path in paths]
+    period = time_step(motions[0].time) if motions else 0.0
     alike = defaultdict(list)  # a filter takes stacks of one length
     for k, (path, window) in enumerate(zip(paths, windows, strict=True)):
         alike[window.before, _count_finite(path, window)].append(k)
@@ -60,11 +64,11 @@ def derive(
             continue
         most = max(1, AT_ONCE // (before + count))
         for some in (members[k : k + most] for k in range(0, len(members), most)):
-            past = [motion.eta[windows[k].first - before : windows[k].first] for k in some]
+            past = [motions[k].eta[windows[k].first - before : windows[k].first] for k in some]
             whole = np.stack(
                 [np.vstack([p, paths[k][:count]]) for p, k in zip(past, some, strict=True)]
             )
-            both = np.stack(velocities(whole, time_step(motion.time), signals))
+            both = np.stack(velocities(whole, period, signals))
             for i, k in enumerate(some):
                 found[k][:, :count] = both[:, i, before:]
     return found

@@ -4,7 +4,8 @@ Open loop starts once and is never corrected; windows of h seconds start anew ev
 back is aligned with the measurement and went through the same filter.
 """
 
-from typing import Sequence
+from itertools import islice
+from typing import Iterable, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -22,7 +23,7 @@ from rovsim.simulation.carried import carry
 from rovsim.simulation.drive import drive_by_log
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import as_true, interpolate, interpolate_state
-from rovsim.simulation.neighbourhood import derive, embed
+from rovsim.simulation.neighbourhood import Embedded, derive, embed
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.sharpened import stage_outputs
@@ -44,15 +45,61 @@ def replay(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    signals = signals.suited(motion.measured)
+    horizons = {
+        name: predict(model, motion, spans, signals, settings)
+        for name, spans in find_spans(motion, settings, open_loop).items()
+    }
+    return Replay(model.name, motion.run, motion.time, horizons)
+
+
+def find_spans(
+    motion: Motion, settings: ReplaySettings, open_loop: bool = True
+) -> dict[str, Spans]:
+    """The windows of each horizon: `open_loop`, `0.5`, `2`, `5`."""
     spans: dict[str, Spans] = {OPEN_LOOP: find_whole(motion)} if open_loop else {}
     for seconds in settings.horizons:
         spans[f"{seconds:g}"] = list(find_windows(motion, seconds))
-    predict = _predict_bins if motion.binned else _predict_samples
-    horizons = {
-        name: predict(model, motion, found, signals, settings) for name, found in spans.items()
-    }
-    return Replay(model.name, motion.run, motion.time, horizons)
+    return spans
+
+
+def predict(
+    model: Model, motion: Motion, spans: Spans, signals: SignalSettings, settings: ReplaySettings
+) -> Prediction:
+    """What the motion capture would report of a model in some windows of a run; see `predict_all`.
+
+    Raises:
+        BadInput: the run lacks what an effect of the model needs.
+    """
+    return predict_all([Case(model, motion)], spans, signals, settings)[0]
+
+
+class Case(NamedTuple):
+    """A model and a run; `disturbed`: accelerations (k, 6) over the steps that come on top."""
+
+    model: Model
+    motion: Motion
+    disturbed: Array | None = None
+
+
+def predict_all(
+    cases: Sequence[Case], spans: Spans, signals: SignalSettings, settings: ReplaySettings
+) -> list[Prediction]:
+    """What the motion capture would report of models in some windows of a run.
+
+    Args:
+        cases: of runs with one clock.
+        spans: first sample or bin of each window, and its last one.
+        signals: filter and derivative of the measurement.
+        settings: step length and how commands are held.
+
+    Raises:
+        BadInput: the run lacks what an effect of a model needs.
+    """
+    if not spans:
+        return [Prediction.empty(len(case.motion.time)) for case in cases]
+    if cases[0].motion.binned:
+        return [_predict_bins(case, spans, settings) for case in cases]
+    return _predict_samples(cases, spans, signals.suited(cases[0].motion.measured), settings)
 
 
 def simulate(
@@ -60,6 +107,7 @@ def simulate(
     motion: Motion,
     starts: Sequence[tuple[int, int, Array]],
     settings: ReplaySettings,
+    disturbed: Array | None = None,
 ) -> list[Array]:
     """Simulate from several true states of one run, under its commands.
 
@@ -69,6 +117,7 @@ def simulate(
         starts: for each trajectory its first step, number of samples, and state (13,); in order of
             time, and velocities that were not measured are the model's own.
         settings: step length and how commands are held.
+        disturbed: accelerations (k, 6) over the steps that come on top.
 
     Returns:
         For each start its states (samples + 1, 13), the given one first.
@@ -82,39 +131,56 @@ def simulate(
     state = np.array([s[2] for s in starts]).reshape(1, -1, 13)
     memory = remembered_at([model], [motion], grid.edges, first)
     drive = drive_by_log(model, motion, grid, settings)
+    if disturbed is not None:
+        drive = drive.pushed(disturbed @ model.body.M.T)
     batch, known = Batch([model], motion.site), find_measured(motion.measured)
     begins = carry(batch, [drive], Starts(state, first, steps, memory), grid.time, known)
     return batch.trajectories([drive], begins, grid.time, grid.stride)[0]
 
 
 def _predict_samples(
-    model: Model, motion: Motion, spans: Spans, signals: SignalSettings, settings: ReplaySettings
-) -> Prediction:
+    cases: Sequence[Case], spans: Spans, signals: SignalSettings, settings: ReplaySettings
+) -> list[Prediction]:
     """Predictions at the samples of a uniform clock, through the filter of the measurement."""
-    found = Prediction.empty(len(motion.time))
-    if not spans:
-        return found
+    first = cases[0].motion
+    within = embed(first, spans, round(signals.reach / time_step(first.time)))
+    paths = [path for case in cases for path in _report_samples(case, within, settings)]
+    motions = [case.motion for case in cases for _ in within]
+    derived = iter(zip(paths, derive(paths, within * len(cases), motions, signals), strict=True))
+    return [_gather(len(first.time), within, islice(derived, len(within))) for _ in cases]
+
+
+def _report_samples(
+    case: Case, within: Sequence[Embedded], settings: ReplaySettings
+) -> list[Array]:
+    """Poses (k, 7) of each window, as reported."""
+    model, motion, _ = case
     true, stride = as_true(model, motion), StepGrid.over(motion, settings.step).stride
     state, period = true.state, time_step(motion.time)
-    within = embed(motion, spans, round(signals.reach / period))
     starts = [(w.first * stride, w.last + w.after - w.first, state[w.first]) for w in within]
     stages = stage_outputs(model, motion)[1:, :, :14]
-    paths = [
+    simulated = simulate(model, true, starts, settings, case.disturbed)
+    return [
         model.mocap_view.report(path, period, stages[:, w.first])[:, :7]
-        for w, path in zip(within, simulate(model, true, starts, settings), strict=True)
+        for w, path in zip(within, simulated, strict=True)
     ]
-    derived = derive(paths, within, motion, signals)
-    for w, path, (nu, nu_dot) in zip(within, paths, derived, strict=True):
+
+
+def _gather(
+    count: int, within: Sequence[Embedded], derived: Iterable[tuple[Array, Array]]
+) -> Prediction:
+    """A prediction at `count` samples, of poses and their derivatives in each window."""
+    found = Prediction.empty(count)
+    for w, (path, (nu, nu_dot)) in zip(within, derived, strict=True):
         at, own = slice(w.first + 1, w.last + 1), slice(1, w.last - w.first + 1)
         found.eta[at], found.nu[at], found.nu_dot[at] = path[own], nu[own], nu_dot[own]
         found.mark_diverged(at)
     return found
 
 
-def _predict_bins(
-    model: Model, motion: Motion, spans: Spans, signals: SignalSettings, settings: ReplaySettings
-) -> Prediction:
+def _predict_bins(case: Case, spans: Spans, settings: ReplaySettings) -> Prediction:
     """Means over the measurement's own bins, of a trajectory on fine steps; nothing is filtered."""
+    model, motion, disturbed = case
     found = Prediction.empty(len(motion.time))
     true, grid = as_true(model, motion), StepGrid.over(motion, settings.step)
     outputs, view = stage_outputs(model, motion)[1:], model.mocap_view
@@ -126,7 +192,7 @@ def _predict_bins(
         for k, e in zip(first, last, strict=True)
     ]
     for (a, b), (k, count, _), path in zip(
-        spans, starts, simulate(model, true, starts, settings), strict=True
+        spans, starts, simulate(model, true, starts, settings, disturbed), strict=True
     ):
         fine = grid.edges[k : k + count + 1]
         begin = interpolate(motion.time, outputs, grid.edges[k])

@@ -63,10 +63,11 @@ class Stepper:
         self._response: list | None = None
         self._memory = np.zeros(6)
 
-    def step(self, state: Array, command: Array, dt: float) -> Array:
+    def step(self, state: Array, command: Array, dt: float, pushed: Array | None = None) -> Array:
         """The state (13,) after dt s under a command that is given now and holds.
 
-        Steps longer than 10 ms are divided.
+        So does a wrench (6,) that is `pushed` besides, N and N m. Steps longer than 10 ms are
+        divided.
 
         Raises:
             BadInput: a command or state of another shape, or dt that is not positive.
@@ -84,6 +85,8 @@ class Stepper:
             thrust.force, h, self._response
         )
         drive = Drive.by(self.model, thrust, self.duration)
+        if pushed is not None:
+            drive = drive.pushed(np.asarray(pushed, dtype=np.float64))
         self._batch.advance(drive, state, self._memory, self.time, h)
         self.time += dt
         return state

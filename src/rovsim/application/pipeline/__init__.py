@@ -3,6 +3,7 @@
 recordings        raw exports -> recordings, quality, motions
 models            names and files -> models; effects added to one
 replays           models x motions -> replays -> scores, growth of errors, steps of the ladder
+bands             how surely models predict, and what of the test runs lies inside
 error_conditions  under which conditions a model fails
 forces            who pushes how much
 diagnosis         which effects a model lacks

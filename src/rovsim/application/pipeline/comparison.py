@@ -4,6 +4,7 @@ from typing import Sequence
 
 import numpy as np
 
+from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
 from rovsim.application.pipeline.forces import balance_run
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.application.pipeline.replays import replay_when_asked
@@ -44,6 +45,8 @@ def compare(data: Measured, models: Sequence[Model], settings: SimulationSetting
     return ReportData(
         motions=data.motions,
         replays=shown,
+        bands=bands_when_asked(models, data.motions, settings),
+        coverage=cover_test_runs(models, data, settings),
         budgets=budgets,
         quality=data.quality,
         comparison=scored.comparison,

@@ -37,7 +37,8 @@ addEventListener("wheel", event => {
 // What the pointer is at: the time once, then each panel with its unit and its curves.
 function tellPanels(points, titles) {
   const clean = text => text.replace(/[&<>"']/g, letter => `&#${letter.charCodeAt(0)};`);
-  const known = points.filter(point => Number.isFinite(point.value?.[1]));
+  const known = points.filter(point => Number.isFinite(point.value?.[1])
+    && !point.seriesId.endsWith(" of the band"));
   const lines = titles.map((title, k) => [title, known.filter(p => p.seriesId.startsWith(`${k}/`))])
     .filter(([, own]) => own.length)
     .map(([title, own]) => `<div>${clean(title)}: ` + own.map(point =>

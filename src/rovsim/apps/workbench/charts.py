@@ -1,30 +1,35 @@
 """ECharts options: time series over linked axes, bars, paths. Plain dictionaries, testable."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.reporting.figures.palette import Look, looks
+from rovsim.reporting.figures.palette import SHADE, Look, looks
 
 Options = dict[str, Any]  # of ECharts, plain and deep
 
 POINTS = 1000  # a curve shows at most; a screen is not wider
 INK, SOFT, LINE, MARK = "#1a1a1a", "#555555", "#d9d9d9", "#D55E00"
 TALL, SHORT, GAP, TOP, ICONS = 104, 56, 36, 40, 12  # px: panels, what lies between, legend; icons
+LOW, WIDTH = "/low end of the band", "/width of the band"  # ids of series, as a csv names them
 WEIGHT = 2.2  # px of a line on screen for one of width 1 on paper
 
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """Curves {name: values (n,)} over one time axis; a short panel shows what another left."""
+    """Curves {name: values (n,)} over one time axis; a short panel shows what another left.
+
+    `bands` {name: (2, n)} lower and upper end of what a curve may be.
+    """
 
     title: str
     unit: str
     curves: Mapping[str, Array]
     short: bool = False
+    bands: Mapping[str, Array] = field(default_factory=dict)
 
 
 def styles(names: Sequence[str]) -> dict[str, Look]:
@@ -50,13 +55,21 @@ def height(panels: Sequence[Panel]) -> int:
 
 
 def series_data(time: Array, panels: Sequence[Panel], but: Sequence[str] = ()) -> list[Options]:
-    """The points of every curve, by id; `but` those that have not changed."""
+    """The points of every curve and band, by id; `but` those that have not changed."""
     return [
         {"id": f"{k}/{name}", "data": points(time, values)}
         for k, panel in enumerate(panels)
-        for name, values in panel.curves.items()
+        for name, values in (*panel.curves.items(), *_ends(panel))
         if name not in but
     ]
+
+
+def _ends(panel: Panel) -> list[tuple[str, Array]]:
+    """Lower ends of bands, and what is stacked on these."""
+    each = [(name, low, high - low) for name, (low, high) in panel.bands.items()]
+    return [
+        one for name, low, wide in each for one in ((name + LOW, low), (name + WIDTH, wide))
+    ]  # fmt: skip
 
 
 def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> Options:
@@ -101,8 +114,21 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
                     "z": 3 if name == "measured" else 2,
                 }
             )  # fmt: skip
+        for name in panel.bands:
+            found["series"] += [_area(k, name, end, look[name], ready) for end in (LOW, WIDTH)]
         found["series"].append(cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k})
     return found
+
+
+def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> Options:
+    """One of the two series that make a band: an unseen line, and what fills up to the other."""
+    shade = {"color": look.color, "opacity": SHADE if end == WIDTH else 0.0}
+    return {
+        "id": f"{k}/{name}{end}", "name": name, "type": "line", "symbol": "none", "silent": True,
+        "xAxisIndex": k, "yAxisIndex": k, "stack": f"{k}/{name}", "stackStrategy": "all",
+        "lineStyle": {"opacity": 0}, "areaStyle": shade, "itemStyle": {"color": look.color},
+        "data": ready[f"{k}/{name}{end}"], "z": 1,
+    }  # fmt: skip
 
 
 def cursor(panel: int, time: float | None) -> Options:

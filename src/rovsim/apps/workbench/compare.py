@@ -10,6 +10,7 @@ from rovsim.apps.workbench.parts import cell, computed, heading, onward, table, 
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.traces import (
+    BANDED,
     HORIZONS,
     QUANTITIES,
     Span,
@@ -22,10 +23,13 @@ from rovsim.apps.workbench.traces import (
     panels,
 )
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.simulation.bands import LEVEL, Band, why_without_bands
 from rovsim.simulation.prediction import Prediction
 
 Predicted = dict[str, dict[str, Prediction]]  # by run and model
+Drawn = tuple[Motion, list[Panel]]
 POSE_ERRORS = ("position_rmse_m", "attitude_rmse_rad")
 TITLE, QUESTION = "Compare", "How far is the model from the measurement?"
 
@@ -39,11 +43,12 @@ class Compare:
         run = first_run(bench)
         first = {
             "run": run, "beside": [], "models": [bench.base.name], "axes": excited(bench, run),
-            "quantity": "nu", "horizon": 2.0,
+            "quantity": "nu", "horizon": 2.0, "bands": False,
         }  # fmt: skip
         possible: dict[str, Sequence[Any]] = {
             "run": runs, "beside": runs, "models": list(bench.models), "axes": AXES,
             "quantity": list(QUANTITIES), "horizon": HORIZONS,
+            "bands": (False, True),
         }  # fmt: skip
         self.chosen = place.choose(first, possible)
         self.span = (place.number("from"), place.number("to"))
@@ -80,6 +85,8 @@ class Compare:
             self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
             names = {key: name for key, (name, _) in QUANTITIES.items()}
             self._choice("quantity", ui.select(names, label="Quantity"))
+            if any(m.uncertainty is not None for m in self.bench.models.values()):
+                self._choice("bands", ui.switch(f"{LEVEL:.0%} bands"))
             horizon_slider(self.chosen["horizon"], self._horizon)
 
     def _choice(self, name: str, control: Any) -> None:
@@ -87,7 +94,7 @@ class Compare:
         control.classes("control").props("outlined dense options-dense")
 
         async def changed() -> None:
-            if control.value or name == "beside":  # at least one of several
+            if control.value or name in ("beside", "bands"):  # at least one of several
                 self.chosen[name] = control.value
                 self.span = (None, None) if name == "run" else self.span
                 await self.draw()
@@ -118,15 +125,33 @@ class Compare:
                 predicted[name] = await computed(
                     self.bench.prediction, self.bench.models[name], run, chosen["horizon"]
                 )
-        axes = [axis for axis in AXES if axis in chosen["axes"]]
-        first, *others = [
-            (
-                motion := self.bench.data.motions[run],
-                panels(motion, p, axes, chosen["quantity"], await computed(self.bench.thrust, run)),
-            )
-            for run, p in found.items()
-        ]
+        first, *others = [await self._panels(run, p) for run, p in found.items()]
         return beside(first, others), found
+
+    async def _panels(self, run: str, predicted: dict[str, Prediction]) -> Drawn:
+        """One run and its panels; bands are those of the run shown."""
+        motion, quantity = self.bench.data.motions[run], self.chosen["quantity"]
+        axes = [axis for axis in AXES if axis in self.chosen["axes"]]
+        thrust = await computed(self.bench.thrust, run)
+        bands: dict[str, Band] = {}
+        if self.chosen["bands"] and run == self.chosen["run"] and quantity in BANDED:
+            for name in predicted:
+                model, horizon = self.bench.models[name], self.chosen["horizon"]
+                band = await computed(self.bench.band, model, run, horizon)
+                bands |= {name: band} if band else {}
+        return motion, panels(motion, predicted, axes, quantity, thrust, bands)
+
+    def _tell_missing_bands(self) -> None:
+        """Say which models have none, and why."""
+        if not self.chosen["bands"]:
+            return
+        if self.chosen["quantity"] not in BANDED:
+            text("Accelerations have no bands.", "soft")
+            return
+        for name in self.chosen["models"]:
+            why = why_without_bands(self.bench.models[name], self.motion)
+            if why:
+                text(f"No band for {name}: {why}.", "soft")
 
     async def draw(self) -> None:
         """Everything below the controls."""
@@ -135,6 +160,7 @@ class Compare:
         self.area.clear()
         with self.area:
             about = f"Measured and simulated, run {', '.join(self.runs)}"
+            self._tell_missing_bands()
             self.traces = Traces(self.motion.time, shown, about, self.span, self._zoomed)
             self.numbers = ui.column().classes("area")
             self._numbers(predicted)

@@ -1,6 +1,7 @@
 """Measured and simulated over time, the difference under it: a chart that several screens use."""
 
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
@@ -16,6 +17,7 @@ from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
+from rovsim.simulation.bands import Band
 from rovsim.simulation.prediction import Prediction
 
 Span = tuple[float | None, float | None]  # s, part of a run; None: from its start, to its end
@@ -27,6 +29,8 @@ QUANTITIES = {
 }  # fmt: skip
 # A pose belongs to the tank: what stands in place of the axis of the body.
 POSES = dict(zip(AXES, ("north", "east", "down", "roll", "pitch", "yaw"), strict=True))
+BANDED = {"nu": "nu", "eta": "place"}  # what a band calls these; others have none
+NO_BANDS: Mapping[str, Band] = MappingProxyType({})
 STEADY = ("measured", "commanded")  # curves that no model changes
 HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 
@@ -63,11 +67,12 @@ def excited(bench: Workbench, run: str) -> list[str]:
 
 def panels(
     motion: Motion, predicted: Mapping[str, Prediction], axes: Sequence[str], quantity: str = "nu",
-    thrust: Array | None = None,
+    thrust: Array | None = None, bands: Mapping[str, Band] = NO_BANDS,
 ) -> list[Panel]:  # fmt: skip
     """A panel per axis, and under it what each model missed (measured minus model).
 
-    Under that `thrust` (n, 6), what the commands push along the axis of the body, N and N m.
+    `bands` by model: within what it may lie. Under that `thrust` (n, 6), what the commands push
+    along the axis of the body, N and N m.
     """
     _, units = QUANTITIES[quantity]
     measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
@@ -80,7 +85,8 @@ def panels(
         if quantity == "eta":
             title = POSES[axis]
             missed = {n: _turned(x) if k > 2 else x for n, x in missed.items()}
-        found.append(Panel(title, units[k], {"measured": measured[:, k], **models}))
+        ends = {name: getattr(band, BANDED[quantity])[:, :, k] for name, band in bands.items()}
+        found.append(Panel(title, units[k], {"measured": measured[:, k], **models}, bands=ends))
         found.append(Panel(f"{title}: measured − model", units[k], missed, short=True))
         if thrust is not None:
             push = {"commanded": thrust[:, k]}

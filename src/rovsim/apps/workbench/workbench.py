@@ -30,9 +30,10 @@ from rovsim.evaluation.scores import subtract, summarize
 from rovsim.results.comparison import OPEN_LOOP, Metrics
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import EFFECTS, Ladder, Step
+from rovsim.simulation.bands import Band, foresee
 from rovsim.simulation.measured_states import drive_as_measured
 from rovsim.simulation.prediction import Prediction, Replay
-from rovsim.simulation.replay import replay
+from rovsim.simulation.replay import find_spans, replay
 
 OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and measured
 
@@ -51,6 +52,7 @@ class Workbench:
     choices: dict[str, Any] = field(default_factory=dict)  # what a screen remembers
     work: Work | None = None  # long work, one at a time
     _replays: Recent[Replay] = field(default_factory=Recent)
+    _bands: Recent[Band | None] = field(default_factory=Recent)
     _steps: dict[Model, Step] = field(default_factory=dict)
     _searched: dict[Model, SearchedModel] = field(default_factory=dict)
     _thrusts: Recent[Array] = field(default_factory=Recent)
@@ -232,6 +234,16 @@ class Workbench:
         """What the model predicts in windows of `horizon` s, or open loop (None)."""
         name = OPEN_LOOP if horizon is None else f"{horizon:g}"
         return self.replayed(model, run, horizon).horizons[name]
+
+    def band(self, model: Model, run: str, horizon: float | None) -> Band | None:
+        """Within what the model may lie, given all that it leaves open; None where nobody knows."""
+        spans = () if horizon is None else (horizon,)
+        motion, how = self.data.motions[run], self.settings.replay.only(*spans)
+        (found,) = find_spans(motion, how, open_loop=not spans).values()
+        return self._bands.get(
+            (model, run, horizon),
+            lambda: foresee(model, motion, found, self.settings.signals, how) if found else None,
+        )
 
     def thrust(self, run: str) -> Array:
         """What the base makes of the commands of a run at its samples or bins (n, 6), N and N m."""

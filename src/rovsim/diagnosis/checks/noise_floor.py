@@ -11,20 +11,17 @@ from typing import Iterable, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 
-from rovsim.core import rotations
 from rovsim.diagnosis.observer.drifting_current import push_by_current
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import Moments, normalize, root_mean
-from rovsim.measurement.signals.chain import SignalSettings, velocities
-from rovsim.measurement.signals.filter import filter_eta
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.simulation.noise_draws import NoiseDraws
 
 DRAWS = 8
-PAD = 1.0  # s before and after, so that the filter has settled
 
 
 class NoiseFloor(NamedTuple):
@@ -69,8 +66,10 @@ class _PerfectModel:
     def errors(self, run: ObservedRun) -> Array:
         """Its errors (n, 6) on one run, all draws."""
         windows, measured = Windows(run), run.motion.state
-        pushes = self._push(run)
-        reported = [self._report(run) for _ in range(DRAWS)]
+        draws = self.noise.draws(run, self.random)
+        pushes = self._push(draws, run)
+        again = draws.measure_again(run.motion, self.model.mocap_view, self.signals, DRAWS)
+        reported = [motion.state for motion in again]
         truth = np.tile(measured[windows.first], (DRAWS, 1, 1))
         starts = np.array([state[windows.first] for state in reported])
         models = [self.model] * DRAWS
@@ -80,16 +79,9 @@ class _PerfectModel:
         read = np.array([state[at, 7:] - measured[at, 7:] for state in reported])
         return (predicted - happened - read).reshape(-1, 6)
 
-    def _push(self, run: ObservedRun) -> Array:
+    def _push(self, draws: NoiseDraws, run: ObservedRun) -> Array:
         """Wrench (draws, k, 6) of the disturbance over the integration steps."""
-        fade = np.exp(-np.diff(run.grid)[:, None] / self.noise.memory)
-        kicks = self.random.normal(size=(len(fade), DRAWS, 6))
-        kicks *= np.sqrt(1.0 - fade**2)[:, None]
-        a, x = np.empty_like(kicks), self.random.normal(size=(DRAWS, 6))
-        for k, kick in enumerate(kicks):
-            x = fade[k] * x + kick
-            a[k] = x
-        pushed = (a * self.noise.level).swapaxes(0, 1)
+        pushed = draws.disturb(np.diff(run.grid), DRAWS)
         if self.noise.drift:
             pushed += self._drift(run, self.noise.drift.rate)
         return np.asarray(pushed @ self.model.body.M.T)
@@ -103,35 +95,3 @@ class _PerfectModel:
         kicks = self.random.normal(size=(DRAWS, 2, len(steps)))
         kicks *= rate * np.sqrt(np.append(began, steps[:-1]))
         return np.asarray(np.einsum("dck,cik->dki", np.cumsum(kicks, axis=2), here))
-
-    def _report(self, run: ObservedRun) -> Array:
-        """States (n, 13) as another measurement of the same motion would have reported them."""
-        state, reading = run.motion.state.copy(), self.noise.reading
-        if run.motion.binned:
-            state[:, 7:] += reading * self.random.normal(size=(len(state), 6))
-            return state
-        period = run.frame_period
-        pad = round(PAD / period)
-        # as noisy as a single frame: readings are means of a group
-        kicks = np.sqrt(run.group) * reading * self.random.normal(size=(len(state) + 2 * pad, 6))
-        kicks += self._err_slowly(len(kicks), period)
-        poses = np.hstack([kicks[:, :3], rotations.exp(kicks[:, 3:])])  # about a vehicle at rest
-        poses = self.model.mocap_view.smooth(poses, period)
-        inside = slice(pad, len(poses) - pad)
-        smooth = filter_eta(poses, period, self.signals.filter)[inside]
-        nu, _ = velocities(poses, period, self.signals)
-        state[:, :3] += rotations.rotate(state[:, 3:7], smooth[:, :3])
-        state[:, 3:7] = rotations.multiply(state[:, 3:7], smooth[:, 3:])
-        state[:, 7:] += nu[inside]
-        return state
-
-    def _err_slowly(self, count: int, period: float) -> Array:
-        """Errors (count, 6) of the cameras that last."""
-        if not self.noise.colour.any():
-            return np.zeros((count, 6))
-        keep = np.exp(-period / self.noise.colour_memory)
-        drive = self.noise.colour * np.sqrt(1.0 - keep**2)
-        kicks = self.random.normal(size=(count, 6)) * drive
-        return np.stack(
-            [lfilter([1.0], [1.0, -k], x) for k, x in zip(keep, kicks.T, strict=True)], 1
-        )

@@ -28,6 +28,7 @@ from rovsim.diagnosis.observer.kalman import (
 )
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.simulation.noise_draws import NoiseDraws
 
 
 class Path(NamedTuple):
@@ -73,6 +74,13 @@ class Noise:
         return AxisNoise(
             self.level[i], self.memory[i], self.reading[i], self.colour[i], self.colour_memory[i]
         )
+
+    def draws(self, run: ObservedRun, random: np.random.Generator) -> NoiseDraws:
+        """The same to draw from, of a run."""
+        return NoiseDraws(
+            self.level, self.memory, self.reading, run.period, self.colour, self.colour_memory,
+            random,
+        )  # fmt: skip
 
     @property
     def white(self) -> "Noise":

@@ -29,6 +29,11 @@ def patches(looks: dict[str, Look]) -> list[Artist]:
     return [Patch(label=short(n), **look.bar()) for n, look in looks.items()]
 
 
+def areas(looks: dict[str, Look]) -> list[Artist]:
+    """Legend entries for areas behind lines."""
+    return [Patch(label=name, **look.area()) for name, look in looks.items()]
+
+
 def legend(figure: Figure, handles: Sequence[Any]) -> None:
     """Put a legend above all axes, in as few rows as fit the page."""
     if not handles:

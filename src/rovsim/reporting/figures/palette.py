@@ -13,6 +13,9 @@ Dash = str | tuple[float, tuple[float, ...]]
 Style = dict[str, Any]  # keyword arguments of a Matplotlib artist
 
 
+SHADE = 0.25  # of an area: what lies behind it can still be read
+
+
 @dataclass(frozen=True)
 class Look:
     """Colour, line style and (for bars) hatch of one model."""
@@ -26,6 +29,10 @@ class Look:
     def line(self) -> Style:
         """Keyword arguments for a line."""
         return {"color": self.color, "linestyle": self.dash, "linewidth": self.width}
+
+    def area(self) -> Style:
+        """Keyword arguments for an area behind lines."""
+        return {"facecolor": self.color, "alpha": SHADE, "linewidth": 0}
 
     def bar(self) -> Style:
         """Keyword arguments for a bar; the hatch is white on the colour."""

@@ -49,6 +49,15 @@ def plot_all(
     ]
 
 
+def shade(axes: list[Axes], time: Array, band: Array, look: Look) -> None:
+    """Fill between the ends of a band (2, n, 6), within the axes as they are."""
+    for k, axis in enumerate(axes):
+        shown = axis.get_ylim()
+        t, ends = broken(time, band[:, :, k].T)
+        axis.fill_between(t, *ends.T, zorder=1, **look.area())
+        axis.set_ylim(shown)
+
+
 def _scale(axis: Axes, curves: dict[str, Array]) -> set[str]:
     first, *others = curves.values()
     low, high, clipped = limits(first, others)

@@ -1,32 +1,43 @@
 """Measured against simulated body velocity, six axes over time."""
 
+from types import MappingProxyType
 from typing import Mapping
 
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
-from rovsim.reporting.figures.legends import legend, lines, note
+from rovsim.reporting.figures.legends import areas, legend, lines, note
 from rovsim.reporting.figures.palette import looks
-from rovsim.reporting.figures.panels import plot_all, six_panels
+from rovsim.reporting.figures.panels import plot_all, shade, six_panels
 from rovsim.reporting.figures.series import excerpt, masked
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.units import VELOCITY, VELOCITY_UNITS
+from rovsim.reporting.wording import short
+from rovsim.simulation.bands import LEVEL
 
 SECTION = "compare"
+NO_BANDS: Mapping[str, Array] = MappingProxyType({})
 CAPTION = (
-    "Measured and simulated body velocity over time, one panel per axis. "
+    "Measured and simulated body velocity over time, one panel per axis. A shaded band holds 90 % "
+    "of the measured velocity if the model and its noise are right. "
     "Where no line is drawn the motion capture did not see the vehicle."
 )
 
 
 @styled()
 def draw(
-    *, time: Array, nu: Array, predicted_nu: Mapping[str, Array], usable: Array | None = None
+    *,
+    time: Array,
+    nu: Array,
+    predicted_nu: Mapping[str, Array],
+    usable: Array | None = None,
+    bands: Mapping[str, Array] = NO_BANDS,
 ) -> Figure:
     """Draw measured velocity `nu` (n, 6) and each model's {model: (n, 6)} over `time` (n,) s.
 
     NaN, samples that are not `usable` (n,) and jumps of `time` stay gaps. A run longer than a
-    minute is cut to its liveliest minute.
+    minute is cut to its liveliest minute. `bands` {model: (2, n, 6)}: within what its velocity may
+    lie.
     """
     measured = masked(nu, usable)
     part = excerpt(time, measured)
@@ -34,8 +45,11 @@ def draw(
     style = looks(curves)
     figure, axes = six_panels(VELOCITY, VELOCITY_UNITS)
     remarks = plot_all(axes, time[part], {n: v[part] for n, v in curves.items()}, style)
+    for name, band in bands.items():
+        shade(axes, time[part], band[:, part], style[name])
     if part.stop - part.start < len(time):
         remarks.append(f"Excerpt of a run of {time[-1] - time[0]:.0f} s.")
-    legend(figure, lines(style))
+    shades = {f"{LEVEL:.0%} band of {short(name)}": style[name] for name in bands}
+    legend(figure, [*lines(style), *areas(shades)])
     note(figure, remarks)
     return figure

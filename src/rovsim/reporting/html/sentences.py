@@ -12,7 +12,8 @@ from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import listed, significant
+from rovsim.reporting.wording import listed, short, significant
+from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 from rovsim.results.quality import Quality
 
@@ -32,8 +33,33 @@ def summarize(data: ReportData) -> list[str]:
         residual_sentences(errors, steps),
         ladder_sentences(steps),
         timing_sentences(data.timing) if data.timing else [],
+        band_sentences(data.coverage) if data.coverage else [],
     ]
     return [" ".join(sentences) for sentences in paragraphs if sentences]
+
+
+def band_sentences(coverage: Bands) -> list[str]:
+    """Say how much of the test runs lies inside the bands of each model."""
+    return [
+        f"The {coverage.level:.0%} bands of {short(name)} hold {listed(_held(model))}."
+        for name, model in coverage.models.items()
+    ]
+
+
+def _held(model: ModelBands) -> list[str]:
+    """Share of the velocities at the ends of windows, all test runs and axes, by their length."""
+    found: dict[str, list[tuple[float, int]]] = {}
+    for run in model.runs.values():
+        for seconds, one in run.windows.items():
+            share = float(np.nanmean(one.at_end.array())) if one.windows else 0.0
+            found.setdefault(seconds, []).append((share, one.windows))
+    told = []
+    for seconds, parts in found.items():
+        shares, counts = np.array(parts).T
+        if counts.sum():
+            mean = float(shares @ counts / counts.sum())
+            told.append(f"{mean:.0%} of the measured velocities after {seconds} s")
+    return told
 
 
 def scores(ladder: Ladder) -> dict[str, float]:

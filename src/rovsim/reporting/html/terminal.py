@@ -4,11 +4,14 @@ import textwrap
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
+from rovsim.reporting.html.sentences import band_sentences
 from rovsim.reporting.html.verdict import NO_TEST, Missing, explain
 from rovsim.reporting.wording import several, short, significant
+from rovsim.results.bands import Bands
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Diagnosis, FittedEffect
+from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.fitted import FittedEffect
 
 WIDTH, BAR = 80, 24  # a terminal has 80 columns unless it was made wider
 MOST = 6  # findings printed; the report has them all
@@ -20,14 +23,17 @@ MEANING = (
 
 
 def tell_comparison(
-    errors: Mapping[str, float | None], where: ErrorConditions, tested: bool
-) -> str:
-    """A table {model: normalised 2 s error}, then the findings of the last model searched.
+    errors: Mapping[str, float | None], where: ErrorConditions, tested: bool,
+    coverage: Bands | None = None,
+) -> str:  # fmt: skip
+    """A table {model: normalised 2 s error}, what bands hold, the last searched model's findings.
 
     Without a test run (`tested`) a sentence stands for the table.
     """
     table = _errors(errors) if tested else ["", *textwrap.wrap(NO_TEST, WIDTH)]
-    return "\n".join([*table, *_findings(where)])
+    said = band_sentences(coverage) if coverage else []
+    bands = [line for one in said for line in ("", *textwrap.wrap(one, WIDTH))]
+    return "\n".join([*table, *bands, *_findings(where)])
 
 
 def _errors(errors: Mapping[str, float | None]) -> list[str]:

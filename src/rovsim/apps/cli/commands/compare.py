@@ -4,7 +4,8 @@ rovsim compare campaign=DIR model=[nominal,FILE,…] out=OUT
 
 Writes OUT/comparison.json (errors per model, run, axis and horizon), OUT/where.json (under which
 conditions each model fails), OUT/budget.json (who pushes how much), figures and OUT/report.html,
-and prints a summary.
+and prints a summary. Of models that `rovsim add` made also OUT/bands.json: how much of the test
+runs lies within what they leave open.
 """
 
 from rovsim.application.pipeline.comparison import compare
@@ -42,7 +43,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     found.where.write(out / "where.json")
     found.forces.write(out / "budget.json")
     found.comparison.write(out / "comparison.json")
+    if found.coverage is not None:
+        found.coverage.write(out / "bands.json")
     errors = {step.model: step.windows_2s for step in found.steps}
-    text = tell_comparison(errors, found.where, tested=bool(data.runs.of("test")))
+    text = tell_comparison(errors, found.where, bool(data.runs.of("test")), found.coverage)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
     say(settings, f"{text}\n\n{files}", found.comparison.to_json())

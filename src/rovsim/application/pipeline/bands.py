@@ -1,0 +1,69 @@
+"""How surely models predict: bands of their replays, and what of the test runs lies inside."""
+
+from functools import partial
+from typing import Mapping, Sequence
+
+from rovsim.application.pipeline.recordings import Measured
+from rovsim.application.sections import SimulationSettings
+from rovsim.core.progress import counted
+from rovsim.core.remade import MOST, Remade
+from rovsim.dynamics.model import Model
+from rovsim.evaluation.coverage import cover
+from rovsim.measurement.signals.motion import Motion
+from rovsim.results.bands import Bands, Coverage, ModelBands, RunBands
+from rovsim.simulation.bands import LEVEL, Band, foresee, why_without_bands
+from rovsim.simulation.replay import find_spans
+from rovsim.simulation.settings import LADDER
+
+
+def bands_when_asked(
+    models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
+) -> dict[str, Remade[Band | None]]:
+    """Bands of the replays that figures show, of the models whose uncertainty is known.
+
+    Made when they are asked for.
+    """
+    sure = [model for model in models if model.uncertainty is not None]
+    how = settings.replay.only(LADDER)
+
+    def of(model: Model, run: str) -> Band | None:
+        spans = find_spans(motions[run], how, open_loop=False)[f"{LADDER:g}"]
+        return foresee(model, motions[run], spans, settings.signals, how)
+
+    return {m.name: Remade(motions, partial(of, m), MOST // len(sure)) for m in sure}
+
+
+def cover_test_runs(
+    models: Sequence[Model], data: Measured, settings: SimulationSettings
+) -> Bands | None:
+    """What the bands of models hold of the test runs, in windows of 2 s and longer.
+
+    None where no model has bands.
+    """
+    runs = [run for run in data.runs.of("test") if run in data.motions]
+    asked = [
+        (model, run)
+        for model in models
+        for run in runs
+        if why_without_bands(model, data.motions[run]) is None
+    ]
+    found: dict[str, dict[str, RunBands]] = {}
+    for model, run in counted(asked, "drawing bands"):
+        windows = _cover_run(model, data.motions[run], settings)
+        if windows:
+            split = data.quality[run].split
+            found.setdefault(model.name, {})[run] = RunBands(split=split, windows=windows)
+    if not found:
+        return None
+    models_of = {name: ModelBands(runs=runs) for name, runs in found.items()}
+    return Bands(level=LEVEL, models=models_of)
+
+
+def _cover_run(model: Model, motion: Motion, settings: SimulationSettings) -> dict[str, Coverage]:
+    how = settings.replay.only(*(s for s in settings.replay.horizons if s >= LADDER))
+    found = {}
+    for name, spans in find_spans(motion, how, open_loop=False).items():
+        band = foresee(model, motion, spans, settings.signals, how) if spans else None
+        if band is not None:
+            found[name] = cover(motion, band, spans)
+    return found

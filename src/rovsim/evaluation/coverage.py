@@ -1,0 +1,36 @@
+"""Do the bands of a model hold what they promise, on runs that took no part in it?"""
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.measurement.signals.motion import Motion
+from rovsim.results.bands import Coverage
+from rovsim.results.base import ByAxis
+from rovsim.simulation.bands import Band
+from rovsim.simulation.replay import Spans
+
+
+def cover(motion: Motion, band: Band, spans: Spans) -> Coverage:
+    """How much of the measured velocity of one run lies inside a band.
+
+    Args:
+        motion: the run.
+        band: of the same windows.
+        spans: first sample or bin of each window, and its last one.
+    """
+    known = np.isfinite(band.nu).all(axis=(0, 2)) & motion.usable
+    inside = (motion.nu >= band.nu[0]) & (motion.nu <= band.nu[1])
+    last = np.array([b - 1 if motion.binned else b for _, b in spans], int)
+    last = last[known[last]]
+    return Coverage(
+        points=int(known.sum()),
+        windows=len(last),
+        inside=ByAxis.of(_mean(inside[known])),
+        at_end=ByAxis.of(_mean(inside[last])),
+        width=ByAxis.of(_mean(band.nu[1, known] - band.nu[0, known])),
+    )
+
+
+def _mean(values: Array) -> Array:
+    """Over the first axis (n, 6); NaN where there is nothing."""
+    return values.mean(axis=0) if len(values) else np.full(6, np.nan)

@@ -1,0 +1,140 @@
+"""Bands: within what a replay may lie, given all that a model leaves open.
+
+The model is replayed many times over, each time as it may as well be (its values and names drawn
+from their posterior), from a start that was misread, under a disturbance that nobody foresees, and
+reported with the noise of the readings, all as fitted. What was measured is one more such draw if
+the model and its noise are right: a 90 % band then holds 90 % of it.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import conjugate, multiply, rotate, to_euler
+from rovsim.dynamics.effects.base import Wander
+from rovsim.dynamics.model import Model
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.noise_draws import NoiseDraws
+from rovsim.simulation.prediction import Prediction
+from rovsim.simulation.replay import Case, Spans, predict_all
+from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.step_grid import StepGrid
+
+LEVEL = 0.9
+# A draw falls below the i-th of n others with probability i / (n + 1): with 39 the ends of the band
+# are the second and the last but one.
+DRAWS = 39
+LEAD_IN = 5.0  # s before a part of a run: what thrusters and filters remember is over by then
+LONGEST = 300.0  # s at once: draws of longer ones would not fit into memory
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """Lower and upper end, at motion.time; NaN where nothing is predicted.
+
+    `nu` (2, n, 6) m/s, rad/s; `place` (2, n, 6): position NED m, then roll, pitch and yaw in rad,
+    the short way round from the measured ones.
+    """
+
+    nu: Array
+    place: Array
+
+    @staticmethod
+    def empty(count: int) -> "Band":
+        """Nothing, at `count` instants."""
+        return Band(np.full((2, count, 6), np.nan), np.full((2, count, 6), np.nan))
+
+
+def why_without_bands(model: Model, motion: Motion) -> str | None:
+    """Why nobody knows how surely a model predicts a run; None where that is known."""
+    if model.uncertainty is None:
+        return "how sure it is, is known of models alone that `rovsim add` made of a diagnosis"
+    if NoiseDraws.of(model.uncertainty.noise, np.random.default_rng()) is None:
+        return "its file does not say what noise there is"
+    if motion.measured is not None:
+        return "how the noise of parts of a pose passes the filters is not known"
+    if any(isinstance(effect, Wander) for effect in model.effects):
+        return "where its current wanders to is not known"
+    return None
+
+
+def foresee(
+    model: Model, motion: Motion, spans: Spans, signals: SignalSettings, settings: ReplaySettings,
+    seed: int = 0,
+) -> Band | None:  # fmt: skip
+    """The band of a model in some windows of a run; None where it cannot be known.
+
+    Windows longer than `LONGEST` have none.
+
+    Raises:
+        BadInput: the run lacks what an effect of the model needs.
+    """
+    random = np.random.default_rng(seed)
+    if model.uncertainty is None or why_without_bands(model, motion):
+        return None
+    noise = NoiseDraws.of(model.uncertainty.noise, random)
+    assert noise is not None
+    found, period = Band.empty(len(motion.time)), float(np.mean(np.diff(motion.time)))
+    for some in _divide(spans, round(LONGEST / period)):
+        first = max(some[0][0] - round(LEAD_IN / period), 0)
+        part = slice(first, some[-1][1] + round(signals.reach / period) + 1)
+        own = [(a - first, b - first) for a, b in some]
+        drawn = _foresee(model, motion.part(part), own, noise, signals, settings)
+        known = np.isfinite(drawn.nu).all(axis=(0, 2))
+        found.nu[:, part][:, known] = drawn.nu[:, known]
+        found.place[:, part][:, known] = drawn.place[:, known]
+    return found
+
+
+def _divide(spans: Spans, most: int) -> Iterator[list[tuple[int, int]]]:
+    """Windows in groups of at most so many samples, without those that are longer."""
+    group: list[tuple[int, int]] = []
+    for a, b in spans:
+        if group and b - group[0][0] > most:
+            yield group
+            group = []
+        if b - a <= most:
+            group.append((a, b))
+    if group:
+        yield group
+
+
+def _foresee(
+    model: Model, motion: Motion, spans: Spans, noise: NoiseDraws, signals: SignalSettings,
+    settings: ReplaySettings,
+) -> Band:  # fmt: skip
+    disturbed = noise.disturb(np.diff(StepGrid.over(motion, settings.step).edges), DRAWS)
+    again = noise.measure_again(motion, model.mocap_view, signals, DRAWS)
+    drawn = [model.draw(noise.random) for _ in range(DRAWS)]
+    cases = [Case(*one) for one in zip(drawn, again, disturbed, strict=True)]
+    found = predict_all(cases, spans, signals, settings)
+    reported = [_misread(own, motion, other) for own, other in zip(found, again, strict=True)]
+    places = np.array([_place(own, motion) for own in reported])
+    return Band(band_ends(np.array([own.nu for own in reported])), band_ends(places))
+
+
+def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
+    """A prediction with the errors of a measurement: at its start it is what was measured."""
+    back = multiply(conjugate(again.eta[:, 3:]), motion.eta[:, 3:])
+    shift = rotate(conjugate(again.eta[:, 3:]), motion.eta[:, :3] - again.eta[:, :3])
+    place = found.eta[:, :3] + rotate(found.eta[:, 3:], shift)
+    eta = np.hstack([place, multiply(found.eta[:, 3:], back)])
+    return replace(found, eta=eta, nu=found.nu + motion.nu - again.nu)
+
+
+def _place(found: Prediction, motion: Motion) -> Array:
+    """Position and angles (n, 6), these the short way round from the measured ones."""
+    measured = to_euler(motion.eta[:, 3:])
+    turned = to_euler(found.eta[:, 3:]) - measured
+    turned = (turned + np.pi) % (2.0 * np.pi) - np.pi
+    return np.hstack([found.eta[:, :3], measured + turned])
+
+
+def band_ends(drawn: Array) -> Array:
+    """Lower and upper end (2, ...) of the band about draws (s, ...)."""
+    tail = 0.5 * (1.0 - LEVEL)
+    with np.errstate(invalid="ignore"):  # of draws that diverged
+        return np.quantile(drawn, [tail, 1.0 - tail], axis=0, method="weibull")

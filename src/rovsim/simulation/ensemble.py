@@ -1,0 +1,89 @@
+"""One step at a time, with how sure it is: a model as it may as well be, many times side by side.
+
+ensemble = Ensemble(model)
+states = ensemble.start(state)
+while running:
+    states = ensemble.step(states, command, 0.01)
+    low, high = ensemble.band(states)
+"""
+
+from math import inf
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.run import CommandKind, Site
+from rovsim.dynamics.model import Model
+from rovsim.simulation.bands import DRAWS, band_ends
+from rovsim.simulation.noise_draws import NoiseDraws
+from rovsim.simulation.stepper import Stepper
+
+
+class Ensemble:
+    """Steppers of a model whose values, names and disturbance are drawn from what is known of them.
+
+    Of the state of the vehicle nothing is drawn: it may be known better than a motion capture
+    tells, or worse. Spread the states of `start` where it is not sure.
+
+    Args:
+        model: as `rovsim add` made it of a diagnosis.
+        kind: what commands are; see `Stepper`.
+        site: walls of the tank, where an effect needs them.
+        duration: of the whole run in s; see `Stepper`.
+        draws: how many.
+        seed: of the draws.
+
+    Raises:
+        BadInput: how sure the model is, is not known, or it cannot be stepped.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        kind: CommandKind = "thruster",
+        site: Site | None = None,
+        duration: float = inf,
+        draws: int = DRAWS,
+        seed: int = 0,
+    ) -> None:
+        random = np.random.default_rng(seed)
+        known = model.uncertainty and NoiseDraws.of(model.uncertainty.noise, random)
+        if not known:
+            raise BadInput(
+                "it does not say how sure it is",
+                where=f"model {model.name}",
+                expected="a model with `uncertainty`, as `rovsim add` makes it of a diagnosis",
+                remedy="Diagnose a campaign with this model, and add what was found.",
+            )
+        self.noise = known
+        each = [model.draw(random) for _ in range(draws)]
+        self.members = [Stepper(one, kind, site, duration) for one in each]
+        self._drawn = random.normal(size=(draws, 6))
+
+    def start(self, state: Array) -> Array:
+        """States (draws, 13), all at the one (13,) where the run begins."""
+        return np.tile(np.asarray(state, dtype=np.float64), (len(self.members), 1))
+
+    def step(self, states: Array, command: Array, dt: float) -> Array:
+        """The states (draws, 13) after dt s under a command that is given now and holds.
+
+        The disturbance is held as long: take steps shorter than its memory, some 0.5 s.
+
+        Raises:
+            BadInput: a command or states of another shape, or dt that is not positive.
+        """
+        pushes = self.noise.level * self._drawn
+        after = [
+            member.step(state, command, dt, member.model.body.M @ push)
+            for member, state, push in zip(self.members, states, pushes, strict=True)
+        ]
+        fade = np.exp(-dt / self.noise.memory)
+        kicks = self.noise.random.normal(size=pushes.shape)
+        self._drawn = fade * self._drawn + np.sqrt(1.0 - fade**2) * kicks
+        return np.array(after)
+
+    @staticmethod
+    def band(states: Array) -> Array:
+        """Lower and upper end (2, 13) of the band that holds 90 % of each number of the state."""
+        return band_ends(states)

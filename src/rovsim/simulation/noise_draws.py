@@ -1,0 +1,113 @@
+"""What no model foresees, drawn at random: a disturbance, and the noise of what is measured."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.signal import lfilter
+
+from rovsim.core import rotations
+from rovsim.dynamics.mocap_view import MocapView
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.clock import time_step
+from rovsim.measurement.signals.differentiate import differentiate_eta
+from rovsim.measurement.signals.filter import filter_eta
+from rovsim.measurement.signals.motion import Motion
+from rovsim.results.fitted import FittedNoise
+
+PAD = 1.0  # s before and after, so that the filter has settled
+AT_ONCE = 1 << 16  # samples: filters take some twenty times their room
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseDraws:
+    """Per axis (6,): `level` m/s2 or rad/s2 and `memory` s of the disturbance, `reading` noise.
+
+    `reading` m, rad of poses `period` s apart, m/s, rad/s of binned velocities; `colour` is a slow
+    error of poses, which lasts `colour_memory` s.
+    """
+
+    level: Array
+    memory: Array
+    reading: Array
+    period: float
+    colour: Array
+    colour_memory: Array
+    random: np.random.Generator
+
+    @staticmethod
+    def of(noise: FittedNoise, random: np.random.Generator) -> "NoiseDraws | None":
+        """As a file has it; None where it does not say everything."""
+        known = (noise.disturbance, noise.memory_s, noise.reading)
+        if any(len(own) != 6 or None in own for own in known) or noise.period_s is None:
+            return None
+        level, memory, reading = (np.array(own, dtype=float) for own in known)
+        slow = None not in noise.colour and len(noise.colour) == len(noise.colour_memory_s) == 6
+        colour = np.array(noise.colour if slow else np.zeros(6), dtype=float)
+        lasts = np.array(noise.colour_memory_s if slow else np.ones(6), dtype=float)
+        return NoiseDraws(level, memory, reading, noise.period_s, colour, lasts, random)
+
+    def disturb(self, steps: Array, draws: int) -> Array:
+        """Accelerations (draws, k, 6) over steps (k,) s: first-order Gauss-Markov."""
+        fade = np.exp(-steps[:, None] / self.memory)
+        kicks = self.random.normal(size=(len(fade), draws, 6))
+        kicks *= np.sqrt(1.0 - fade**2)[:, None]
+        found, x = np.empty_like(kicks), self.random.normal(size=(draws, 6))
+        for k, kick in enumerate(kicks):
+            x = fade[k] * x + kick
+            found[k] = x
+        return np.asarray((found * self.level).swapaxes(0, 1))
+
+    def measure_again(
+        self, motion: Motion, view: MocapView, signals: SignalSettings, draws: int
+    ) -> list[Motion]:
+        """A motion as other measurements of it would have reported it, after the same chain."""
+        if motion.binned:
+            return [self._read_bins_again(motion) for _ in range(draws)]
+        period = time_step(motion.time)
+        at_once = max(1, AT_ONCE // len(motion.time))
+        found = []
+        for first in range(0, draws, at_once):
+            count = min(at_once, draws - first)
+            each = zip(*self._misread(len(motion.time), period, count, view, signals), strict=True)
+            found += [_move(motion, *off) for off in each]
+        return found
+
+    def _read_bins_again(self, motion: Motion) -> Motion:
+        read = self.reading * self.random.normal(size=motion.nu.shape)
+        return replace(motion, nu=motion.nu + read, state_nu=motion.state_nu + read)
+
+    def _misread(
+        self, count: int, period: float, draws: int, view: MocapView, signals: SignalSettings
+    ) -> tuple[Array, Array, Array]:
+        """Poses (draws, n, 7), velocities and accelerations (draws, n, 6) of a vehicle at rest."""
+        pad = round(PAD / period)
+        kicks = np.stack([self._err(count + 2 * pad, period) for _ in range(draws)])
+        poses = np.concatenate([kicks[..., :3], rotations.exp(kicks[..., 3:])], axis=-1)
+        smooth = filter_eta(view.smooth(poses, period), period, signals.filter)
+        nu, nu_dot = differentiate_eta(smooth, period, signals.differentiate)
+        inside = slice(pad, pad + count)
+        return smooth[:, inside], nu[:, inside], nu_dot[:, inside]
+
+    def _err(self, count: int, period: float) -> Array:
+        """Errors (count, 6) of single frames."""
+        one = self.reading * np.sqrt(self.period / period)  # of white noise
+        return one * self.random.normal(size=(count, 6)) + self._err_slowly(count, period)
+
+    def _err_slowly(self, count: int, period: float) -> Array:
+        """Errors (count, 6) of the cameras that last."""
+        if not self.colour.any():
+            return np.zeros((count, 6))
+        keep = np.exp(-period / self.colour_memory)
+        kicks = self.random.normal(size=(count, 6)) * self.colour * np.sqrt(1.0 - keep**2)
+        return np.stack(
+            [lfilter([1.0], [1.0, -k], x) for k, x in zip(keep, kicks.T, strict=True)], 1
+        )
+
+
+def _move(motion: Motion, off: Array, nu: Array, nu_dot: Array) -> Motion:
+    """A motion with errors of the poses, along its body axes, and of their derivatives."""
+    place = motion.eta[:, :3] + rotations.rotate(motion.eta[:, 3:], off[:, :3])
+    eta = np.hstack([place, rotations.multiply(motion.eta[:, 3:], off[:, 3:])])
+    nu, nu_dot = motion.nu + nu, motion.nu_dot + nu_dot
+    return replace(motion, eta=eta, nu=nu, nu_dot=nu_dot, state_nu=nu)
