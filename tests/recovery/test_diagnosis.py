@@ -1,9 +1,10 @@
 """Hidden physics is named, with its values; nothing is named where nothing is hidden."""
 
 import numba
+import numpy as np
 import pytest
 
-from rovsim.benchmarks.blind.asking import diagnosis
+from rovsim.benchmarks.blind.asking import bands, diagnosis
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import combination, nothing, outside
 from rovsim.core.yaml_files import read_yaml
@@ -49,6 +50,16 @@ def check_law(found, law):
     assert after - found.error.noise_floor < 0.1 * (before - found.error.noise_floor)
 
 
+def check_bands(found):
+    """They hold 90 % of test runs, which took no part in it, as far as so few windows can tell."""
+    (model,) = found.models.values()
+    for seconds in ("2", "5"):
+        windows = [run.windows[seconds] for run in model.runs.values()]
+        inside = np.concatenate([one.at_end.array() for one in windows])
+        points = 6 * sum(one.windows for one in windows)
+        assert np.mean(inside) == pytest.approx(0.9, abs=4.0 * np.sqrt(0.09 / points))
+
+
 @pytest.mark.parametrize(
     "case",
     [
@@ -72,6 +83,8 @@ def test_the_tank_gives_up_what_it_hides(case, tmp_path):
     assert (law is not None) == bool(flown.outside)
     if law is not None:
         check_law(found, law)
+    if not flown.outside:
+        check_bands(bands(tmp_path / "raw", found))
     found.write(tmp_path / "diagnosis.json")
     assert Diagnosis.read(tmp_path / "diagnosis.json") == found
 

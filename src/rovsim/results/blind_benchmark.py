@@ -74,14 +74,31 @@ class Claims(Section):
     claimed: float | None
 
 
+class BandRates(Section):
+    """What 90 % bands hold at the ends of windows on test runs: share of `points` (one an axis).
+
+    `low` and `high`: between these lies that share in nine of ten `campaigns`.
+    """
+
+    campaigns: int
+    points: int
+    inside: float
+    low: float
+    high: float
+
+
 class Calibration(Section):
-    """Whether intervals and probabilities are honest: all, by effect, by `effect.parameter`."""
+    """Whether intervals and probabilities are honest: all, by effect, by `effect.parameter`.
+
+    `bands` by the length of the windows in s.
+    """
 
     ranks: Ranks
     effects: dict[str, Ranks]
     parameters: dict[str, Ranks]
     probability: tuple[Claims, ...]
     without_probability: Claims
+    bands: dict[str, BandRates] = Field(default_factory=dict)
 
 
 class LawRates(Section):

@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from rovsim.benchmarks.blind.case import Case
+from rovsim.results.bands import Bands
 from rovsim.results.base import Result
 from rovsim.results.diagnosis import Answer, Diagnosis
 
@@ -13,7 +14,7 @@ class KeptAnswer(Result):
     """What a method said to a case as it was flown; `error` where it crashed instead.
 
     `digest` of all that the answer depends on; `redrawn`: flown again with weaker effects;
-    `seconds` by the clock, and of the processor.
+    `seconds` by the clock, and of the processor; `bands` of the model it ends with.
     """
 
     noun: ClassVar[str] = "kept answer"
@@ -27,4 +28,5 @@ class KeptAnswer(Result):
     seconds: float
     cpu_seconds: float | None = None
     diagnosis: Diagnosis | Answer | None = None
+    bands: Bands | None = None
     error: str | None = None

@@ -2,14 +2,17 @@
 
 from pathlib import Path
 
+from rovsim.application.pipeline.bands import cover_test_runs
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.recordings import measure
 from rovsim.application.settings import compose, select
 from rovsim.core.progress import heard_by
+from rovsim.diagnosis.apply import add_effects
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.measurement.campaign import load_campaign
+from rovsim.results.bands import Bands
 from rovsim.results.diagnosis import Diagnosis
 
 
@@ -20,3 +23,12 @@ def diagnosis(campaign: Path, out: Path) -> Diagnosis:
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
         return diagnose(data.runs, nominal(data.vehicle), how, built_in()).diagnosis
+
+
+def bands(campaign: Path, found: Diagnosis) -> Bands | None:
+    """What the bands of the model that a diagnosis ends with hold of the test runs."""
+    settings = compose(["command=compare"])
+    with heard_by():
+        data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
+        model, _ = add_effects(found, campaign, "nominal", None, built_in())
+        return cover_test_runs([model], data, settings)

@@ -8,6 +8,7 @@ and only numbers of effects that were named count. So it is the part that tells 
 are honest where the data decide, not whether the whole inference is coherent.
 """
 
+from collections import defaultdict
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Callable, Iterable, Iterator, Sequence
@@ -19,8 +20,9 @@ from scipy.stats import chisquare
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import Case
 from rovsim.dynamics.catalogue import built_in
-from rovsim.results.blind_benchmark import Calibration, Claims, Ranks
-from rovsim.results.diagnosis import FittedEffect
+from rovsim.results.bands import Bands
+from rovsim.results.blind_benchmark import BandRates, Calibration, Claims, Ranks
+from rovsim.results.fitted import FittedEffect
 
 BINS = 10
 SURE = 1.96  # standard deviations to either side hold 95 % of a Gaussian
@@ -50,7 +52,33 @@ def calibrate(answers: Sequence[KeptAnswer]) -> Calibration:
         parameters=_rank_each(misses, lambda m: f"{m.effect}.{m.name}"),
         probability=tuple(_bin_claims(told)),
         without_probability=_count([(0.0, right) for p, right in names if p is None], None, None),
+        bands=rate_bands([one.bands for one in answers if one.bands is not None]),
     )
+
+
+def rate_bands(found: Sequence[Bands]) -> dict[str, BandRates]:
+    """What bands hold at the ends of windows, by their length; a campaign each."""
+    held: dict[str, list[tuple[float, int]]] = defaultdict(list)
+    for bands in found:
+        own: dict[str, list[float]] = defaultdict(list)
+        for run in (run for model in bands.models.values() for run in model.runs.values()):
+            for seconds, one in run.windows.items():
+                inside = one.at_end.array()
+                own[seconds] += list(np.repeat(inside[np.isfinite(inside)], one.windows))
+        for seconds, each in own.items():
+            if each:
+                held[seconds].append((float(np.mean(each)), len(each)))
+    return {seconds: _rate_band(parts) for seconds, parts in held.items()}
+
+
+def _rate_band(parts: Sequence[tuple[float, int]]) -> BandRates:
+    """Of shares and points, one pair a campaign."""
+    shares, points = np.array(parts).T
+    low, high = np.quantile(shares, [0.05, 0.95])
+    return BandRates(
+        campaigns=len(parts), points=int(points.sum()),
+        inside=float(shares @ points / points.sum()), low=float(low), high=float(high),
+    )  # fmt: skip
 
 
 def list_misses(answer: KeptAnswer) -> Iterator[Miss]:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Callable, Sequence
 
 from rovsim.core.extras import require
+from rovsim.results.bands import Bands
 from rovsim.results.diagnosis import Answer, Diagnosis
 
 Ask = Callable[[Path, Path], Diagnosis | Answer]
@@ -16,11 +17,13 @@ class Method:
 
     `answer(campaign, out)` gives the diagnosis and may write into `out`; it is a module's function,
     so that another process can find it. `code` modules whose change makes old answers void.
+    `bands(campaign, diagnosis)`: what the bands of the model it ends with hold of the test runs.
     """
 
     name: str
     answer: Ask
     code: tuple[str, ...]
+    bands: Callable[[Path, Diagnosis], Bands | None] | None = None
 
 
 def chosen(names: Sequence[str]) -> list[Method]:
@@ -33,9 +36,9 @@ def chosen(names: Sequence[str]) -> list[Method]:
 
 
 def _diagnosis() -> Method:
-    from rovsim.benchmarks.blind.asking import diagnosis
+    from rovsim.benchmarks.blind.asking import bands, diagnosis
 
-    return Method("diagnosis", diagnosis, ("rovsim.benchmarks.blind.asking",))
+    return Method("diagnosis", diagnosis, ("rovsim.benchmarks.blind.asking",), bands)
 
 
 def _stlsq() -> Method:

@@ -17,6 +17,7 @@ from rovsim.benchmarks.blind.methods import Method, chosen
 from rovsim.benchmarks.blind.suites import suite
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json
+from rovsim.results.bands import Bands
 from rovsim.results.diagnosis import Answer, Diagnosis
 
 FLIGHT = "rovsim.benchmarks.blind.flight"
@@ -109,14 +110,16 @@ def work(job: Job) -> None:
         for method, path, mark in job.methods:
             begin, worked = time.perf_counter(), time.process_time()
             diagnosis, error = _ask(method, campaign, Path(folder, method.name))
+            seconds, cpu = time.perf_counter() - begin, time.process_time() - worked
             KeptAnswer(
                 digest=mark,
                 method=method.name,
                 case=flown,
                 redrawn=flown != job.case,
-                seconds=time.perf_counter() - begin,
-                cpu_seconds=time.process_time() - worked,
+                seconds=seconds,
+                cpu_seconds=cpu,
                 diagnosis=diagnosis,
+                bands=_cover(method, campaign, diagnosis),
                 error=error,
             ).write(path)
 
@@ -127,6 +130,12 @@ def _ask(method: Method, campaign: Path, out: Path) -> tuple[Diagnosis | Answer 
         return method.answer(campaign, out), None
     except (RovsimError, ArithmeticError, LookupError, TypeError, ValueError, SystemExit) as error:
         return None, f"{type(error).__name__}: {error}"
+
+
+def _cover(method: Method, campaign: Path, found: Diagnosis | Answer | None) -> Bands | None:
+    if method.bands is None or not isinstance(found, Diagnosis):
+        return None
+    return method.bands(campaign, found)
 
 
 def run(jobs: Sequence[Job], progress: Progress = lambda done, total: None) -> None:

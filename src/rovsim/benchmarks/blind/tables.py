@@ -4,14 +4,13 @@ from typing import Mapping, Sequence
 
 from rovsim.benchmarks.blind.case import SEEDS
 from rovsim.benchmarks.blind.pictures import RANKS, RELIABILITY
+from rovsim.core.schema import Section
 from rovsim.reporting.html import marked
 from rovsim.results.blind_benchmark import (
     BlindSummary,
     Calibration,
     Claims,
-    LawRates,
     Ranks,
-    Rates,
 )
 
 KIND_COLUMNS = {
@@ -31,8 +30,13 @@ LAW_COLUMNS = {
     "cases": "cases", "unexplained": "flagged", "proposed": "an equation", "right": "right terms",
     "half": "half way to the floor",
 }  # fmt: skip
+BAND_COLUMNS = {
+    "campaigns": "campaigns", "points": "points", "inside": "inside",
+    "low": "in 5 % of campaigns less than", "high": "in 5 % more than",
+}  # fmt: skip
 OUTSIDE_COLUMNS = {"cases": "cases", "verdict": "flagged", "false_names": "a false name"}
-PERCENT = {"verdict", "first", "exact_strict", "exact", "unseen", "false_names",
+PERCENT = {"inside", "low", "high", "verdict", "first", "exact_strict", "exact", "unseen",
+           "false_names",
            "unexplained", "proposed", "right", "half",
            "error_median", "error_95", "coverage", "worse", "covered", "p_value"}  # fmt: skip
 RANK_COLUMNS = {
@@ -76,6 +80,9 @@ def _calibration(found: Calibration, pictures: Sequence[str]) -> list[str]:
     parts += ["Parameter by parameter:", _table_ranks(found.parameters, "parameter")]
     parts += [shown.get(RANKS, "")]
     parts += ["**Are probabilities honest?**", _table_claims(found), shown.get(RELIABILITY, "")]
+    if found.bands:
+        parts += ["**Do bands hold?** 90 % of the measured velocities should lie inside."]
+        parts += [table(found.bands, "s after a start", BAND_COLUMNS)]
     return parts
 
 
@@ -107,9 +114,7 @@ def _share_right(claims: Claims) -> list[str]:
     return ["–" if claims.claimed is None else f"{claims.claimed:.4f}", str(claims.names), right]
 
 
-def table(
-    rows: Mapping[str, Rates] | Mapping[str, LawRates], head: str, columns: Mapping[str, str]
-) -> str:
+def table(rows: Mapping[str, Section], head: str, columns: Mapping[str, str]) -> str:
     """One Markdown table; empty without rows."""
     if not rows:
         return ""
