@@ -131,6 +131,27 @@ def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbenc
     errors = comparison["repaired"]["runs"][shown]["windows"]["2"]["velocity_rmse"]
     assert errors["surge"] < 0.5 * run["velocity_rmse"]["surge"]
     both_models_stand_beside_each_other(tab, comparison, shown, file)
+    bands_are_drawn_where_they_are_known(tab)
+
+
+def bands_are_drawn_where_they_are_known(tab) -> None:
+    """Of a model that a diagnosis ended with, open loop too; of others it says why not."""
+    models = "models=repaired&models=nominal"
+    tab.go(f"compare?{models}&quantity=eta&axes=surge&axes=yaw&horizon=None&bands=True")
+    tab.page.wait_for_selector(READY["compare"])
+    tab.page.wait_for_selector("text=No band for nominal")
+    assert tab.page.get_by_role("switch", name="90% bands").is_checked()
+    tab.picture("bands")
+    with tab.page.expect_download() as values:
+        tab.page.get_by_role("button", name="CSV: ").first.click()
+    rows = values.value.path().read_text().splitlines()
+    width = [r.split(",")[2] for r in rows if r.startswith("0/repaired/width of the band,")]
+    known = [float(w) for w in width if w]
+    assert len(known) > 100
+    assert min(known) >= 0.0
+    assert known[-1] > 5.0 * known[10]
+    tab.page.get_by_role("switch", name="90% bands").click()
+    tab.page.wait_for_selector("text=No band for nominal", state="detached")
 
 
 def both_models_stand_beside_each_other(tab, comparison, run, file) -> None:

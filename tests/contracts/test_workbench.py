@@ -19,15 +19,18 @@ from rovsim.apps.workbench import app, charts, path, tasks
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.totals import list_totals, tell_total
-from rovsim.apps.workbench.traces import panels
+from rovsim.apps.workbench.traces import panels, turned
 from rovsim.apps.workbench.work import Work, reap
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
+from rovsim.core.rotations import to_euler
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import describe_model, read_model, write_model
 from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.fitted import Posterior
 from rovsim.results.ladder import Ladder, Step
+from rovsim.simulation.bands import Band
 from worlds import model
 
 
@@ -185,6 +188,43 @@ def test_under_each_axis_is_what_the_commands_push_along_it(bench):
         ("sway: thrust by the commands", "N"), ("yaw: thrust by the commands", "N m"),
     ]  # fmt: skip
     np.testing.assert_array_equal(shown[5].curves["commanded"], thrust[:, 5])
+
+
+def test_a_band_lies_about_its_curve_and_about_the_difference(bench):
+    motion, predicted = bench.data.motions["6dof-1"], bench.prediction(bench.base, "6dof-1", 2.0)
+    nu, angle = predicted.nu, to_euler(predicted.eta[:, 3:])
+    place = np.hstack([predicted.eta[:, :3], angle])
+    band = Band(np.stack([nu - 0.1, nu + 0.3]), np.stack([place - 0.1, place + 0.3]))
+    for quantity in ("nu", "eta"):
+        shown = panels(motion, {"m": predicted}, ["yaw"], quantity, bands={"m": band})
+        low, high = shown[1].bands["m"]
+        known = np.isfinite(low)
+        assert known.sum() > 100
+        np.testing.assert_allclose(turned(low[known]), -0.1, atol=1e-9)
+        np.testing.assert_allclose(high - low, np.where(known, 0.4, np.nan), atol=1e-9)
+    low, wide = charts.series_data(motion.time, shown[:1], ("measured", "m"))
+    assert (low["id"], wide["id"]) == (
+        "0/m/low end of the band", "0/m/width of the band",
+    )  # fmt: skip
+    options = charts.time_series(motion.time, shown, charts.styles(["measured", "m"]))
+    drawn = {one["id"]: one for one in options["series"]}
+    assert drawn[low["id"]]["stack"] == drawn[wide["id"]]["stack"] != drawn["0/m"].get("stack")
+    assert (
+        drawn[low["id"]]["areaStyle"]["opacity"] == 0.0 < drawn[wide["id"]]["areaStyle"]["opacity"]
+    )
+
+
+def test_how_sure_a_draft_is_goes_with_what_was_found():
+    fitted = diagnosis().model_copy(
+        update={"posterior": Posterior(), "base": describe_model(model())}
+    )
+    draft = Draft(model(), fitted, built_in())
+    assert draft.model().uncertainty is not None
+    draft.move("thruster_lag", "time_constant", 0.3)
+    assert draft.model().uncertainty is None
+    draft.undo()
+    draft.tick("lift", True)
+    assert draft.model().uncertainty is None
 
 
 def test_a_change_is_undone_and_a_drag_of_a_slider_is_one():

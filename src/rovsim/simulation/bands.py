@@ -36,7 +36,7 @@ class Band:
     """Lower and upper end, at motion.time; NaN where nothing is predicted.
 
     `nu` (2, n, 6) m/s, rad/s; `place` (2, n, 6): position NED m, then roll, pitch and yaw in rad,
-    the short way round from the measured ones.
+    counted on from the measured ones where each window begins.
     """
 
     nu: Array
@@ -51,7 +51,9 @@ class Band:
 def why_without_bands(model: Model, motion: Motion) -> str | None:
     """Why nobody knows how surely a model predicts a run; None where that is known."""
     if model.uncertainty is None:
-        return "how sure it is, is known of models alone that `rovsim add` made of a diagnosis"
+        return (
+            "it was not fitted; models that rovsim add makes of a diagnosis know how sure they are"
+        )
     if NoiseDraws.of(model.uncertainty.noise, np.random.default_rng()) is None:
         return "its file does not say what noise there is"
     if motion.measured is not None:
@@ -112,7 +114,7 @@ def _foresee(
     cases = [Case(*one) for one in zip(drawn, again, disturbed, strict=True)]
     found = predict_all(cases, spans, signals, settings)
     reported = [_misread(own, motion, other) for own, other in zip(found, again, strict=True)]
-    places = np.array([_place(own, motion) for own in reported])
+    places = np.array([_place(own, motion, spans) for own in reported])
     return Band(band_ends(np.array([own.nu for own in reported])), band_ends(places))
 
 
@@ -125,11 +127,14 @@ def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
     return replace(found, eta=eta, nu=found.nu + motion.nu - again.nu)
 
 
-def _place(found: Prediction, motion: Motion) -> Array:
-    """Position and angles (n, 6), these the short way round from the measured ones."""
+def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
+    """Position and angles (n, 6); the angle to the measured ones is steady within each window."""
     measured = to_euler(motion.eta[:, 3:])
     turned = to_euler(found.eta[:, 3:]) - measured
     turned = (turned + np.pi) % (2.0 * np.pi) - np.pi
+    for a, b in spans:
+        at = np.arange(a, b) if motion.binned else np.arange(a + 1, b + 1)
+        turned[at] = np.unwrap(turned[at], axis=0)
     return np.hstack([found.eta[:, :3], measured + turned])
 
 

@@ -81,13 +81,16 @@ def panels(
         k = AXES.index(axis)
         models = {name: _columns(p, quantity)[:, k] for name, p in predicted.items()}
         missed = {name: measured[:, k] - values for name, values in models.items()}
+        ends = {name: getattr(band, BANDED[quantity])[:, :, k] for name, band in bands.items()}
         title = axis
         if quantity == "eta":
             title = POSES[axis]
-            missed = {n: _turned(x) if k > 2 else x for n, x in missed.items()}
-        ends = {name: getattr(band, BANDED[quantity])[:, :, k] for name, band in bands.items()}
+            missed = {n: turned(x) if k > 2 else x for n, x in missed.items()}
+        around = {name: end - measured[:, k] + missed[name] for name, end in ends.items()}
         found.append(Panel(title, units[k], {"measured": measured[:, k], **models}, bands=ends))
-        found.append(Panel(f"{title}: measured − model", units[k], missed, short=True))
+        found.append(
+            Panel(f"{title}: measured − model", units[k], missed, short=True, bands=around)
+        )
         if thrust is not None:
             push = {"commanded": thrust[:, k]}
             found.append(
@@ -110,7 +113,7 @@ def _measured(motion: Motion, quantity: str) -> Array:
     return np.where([*seen.coordinates, *seen.axes[3:5], *seen.heading], values, np.nan)
 
 
-def _turned(angle: Array) -> Array:
+def turned(angle: Array) -> Array:
     """An angle between two headings, the short way round."""
     return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
