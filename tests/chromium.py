@@ -39,6 +39,7 @@ def started(folder: Path, *words: str) -> tuple[subprocess.Popen, str]:
     command = [sys.executable, "-m", "rovsim", "ui", "open=false", f"port={port}", *words]
     # NiceGUI behaves differently where it sees that pytest runs
     clean = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
+    clean |= {"XDG_STATE_HOME": str(folder / ".state")}  # not what this user opened
     with (folder / LOG).open("a") as log:
         process = subprocess.Popen(
             command, cwd=folder, stdout=subprocess.DEVNULL, stderr=log, env=clean

@@ -21,6 +21,7 @@ READY = {  # what is there once a screen is drawn
     "compare": ".chart canvas", "where": ".chart canvas", "why": ".verdict",
     "add": "[data-name='run/now'][data-value]", "ladder": ".chart canvas",
     "models": ".chart canvas", "flight": "h1", "data": ".chart canvas", "gallery": "h1",
+    "open": "h1",
 }  # fmt: skip
 SCREENS = tuple(READY)
 
@@ -407,6 +408,21 @@ def test_another_campaign_is_opened_and_a_bad_one_explained(tab, campaign, tmp_p
     tab.page.get_by_label("Folder of a campaign, or of recordings").fill(str(campaign))
     tab.page.get_by_role("button", name="Open", exact=True).click()
     tab.page.get_by_role("heading", name="Compare").wait_for()
+
+
+def test_a_campaign_is_found_by_walking_through_folders(tab, campaign):
+    page = tab.page
+    tab.go("open")
+    page.get_by_role("button", name="/", exact=True).click()
+    for part in campaign.parts[1:]:
+        page.get_by_role(
+            "button", name=re.compile(f"^(folder|route)?{re.escape(part)}")
+        ).last.click()
+    page.get_by_role("heading", name="Compare").wait_for()
+    tab.go("open")
+    page.get_by_role("heading", name="Opened last").wait_for()
+    assert page.get_by_role("button", name=str(campaign), exact=True).count() >= 1
+    tab.picture("open")
 
 
 def test_recordings_without_a_description_are_looked_into_asked_about_and_opened(

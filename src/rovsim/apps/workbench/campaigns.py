@@ -5,6 +5,7 @@ from typing import Callable
 
 from nicegui import ui
 
+from rovsim.apps.workbench.folders import Inside, list_recent, look, shown
 from rovsim.apps.workbench.parts import heading, section, text
 
 TITLE, QUESTION = "Open", "Which campaign do you want to look at?"
@@ -15,6 +16,61 @@ def known() -> list[Path]:
     """Folders of campaigns near here."""
     found = {path.parent for place in PLACES for path in Path().glob(place)}
     return sorted(found)
+
+
+def _list(title: str, paths: list[Path], choose: Callable[[str], None]) -> None:
+    if not paths:
+        return
+    section(title)
+    with ui.column().classes("effects"):
+        for path in paths:
+            _button(shown(path), lambda _, p=path: choose(str(p)))
+
+
+def _button(words: str, clicked: Callable[..., None], icon: str | None = None) -> None:
+    ui.button(words, icon=icon, on_click=clicked).props("flat no-caps align=left")
+
+
+class Browser:
+    """Folders to walk through: one that is a campaign is opened, another is looked into."""
+
+    def __init__(self, folder: Path, choose: Callable[[str], None]) -> None:
+        self.folder, self.choose = folder, choose
+
+    def show(self) -> None:
+        """Draw it."""
+        self.area = ui.column().classes("effects folders")
+        self._draw()
+
+    def _go(self, folder: Path) -> None:
+        self.folder = folder
+        self._draw()
+
+    def _draw(self) -> None:
+        listing = look(self.folder)
+        self.area.clear()
+        with self.area:
+            with ui.row().classes("bins"):
+                for path in (*listing.parents, listing.folder):
+                    name = shown(path) if path == path.parent else shown(Path(path.name))
+                    ui.button(name, on_click=lambda _, p=path: self._go(p)).props("flat no-caps")
+            if listing.problem:
+                text(f"This folder cannot be read: {listing.problem}.", "warning")
+            for one in listing.inside:
+                self._entry(one)
+            if listing.more:
+                text(f"{listing.more} more folders are not listed: type the path above.", "soft")
+            if listing.campaign or listing.files:
+                several = "1 file" if listing.files == 1 else f"{listing.files} files"
+                what = "the campaign" if listing.campaign else several
+                _button(f"Open this folder ({what})", lambda: self.choose(str(listing.folder)))
+
+    def _entry(self, one: Inside) -> None:
+        name = shown(Path(one.path.name))
+        if one.campaign:
+            _button(f"{name} (campaign)", lambda: self.choose(str(one.path)), "route")
+        else:
+            _button(name, lambda: self._go(one.path), "folder")
 
 
 def show(
@@ -39,13 +95,10 @@ def show(
         "shown what is in them, and asked what no file tells.",
         "soft",
     )
-    if found := known():
-        section("Campaigns in this folder")
-        with ui.column().classes("effects"):
-            for path in found:
-                ui.button(str(path), on_click=lambda _, p=path: choose(str(p))).props(
-                    "flat no-caps align=left"
-                )
+    _list("Opened last", list_recent(), choose)
+    _list("Campaigns in this folder", known(), choose)
+    section("Look for a folder")
+    Browser(Path(typed or "."), choose).show()
     section("No recordings at hand?")
     text(
         "A synthetic tank hides something from the model, as a real one would. Find out what it "

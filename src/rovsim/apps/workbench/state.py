@@ -9,6 +9,7 @@ from typing import Any, Mapping
 from nicegui import ui
 
 from rovsim.application.settings import WorkbenchSettings, compose
+from rovsim.apps.workbench.folders import remember
 from rovsim.apps.workbench.work import reap
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
@@ -97,6 +98,7 @@ class State:
 
                 try:
                     self.bench = await in_thread(Workbench.opened, self.settings, self.catalogue)
+                    remember(Path(self.settings.campaign))
                     _keep_loaded()
                 except RovsimError as error:
                     self.problem = str(error)

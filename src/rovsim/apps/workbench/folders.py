@@ -1,0 +1,107 @@
+"""Folders to choose from: what lies in one, and which campaigns were opened last."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from platformdirs import user_state_path
+
+from rovsim.core.errors import RovsimError
+from rovsim.core.files import read_json, write_json
+
+MOST = 200  # folders listed of one
+KEPT = 8  # campaigns remembered
+DESCRIPTION = "campaign.yaml"
+
+
+@dataclass(frozen=True)
+class Inside:
+    """A folder inside another: its path, and whether it is a campaign."""
+
+    path: Path
+    campaign: bool
+
+
+@dataclass(frozen=True)
+class Listing:
+    """What lies in a folder.
+
+    `parents` of the folder, the root first; `inside` it, by name; `more` that are not listed;
+    `files` in it; `problem`: why it cannot be read, if it cannot.
+    """
+
+    folder: Path
+    parents: tuple[Path, ...]
+    inside: tuple[Inside, ...] = ()
+    more: int = 0
+    files: int = 0
+    problem: str = ""
+
+    @property
+    def campaign(self) -> bool:
+        """Whether the folder is itself a campaign."""
+        return _holds_campaign(self.folder)
+
+
+def look(folder: Path) -> Listing:
+    """What lies in a folder; the nearest one above it where there is no such folder."""
+    folder = Path(os.path.abspath(folder.expanduser()))
+    while not os.path.isdir(folder) and folder != folder.parent:
+        folder = folder.parent
+    parents = tuple(reversed(folder.parents))
+    try:
+        with os.scandir(folder) as entries:
+            seen = [(entry.name, _is_folder(entry)) for entry in entries]
+    except OSError as error:
+        return Listing(folder, parents, problem=error.strerror or str(error))
+    names = sorted(name for name, is_folder in seen if is_folder and not name.startswith("."))
+    paths = [folder / name for name in names[:MOST]]
+    inside = tuple(Inside(path, _holds_campaign(path)) for path in paths)
+    files = sum(not is_folder for _, is_folder in seen)
+    return Listing(folder, parents, inside, len(names) - len(inside), files)
+
+
+def _is_folder(entry: os.DirEntry) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link that leads in a circle
+        return False
+
+
+def _holds_campaign(path: Path) -> bool:
+    try:
+        return (path / DESCRIPTION).is_file()
+    except OSError:  # nobody may look into it
+        return False
+
+
+def list_recent() -> list[Path]:
+    """Campaigns that were opened last and are still there, the last one first."""
+    try:
+        content = read_json(_file())
+    except RovsimError:
+        return []
+    known = content.get("campaigns") if isinstance(content, dict) else None
+    known = known if isinstance(known, list) else []
+    paths = [Path(one) for one in known if isinstance(one, str)]
+    return [path for path in paths if _holds_campaign(path)]
+
+
+def remember(campaign: Path) -> None:
+    """Put a campaign first among those opened last; where nothing can be kept, nothing is."""
+    path = Path(os.path.abspath(campaign))
+    known = [path, *(one for one in list_recent() if one != path)]
+    try:
+        write_json(_file(), {"campaigns": [str(one) for one in known[:KEPT]]})
+    except (OSError, ValueError, RovsimError):  # read-only, full, a name that is no text
+        return
+
+
+def shown(path: Path) -> str:
+    """A path as a page can show it, whatever bytes it is made of."""
+    return str(path).encode("utf-8", "replace").decode()
+
+
+def _file() -> Path:
+    """Beside what other programs remember of this user (XDG_STATE_HOME on Linux)."""
+    return user_state_path("rovsim", appauthor=False) / "recent.json"
