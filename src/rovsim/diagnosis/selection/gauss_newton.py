@@ -189,21 +189,43 @@ class _Problem:
 
 
 def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:
-    """A step that lowers the cost; None when none does, or only one too small to see."""
-    x, H = bowl.at.x, bowl.H
+    """A step that lowers the cost; None when none does, or only one too small to see.
+
+    Coarse parameters, on which errors depend in jumps, have derivatives that promise what is not
+    there: where a step of all of them fails, one of the others is tried before a shorter one.
+    """
+    every, coarse = np.ones(len(bowl.g), bool), _list_coarse(bowl.at)
     while trust < LARGEST_TRUST:
-        goal = x - solve(H + trust * np.diag(np.diag(H)), bowl.g)
-        if not np.isfinite(goal).all():
+        step = _try_step(problem, bowl, trust, every)
+        if step is None:
             break
-        wanted = bowl.at.at(goal)
-        step = wanted.x - x
-        target = problem.errors(wanted)
-        cost, length = problem.cost(wanted, target), float(step @ H @ step)
-        if cost < bowl.cost:
-            foreseen = -float(2.0 * bowl.g @ step + length)
-            true = abs(bowl.cost - cost - foreseen) < FORESEEN * foreseen
-            return _Step(wanted, cost, max(trust / 10.0, LEAST_TRUST), length, target, true)
-        if length < CONVERGED**2:
+        if step.cost >= bowl.cost and coarse.any() and not coarse.all():
+            others = _try_step(problem, bowl, trust, ~coarse)
+            step = others if others and others.cost < bowl.cost else step
+        if step.cost < bowl.cost:
+            return step
+        if step.length < CONVERGED**2:
             break
         trust *= 10.0
     return None
+
+
+def _list_coarse(h: Hypothesis) -> Array:
+    """Which parameters (k,) errors depend on in jumps."""
+    return np.array([p.grain > 0.0 for term in h.terms for p in term.parameters], bool)
+
+
+def _try_step(problem: _Problem, bowl: _Bowl, trust: float, moved: Array) -> _Step | None:
+    """Where a step of some parameters (k,) leads; None if nowhere."""
+    x, H = bowl.at.x, bowl.H[np.ix_(moved, moved)]
+    goal = x.copy()
+    goal[moved] -= solve(H + trust * np.diag(np.diag(H)), bowl.g[moved])
+    if not np.isfinite(goal).all():
+        return None
+    wanted = bowl.at.at(goal)
+    step = wanted.x - x
+    target = problem.errors(wanted)
+    cost, length = problem.cost(wanted, target), float(step @ bowl.H @ step)
+    foreseen = -float(2.0 * bowl.g @ step + length)
+    true = abs(bowl.cost - cost - foreseen) < FORESEEN * foreseen
+    return _Step(wanted, cost, max(trust / 10.0, LEAST_TRUST), length, target, true)
