@@ -1,0 +1,49 @@
+"""The descent ends at the least squares also where one value acts in jumps."""
+
+import numpy as np
+import pytest
+
+from rovsim.diagnosis.observer.evidence import linearise
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.selection.gauss_newton import descend
+from rovsim.dynamics.catalogue import built_in
+from worlds import model
+
+COUNT = 50
+WIDTH, GRAIN = 0.06, 0.005  # of the dead band
+
+
+class Jumping:
+    """Errors linear in drag; a wider dead band seems to help, and two grains on is far worse."""
+
+    def evaluate(self, models):
+        return [np.stack([self._errors(one) for one in models])]
+
+    def linearise(self, at):
+        return linearise(at, self.evaluate)
+
+    def whiten(self, e, noise):
+        return np.concatenate(e, axis=-1)
+
+    def _errors(self, world):
+        by_id = {one.id: one for one in world.added}
+        drag = by_id["quadratic_damping"]["surge"]
+        grains = (by_id["thruster_deadband"]["width"] - WIDTH) / GRAIN
+        found = np.zeros((6, COUNT))
+        found[0] = 0.5 * (drag - 40.0) * np.sin(np.arange(COUNT))
+        found[1] = 10.0 - 0.5 * grains + (200.0 if grains > 1.5 else 0.0)
+        return found
+
+
+def test_drag_is_fitted_while_the_derivative_of_a_dead_band_promises_too_much():
+    start = Hypothesis(
+        model(),
+        (
+            Term(built_in()["quadratic_damping"](), ("surge",)),
+            Term(built_in()["thruster_deadband"](width=WIDTH), ("width",)),
+        ),
+    )
+    found = descend(start, Jumping(), FIRST_NOISE).at.terms
+    assert found[0].effect["surge"] == pytest.approx(40.0, abs=0.5)
+    assert found[1].effect["width"] < WIDTH + 2.0 * GRAIN
