@@ -11,6 +11,8 @@ from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.stats import norm
+from scipy.stats import t as student
 
 from rovsim.diagnosis.observer.evidence import evaluate_possible
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
@@ -28,7 +30,8 @@ KEPT_APART = 0.2  # of each run's time
 SHORTEST = 60.0  # s of a run, less than which a fifth shows too few windows of 2 s
 WORSE = 0.02  # of the error: less is within what the windows happen to hold
 SLIGHT = 0.005  # of the error: what is let go one after the other adds up to about WORSE
-CERTAIN = 2.0  # standard errors over the windows
+CERTAIN = 2.0  # standard errors over many windows
+FEWEST = 2  # windows: one tells nothing of chance
 CLOSE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
 SMALLEST = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
 
@@ -114,7 +117,7 @@ class Gate:
     def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:
         """Without the effect whose absence helps most; None where each of them earns its place."""
         fewer, errors = self._do_without(selection, found, [(t,) for t in found.hypothesis.terms])
-        gains = [_compare(errors[0], other) for other in errors[1:]]
+        gains = [_compare(errors[0], other, len(errors) - 1) for other in errors[1:]]
         best = int(np.argmax(gains))
         return fewer[best] if gains[best] > 0.0 else None
 
@@ -184,17 +187,31 @@ def _costs(error: Array, usual: Array, least: float) -> bool:
     return _ratio(error, usual) - 1.0 > least and _is_surely_less(usual, error)
 
 
-def _is_surely_less(one: Array, other: Array) -> bool:
+def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN) -> bool:
     """Whether an error (w,) is less than another, beyond what windows differ by chance."""
     less = other - one
-    return bool(np.mean(less) > CERTAIN * np.std(less) / np.sqrt(len(less)))
+    return bool(np.mean(less) > certain * np.std(less) / np.sqrt(len(less)))
 
 
-def _compare(error: Array, other: Array) -> float:
-    """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure."""
+def _find_limit(windows: int, tried: int) -> float:
+    """Standard errors that the best of so many differences reaches as seldom as one `CERTAIN`.
+
+    Of Student's t, for the spread is that of few windows; `np.std` divides by their number.
+    """
+    chance = norm.sf(CERTAIN) / tried
+    return float(student.isf(chance, windows - 1) * np.sqrt(windows / (windows - 1.0)))
+
+
+def _compare(error: Array, other: Array, tried: int = 1) -> float:
+    """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure.
+
+    Of so many that were `tried` the best is smaller by chance as well.
+    """
     if not np.isfinite(other).all():
         return 0.0
     if not np.isfinite(error).all():
         return np.inf
     share = 1.0 - _ratio(other, error)
-    return share if share > WORSE and _is_surely_less(other, error) else 0.0
+    if share <= WORSE or len(error) < FEWEST:
+        return 0.0
+    return share if _is_surely_less(other, error, _find_limit(len(error), tried)) else 0.0

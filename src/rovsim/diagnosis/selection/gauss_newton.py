@@ -1,7 +1,7 @@
 """Gauss-Newton on the innovations: the most likely parameters of a hypothesis, and their spread."""
 
 from dataclasses import dataclass
-from typing import NamedTuple, Sequence
+from typing import Iterator, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -192,16 +192,16 @@ def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:
     """A step that lowers the cost; None when none does, or only one too small to see.
 
     Coarse parameters, on which errors depend in jumps, have derivatives that promise what is not
-    there: where a step of all of them fails, one of the others is tried before a shorter one.
+    there farther off: where a step of all fails, these move by a grain at most, or not at all.
     """
-    every, coarse = np.ones(len(bowl.g), bool), _list_coarse(bowl.at)
     while trust < LARGEST_TRUST:
-        step = _try_step(problem, bowl, trust, every)
-        if step is None:
+        goal = bowl.at.x - solve(bowl.H + trust * np.diag(np.diag(bowl.H)), bowl.g)
+        if not np.isfinite(goal).all():
             break
-        if step.cost >= bowl.cost and coarse.any() and not coarse.all():
-            others = _try_step(problem, bowl, trust, ~coarse)
-            step = others if others and others.cost < bowl.cost else step
+        step = _try_step(problem, bowl, trust, goal)
+        if step.cost >= bowl.cost:
+            careful = [_try_step(problem, bowl, trust, x) for x in _hold(bowl, goal, trust)]
+            step = min([step, *careful], key=lambda one: one.cost)
         if step.cost < bowl.cost:
             return step
         if step.length < CONVERGED**2:
@@ -210,20 +210,28 @@ def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:
     return None
 
 
-def _list_coarse(h: Hypothesis) -> Array:
-    """Which parameters (k,) errors depend on in jumps."""
-    return np.array([p.grain > 0.0 for term in h.terms for p in term.parameters], bool)
+def _hold(bowl: _Bowl, goal: Array, trust: float) -> Iterator[Array]:
+    """Goals (k,) like this one, in which coarse parameters move less, and the others as is best."""
+    x, parameters = bowl.at.x, [p for term in bowl.at.terms for p in term.parameters]
+    grains = np.array([p.grain / p.scale for p in parameters])
+    coarse = grains > 0.0
+    if not coarse.any() or coarse.all():
+        return
+    H = bowl.H[np.ix_(~coarse, ~coarse)]
+    damped = H + trust * np.diag(np.diag(H))
+    for reach in (1.0, 0.0):
+        moved = x.copy()
+        moved[coarse] += np.clip((goal - x)[coarse], *(reach * grains[coarse] * [[-1.0], [1.0]]))
+        drawn = bowl.H[np.ix_(~coarse, coarse)] @ (moved - x)[coarse]
+        moved[~coarse] -= solve(damped, bowl.g[~coarse] + drawn)
+        if np.isfinite(moved).all():
+            yield moved
 
 
-def _try_step(problem: _Problem, bowl: _Bowl, trust: float, moved: Array) -> _Step | None:
-    """Where a step of some parameters (k,) leads; None if nowhere."""
-    x, H = bowl.at.x, bowl.H[np.ix_(moved, moved)]
-    goal = x.copy()
-    goal[moved] -= solve(H + trust * np.diag(np.diag(H)), bowl.g[moved])
-    if not np.isfinite(goal).all():
-        return None
+def _try_step(problem: _Problem, bowl: _Bowl, trust: float, goal: Array) -> _Step:
+    """Where a step to a goal (k,) leads."""
     wanted = bowl.at.at(goal)
-    step = wanted.x - x
+    step = wanted.x - bowl.at.x
     target = problem.errors(wanted)
     cost, length = problem.cost(wanted, target), float(step @ bowl.H @ step)
     foreseen = -float(2.0 * bowl.g @ step + length)
