@@ -55,6 +55,8 @@ def test_circles_secrets_odd_names_and_crowds_are_no_trouble(tmp_path, monkeypat
     shut.chmod(0o700)
     monkeypatch.setattr(folders, "MOST", 1)
     assert (len(look(tmp_path).inside), look(tmp_path).more) == (1, len(found.inside) - 1)
+    assert [one.path.name for one in look(tmp_path, "HUT").inside] == ["shut"]
+    assert look(tmp_path, "HUT").more == 0
 
 
 def test_campaigns_are_remembered_the_last_first_while_they_are_there(tmp_path):

@@ -39,27 +39,33 @@ class Browser:
 
     def show(self) -> None:
         """Draw it."""
+        self.way = ui.row().classes("bins way")
+        self.part = ui.input("Only names with", on_change=self._list).classes("control")
+        self.part.props("outlined dense clearable")
         self.area = ui.column().classes("effects folders")
-        self._draw()
+        self._go(self.folder)
 
     def _go(self, folder: Path) -> None:
         self.folder = folder
-        self._draw()
+        self.part.value = ""
+        self._list()
+        listing = look(folder)
+        self.way.clear()
+        with self.way:
+            for path in (*listing.parents, listing.folder):
+                name = shown(path) if path == path.parent else shown(Path(path.name))
+                ui.button(name, on_click=lambda _, p=path: self._go(p)).props("flat no-caps")
 
-    def _draw(self) -> None:
-        listing = look(self.folder)
+    def _list(self) -> None:
+        listing = look(self.folder, self.part.value or "")
         self.area.clear()
         with self.area:
-            with ui.row().classes("bins"):
-                for path in (*listing.parents, listing.folder):
-                    name = shown(path) if path == path.parent else shown(Path(path.name))
-                    ui.button(name, on_click=lambda _, p=path: self._go(p)).props("flat no-caps")
             if listing.problem:
                 text(f"This folder cannot be read: {listing.problem}.", "warning")
             for one in listing.inside:
                 self._entry(one)
             if listing.more:
-                text(f"{listing.more} more folders are not listed: type the path above.", "soft")
+                text(f"{listing.more} more are not listed: type a part of the name.", "soft")
             if listing.campaign or listing.files:
                 several = "1 file" if listing.files == 1 else f"{listing.files} files"
                 what = "the campaign" if listing.campaign else several

@@ -26,8 +26,8 @@ class Inside:
 class Listing:
     """What lies in a folder.
 
-    `parents` of the folder, the root first; `inside` it, by name; `more` that are not listed;
-    `files` in it; `problem`: why it cannot be read, if it cannot.
+    `parents` of the folder, the root first; `inside` it, by name; `more` that fit but are not
+    listed; `files` in it; `problem`: why it cannot be read, if it cannot.
     """
 
     folder: Path
@@ -43,8 +43,11 @@ class Listing:
         return _holds_campaign(self.folder)
 
 
-def look(folder: Path) -> Listing:
-    """What lies in a folder; the nearest one above it where there is no such folder."""
+def look(folder: Path, part: str = "") -> Listing:
+    """What lies in a folder; the nearest one above it where there is no such folder.
+
+    Of the folders inside it those whose name holds `part`, in whatever case.
+    """
     folder = Path(os.path.abspath(folder.expanduser()))
     while not os.path.isdir(folder) and folder != folder.parent:
         folder = folder.parent
@@ -54,7 +57,8 @@ def look(folder: Path) -> Listing:
             seen = [(entry.name, _is_folder(entry)) for entry in entries]
     except OSError as error:
         return Listing(folder, parents, problem=error.strerror or str(error))
-    names = sorted(name for name, is_folder in seen if is_folder and not name.startswith("."))
+    folders = (name for name, is_folder in seen if is_folder and not name.startswith("."))
+    names = sorted(name for name in folders if part.casefold() in name.casefold())
     paths = [folder / name for name in names[:MOST]]
     inside = tuple(Inside(path, _holds_campaign(path)) for path in paths)
     files = sum(not is_folder for _, is_folder in seen)
