@@ -14,8 +14,8 @@ COUNT = 50
 WIDTH, GRAIN = 0.06, 0.005  # of the dead band
 
 
-class Jumping:
-    """Errors linear in drag; a wider dead band seems to help, and two grains on is far worse."""
+class Errors:
+    """Evidence of errors that are a formula."""
 
     def evaluate(self, models):
         return [np.stack([self._errors(one) for one in models])]
@@ -25,6 +25,10 @@ class Jumping:
 
     def whiten(self, e, noise):
         return np.concatenate(e, axis=-1)
+
+
+class Jumping(Errors):
+    """Errors linear in drag; a wider dead band seems to help, and two grains on is far worse."""
 
     def _errors(self, world):
         by_id = {one.id: one for one in world.added}
@@ -47,3 +51,21 @@ def test_drag_is_fitted_while_the_derivative_of_a_dead_band_promises_too_much():
     found = descend(start, Jumping(), FIRST_NOISE).at.terms
     assert found[0].effect["surge"] == pytest.approx(40.0, abs=0.5)
     assert found[1].effect["width"] < WIDTH + 2.0 * GRAIN
+
+
+class Saturated(Errors):
+    """Errors that hardly change with drag in surge where it is far off; linear ones in sway."""
+
+    def _errors(self, world):
+        (drag,) = world.added
+        found = np.zeros((6, COUNT))
+        found[0] = 30.0 * np.tanh(3.5 - drag["surge"] / 10.0)
+        found[1] = 1.0 - drag["sway"] / 40.0
+        return found
+
+
+def test_a_step_that_damping_made_short_is_followed_by_others():
+    start = Hypothesis(model(), (Term(built_in()["quadratic_damping"](), ("surge", "sway")),))
+    (found,) = descend(start, Saturated(), FIRST_NOISE).at.terms
+    assert found.effect["surge"] == pytest.approx(35.0, abs=0.5)
+    assert found.effect["sway"] == pytest.approx(40.0, abs=0.5)

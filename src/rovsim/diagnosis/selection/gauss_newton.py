@@ -23,6 +23,7 @@ REACH = 10.0
 FORESEEN = 0.1
 # Damping of the steps (Levenberg-Marquardt).
 FIRST_TRUST, LEAST_TRUST, LARGEST_TRUST = 1e-4, 1e-8, 1e4
+LIGHT = 0.1  # damping: a step under more is short for that reason, and says nothing of the rest
 POLISHED = 2  # times: the noise of the first is already the right one
 
 
@@ -102,8 +103,8 @@ def descend(
         if step is None and seen.at is bowl.at:
             return seen
         if step is not None:
-            trust = step.trust
-            if step.length < _small(step, bowl):
+            trust = max(step.damping / 10.0, LEAST_TRUST)
+            if step.damping <= LIGHT and step.length < _small(step, bowl):
                 return evidence.linearise(step.to)
             if step.as_foreseen:
                 bowl = problem.shift(bowl, step)
@@ -136,7 +137,7 @@ class _Bowl(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """Where a step leads, what it costs there, and how damped the next one begins.
+    """Where a step leads, what it costs there, and how damped it was.
 
     `length`, squared, in standard deviations; `target` (size,) the errors there; `as_foreseen`:
     the derivatives from where it began still hold.
@@ -144,7 +145,7 @@ class _Step(NamedTuple):
 
     to: Hypothesis
     cost: float
-    trust: float
+    damping: float
     length: float
     target: Array
     as_foreseen: bool
@@ -236,4 +237,4 @@ def _try_step(problem: _Problem, bowl: _Bowl, trust: float, goal: Array) -> _Ste
     cost, length = problem.cost(wanted, target), float(step @ bowl.H @ step)
     foreseen = -float(2.0 * bowl.g @ step + length)
     true = abs(bowl.cost - cost - foreseen) < FORESEEN * foreseen
-    return _Step(wanted, cost, max(trust / 10.0, LEAST_TRUST), length, target, true)
+    return _Step(wanted, cost, trust, length, target, true)
