@@ -37,6 +37,9 @@ SAME = """() => {
   return Math.abs(now / before - 1) < 1e-3;
 }"""
 NUMBER = "document.querySelector(\"input[aria-label='thruster_lag, time_constant, number']\")"
+# All folders that are listed, at least one, have this in their names.
+ONLY = """part => { const all = [...document.querySelectorAll('.entry .block')];
+  return all.length && all.every(e => e.innerText.includes(part)); }"""
 # Least distance in px between the lower edge of a chart's legend and its icons, once all is drawn.
 APART = """() => {
   const charts = [...document.querySelectorAll('.chart')].map(
@@ -425,8 +428,9 @@ def test_a_campaign_is_found_by_walking_through_folders(tab, campaign, tmp_path)
         reached = re.compile(f"^{re.escape(parent)}$")
         page.locator(".way button:last-child", has_text=reached).wait_for()
         page.get_by_label("Only names with").fill(part)
+        page.wait_for_function(ONLY, arg=part)
         wanted = re.compile(f"^{re.escape(part)}( .campaign.)?$")
-        page.locator(".folders button").get_by_text(wanted).click()
+        page.locator(".entry").get_by_text(wanted).click()
     page.get_by_role("heading", name="Compare").wait_for()
     tab.go("open")
     page.get_by_role("heading", name="Opened last").wait_for()

@@ -5,7 +5,7 @@ from typing import Callable
 
 from nicegui import ui
 
-from rovsim.apps.workbench.folders import Inside, list_recent, look, shown
+from rovsim.apps.workbench.folders import Inside, Listing, list_recent, look, shown
 from rovsim.apps.workbench.parts import heading, section, text
 
 TITLE, QUESTION = "Open", "Which campaign do you want to look at?"
@@ -27,8 +27,8 @@ def _list(title: str, paths: list[Path], choose: Callable[[str], None]) -> None:
             _button(shown(path), lambda _, p=path: choose(str(p)))
 
 
-def _button(words: str, clicked: Callable[..., None], icon: str | None = None) -> None:
-    ui.button(words, icon=icon, on_click=clicked).props("flat no-caps align=left")
+def _button(words: str, clicked: Callable[..., None], icon: str | None = None) -> ui.button:
+    return ui.button(words, icon=icon, on_click=clicked).props("flat no-caps align=left")
 
 
 class Browser:
@@ -36,6 +36,7 @@ class Browser:
 
     def __init__(self, folder: Path, choose: Callable[[str], None]) -> None:
         self.folder, self.choose = folder, choose
+        self.listing: Listing | None = None
 
     def show(self) -> None:
         """Draw it."""
@@ -58,6 +59,9 @@ class Browser:
 
     def _list(self) -> None:
         listing = look(self.folder, self.part.value or "")
+        if listing == self.listing:  # a button that is about to be clicked stays
+            return
+        self.listing = listing
         self.area.clear()
         with self.area:
             if listing.problem:
@@ -74,9 +78,10 @@ class Browser:
     def _entry(self, one: Inside) -> None:
         name = shown(Path(one.path.name))
         if one.campaign:
-            _button(f"{name} (campaign)", lambda: self.choose(str(one.path)), "route")
+            button = _button(f"{name} (campaign)", lambda: self.choose(str(one.path)), "route")
         else:
-            _button(name, lambda: self._go(one.path), "folder")
+            button = _button(name, lambda: self._go(one.path), "folder")
+        button.classes("entry")
 
 
 def show(
