@@ -436,6 +436,39 @@ def test_a_campaign_is_found_by_walking_through_folders(tab, campaign, tmp_path)
     page.get_by_role("heading", name="Opened last").wait_for()
     assert page.get_by_role("button", name=str(own), exact=True).count() >= 1
     tab.picture("open")
+    page.get_by_role("button", name=str(campaign), exact=True).first.click()
+    page.get_by_role("heading", name="Compare").wait_for()
+
+
+def test_each_tab_looks_at_its_own_campaign(chromium, campaign, tmp_path):
+    other = tmp_path / "other"
+    shutil.copytree(campaign, other)
+    described = yaml.safe_load((other / "campaign.yaml").read_text())
+    (other / "campaign.yaml").write_text(yaml.safe_dump({**described, "name": "the other"}))
+    process, address = started(tmp_path, f"campaign={campaign}")
+    try:
+        tabs = [Tab(chromium.new_page(), address) for _ in range(3)]
+        first, second, third = tabs
+        for tab in (first, second):
+            tab.go("compare")
+            tab.page.get_by_role("heading", name="Compare").wait_for()
+        second.go("open")
+        second.page.get_by_label("Folder of a campaign, or of recordings").fill(str(other))
+        second.page.get_by_role("button", name="Open", exact=True).click()
+        second.page.locator("header", has_text="the other").wait_for()
+        second.page.get_by_role("heading", name="Compare").wait_for()
+        third.go("data")  # begins with what was opened last
+        third.page.locator("header", has_text="the other").wait_for()
+        for tab, name in ((first, described["name"]), (second, "the other")):
+            for screen in ("data", "compare"):  # a new page of the same tab, as after a reload
+                tab.go(screen)
+                tab.page.locator("header", has_text=name).wait_for()
+        for tab in tabs:
+            assert tab.complaints == []
+            tab.page.close()
+    finally:
+        process.terminate()
+        process.wait(20)
 
 
 def test_recordings_without_a_description_are_looked_into_asked_about_and_opened(

@@ -6,7 +6,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Callable
 
-from fastapi.responses import FileResponse
 from nicegui import PageArguments, ui
 from nicegui import app as server
 from starlette.middleware.trustedhost import TrustedHostMiddleware
@@ -16,7 +15,8 @@ from rovsim.apps.workbench import HOST
 from rovsim.apps.workbench.gate import Gate
 from rovsim.apps.workbench.parts import heading
 from rovsim.apps.workbench.place import Place
-from rovsim.apps.workbench.state import State
+from rovsim.apps.workbench.session import Session, Sessions
+from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
@@ -50,8 +50,11 @@ class Screens(ui.sub_pages):
 class Page:
     """One browser tab."""
 
-    def __init__(self, shared: State) -> None:
-        self.shared, self.seen = shared, shared.version
+    def __init__(self, sessions: Sessions) -> None:
+        self.sessions = sessions
+        self.session: Session | None = None  # the tab's, once the tab has said which one it is
+        self.seen: tuple[int, ...] = ()
+        self.heard: dict[LongWork, int] = {}  # how often each had ended
         self.name = ""  # of the screen shown; none: choosing a campaign
         self.kept: dict[str, dict[str, Any]] = {}  # what this tab has chosen on each screen
         self.links: dict[str, ui.link] = {}
@@ -65,7 +68,7 @@ class Page:
         with ui.element("header"):
             with ui.row().classes("brand"):
                 ui.link("rovsim", "/open").classes("logo").props('title="Open another campaign"')
-                self.campaign = ui.label(self._name()).classes("campaign")
+                self.campaign = ui.label().classes("campaign")
             with ui.element("nav").props('aria-label="Screens"'):
                 for k, name in enumerate((*SCREENS, "gallery"), 1):
                     title = "Effects" if name == "gallery" else name.capitalize()
@@ -83,10 +86,16 @@ class Page:
         ui.timer(LOOK, self._look)
         ui.run_javascript(RECALL)
 
-    def _name(self) -> str:
-        folder = self.shared.settings.campaign
-        bench = self.shared.bench
-        return bench.data.campaign.name if bench else Path(folder).name if folder else ""
+    async def _enter(self) -> Session:
+        """The tab's session."""
+        if self.session is None:
+            client = ui.context.client
+            await client.connected()
+            if self.session is None:
+                self.session = self.sessions.enter(str(client.tab_id))
+                client.on_delete(partial(self.sessions.leave, self.session))
+                self._note(self.session)
+        return self.session
 
     def _progress(self) -> None:
         with ui.row().classes("progress").props('role="status" aria-live="polite"') as self.strip:
@@ -101,32 +110,47 @@ class Page:
         self.trouble.visible = False
 
     def _cancel(self) -> None:
-        if work := self.shared.working():
-            work.cancel()
+        for work in self.session.works if self.session else ():
+            if work.now:
+                work.now.cancel()
 
     def _read(self) -> None:
-        self.shared.trouble = ""
+        for work in self.session.works if self.session else ():
+            work.trouble = ""
 
     def _look(self) -> None:
         """Show how far long work is; draw the screen again when something has changed."""
-        self.shared.settle()
-        work = self.shared.working()
+        session = self.session
+        if session is None:
+            return
+        self.sessions.settle(session)
+        work = next((one.now for one in session.works if one.now), None)
         self.strip.visible = work is not None
-        self.failed.text, self.trouble.visible = self.shared.trouble, bool(self.shared.trouble)
+        self.failed.text = next((one.trouble for one in session.works if one.trouble), "")
+        self.trouble.visible = bool(self.failed.text)
         if work is not None:
             self.what.text = f"{work.title}: {work.what.partition(': ')[2] or work.what}"
             self.bar.value = work.share or 0.0
             left = "" if work.left is None else f", about {work.left:.0f} s left"
             self.left.text = f"{work.elapsed:.0f} s{left}"
-        if self.seen != self.shared.version:
-            self.seen = self.shared.version
-            self.campaign.text = self._name()
-            if self.shared.said:
-                ui.notify(self.shared.said, color="dark", position="bottom-right", multi_line=True)
-            if self.name or self.shared.proposal is not None or self.shared.problem:
+        if self.seen != session.changes:
+            self._tell(session)
+            self._note(session)
+            if self.name or session.proposal is not None or session.problem:
                 self.pages.refresh()
             else:
                 ui.navigate.to("/compare")
+
+    def _tell(self, session: Session) -> None:
+        """Say what has ended since the screen was drawn."""
+        for work in session.works:
+            if work.said and work.ended > self.heard.get(work, work.ended):
+                ui.notify(work.said, color="dark", position="bottom-right", multi_line=True)
+
+    def _note(self, session: Session) -> None:
+        """What is drawn now is all there is."""
+        self.seen, self.campaign.text = session.changes, session.name
+        self.heard = {work: work.ended for work in session.works}
 
     def _key(self, event: Any) -> None:
         """Digits change the screen."""
@@ -143,16 +167,15 @@ class Page:
     async def _screen(self, name: str, asked: PageArguments) -> None:
         """One of the screens, once the campaign is read."""
         self._active(name)
-        waiting = None
-        if self.shared.bench is None and self.shared.settings.campaign:
-            waiting = ui.label(f"Reading the recordings of {self._name()} …").classes("waiting")
-            await ui.context.client.connected()
-        bench = await self.shared.opened()
+        session, waiting = await self._enter(), None
+        if session.bench is None and session.settings.campaign:
+            waiting = ui.label(f"Reading the recordings of {session.name} …").classes("waiting")
+        bench = await session.opened()
         if waiting:
             waiting.delete()
-        self.campaign.text = self._name()
+        self._note(session)
         if bench is None:
-            self._choose()
+            self._choose(session)
             return
         with ui.element("div").classes("sheet"):  # goes with the screen
             try:
@@ -162,22 +185,23 @@ class Page:
 
     async def _effect(self, effect: str) -> None:
         self._active("gallery")
-        if (bench := await self.shared.opened()) is not None:
+        if (bench := await (await self._enter()).opened()) is not None:
             await _module("gallery").entry(bench, effect)
 
-    def _open(self) -> None:
+    async def _open(self) -> None:
         self._active("")
-        self._choose()
+        self._choose(await self._enter())
 
-    def _choose(self) -> None:
+    def _choose(self, session: Session) -> None:
         from rovsim.apps.workbench import campaigns, new_campaign
 
-        shared = self.shared
-        if shared.proposal is not None:
-            new_campaign.show(shared.proposal, str(shared.described), shared.write, shared.leave)
+        if session.proposal is not None:
+            new_campaign.show(
+                session.proposal, str(session.described), session.write, session.leave
+            )
             return
-        typed = shared.settings.campaign or "" if shared.problem else ""
-        campaigns.show(shared.choose, shared.practise, shared.problem, typed)
+        typed = session.settings.campaign or "" if session.problem else ""
+        campaigns.show(session.choose, session.practise, session.problem, typed)
 
 
 def _module(name: str) -> ModuleType:
@@ -198,17 +222,13 @@ def _stayed(record: logging.LogRecord) -> bool:
 
 def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
-    shared = State(settings, catalogue)
+    sessions = Sessions(settings, catalogue)
     logging.getLogger("uvicorn.error").addFilter(_stayed)
     server.add_middleware(Gate)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
 
-    @server.get("/report")
-    def report() -> FileResponse:
-        return FileResponse(shared.bench.choices["report"], media_type="text/html")
-
     ui.run(
-        lambda: Page(shared).build(), host=HOST, port=settings.port, show=settings.open,
+        lambda: Page(sessions).build(), host=HOST, port=settings.port, show=settings.open,
         reload=False, title="rovsim", favicon=ICON, tailwind=False, show_welcome_message=False,
         reconnect_timeout=10.0, dark=None,
     )  # fmt: skip

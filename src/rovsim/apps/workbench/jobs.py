@@ -4,7 +4,6 @@ from pathlib import Path
 
 from rovsim.application.settings import compose
 from rovsim.apps.workbench import tasks
-from rovsim.apps.workbench.work import Work
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.design.settings import Question
 from rovsim.dynamics.model_file import read_model
@@ -13,9 +12,7 @@ from rovsim.dynamics.model_file import read_model
 def diagnose(bench: Workbench) -> None:
     """Begin to look for what the base lacks."""
     settings, path = bench.only(bench.base.name), bench.diagnosis_path
-    bench.work = Work.start(
-        "Finding what is missing", bench.found, tasks.diagnose_into, settings, path
-    )
+    bench.work.begin("Finding what is missing", bench.found, tasks.diagnose_into, settings, path)
 
 
 def train(bench: Workbench, kind: str, name: str) -> None:
@@ -29,7 +26,7 @@ def train(bench: Workbench, kind: str, name: str) -> None:
         bench.add(read_model(path, bench.catalogue), path)
 
     path = bench.out / "trained" / trained / f"{trained}.yaml"
-    bench.work = Work.start(f"Training {trained}", take, tasks.train_into, settings, path)
+    bench.work.begin(f"Training {trained}", take, tasks.train_into, settings, path)
 
 
 def report(bench: Workbench) -> None:
@@ -40,15 +37,13 @@ def report(bench: Workbench) -> None:
 
     settings = bench.only(*bench.models)
     known = (bench.ladder(), bench.diagnosis)
-    bench.work = Work.start(
-        "Writing the report", take, tasks.report_into, settings, *known, bench.out
-    )
+    bench.work.begin("Writing the report", take, tasks.report_into, settings, *known, bench.out)
 
 
 def design(bench: Workbench, name: str, question: Question) -> None:
     """Begin to plan the flight that answers a question about one of the models."""
 
     given = (bench.only(name), question, bench.flight_folder(name, question))
-    bench.work = Work.start(
+    bench.work.begin(
         "Planning a flight", lambda folder: None, tasks.design_into, *given
     )  # the screen finds it in its folder

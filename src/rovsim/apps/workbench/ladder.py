@@ -1,6 +1,6 @@
 """Ladder: the error falling step by step, down to the noise floor."""
 
-from nicegui import ui
+from nicegui import app, ui
 
 from rovsim import AXES
 from rovsim.apps.workbench import jobs
@@ -73,7 +73,8 @@ def _report(bench: Workbench) -> None:
         ).props("outline no-caps").bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
         if "report" in bench.choices:
             path = bench.choices["report"]
-            ui.button("Open it", on_click=lambda: ui.navigate.to("/report", new_tab=True)).props(
+            address = app.add_static_file(local_file=path, max_cache_age=0)
+            ui.button("Open it", on_click=lambda: ui.navigate.to(address, new_tab=True)).props(
                 "flat no-caps"
             )
             ui.label(str(path)).classes("soft")

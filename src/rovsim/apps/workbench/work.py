@@ -2,6 +2,7 @@
 
 import multiprocessing
 import time
+import weakref
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from typing import Any, Callable
@@ -38,7 +39,9 @@ class Work:
         process = context.Process(target=_run, args=(theirs, function, given), daemon=True)
         process.start()
         theirs.close()
-        return Work(title, after, process, ours)
+        work = Work(title, after, process, ours)
+        weakref.finalize(work, process.terminate)  # nobody waits for it any more
+        return work
 
     def look(self) -> str:
         """Take in what the process said since; returns the state."""
@@ -69,6 +72,45 @@ class Work:
         """Seconds that are probably left, None as long as nobody can tell."""
         known = self.share is not None and self.share >= FEWEST
         return self.elapsed * (1.0 / self.share - 1.0) if known and self.share else None
+
+
+@dataclass(eq=False)
+class LongWork:
+    """Long work, one at a time.
+
+    `now` goes on; `said` tells of what ended last, `trouble` why it failed, until somebody has read
+    it (`why`: the reason alone); `ended`: how often any has.
+    """
+
+    now: Work | None = None
+    said: str = ""
+    trouble: str = ""
+    why: str = ""
+    ended: int = 0
+
+    def begin(
+        self, title: str, after: Callable[[Any], None], function: Callable, *given: Any
+    ) -> None:
+        """See `Work.start`."""
+        self.now = Work.start(title, after, function, *given)
+
+    def settle(self) -> str:
+        """Take in what came of it; the state of what has just ended, or nothing."""
+        work = self.now
+        if work is None or work.look() == "running":
+            return ""
+        self.now = None
+        if work.state == "done":
+            work.after(work.said)
+        elif work.state == "failed":
+            self.why, self.trouble = work.said, f"{work.title}: {work.said}"
+        self.ended += 1
+        self.said = {
+            "done": f"{work.title}: done in {work.elapsed:.0f} s.",
+            "failed": "",
+            "cancelled": f"{work.title}: cancelled, nothing was changed.",
+        }[work.state]
+        return work.state
 
 
 def reap() -> None:

@@ -15,7 +15,7 @@ from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import WorkbenchSettings, select
 from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.draft import Draft
-from rovsim.apps.workbench.work import Work
+from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_text, write_text
 from rovsim.core.remade import Recent
@@ -50,7 +50,7 @@ class Workbench:
     diagnosis: Diagnosis | None = None
     study: Ladder | None = None  # ladder.json beside a diagnosis that was given
     choices: dict[str, Any] = field(default_factory=dict)  # what a screen remembers
-    work: Work | None = None  # long work, one at a time
+    work: LongWork = field(default_factory=LongWork)
     _replays: Recent[Replay] = field(default_factory=Recent)
     _bands: Recent[Band | None] = field(default_factory=Recent)
     _steps: dict[Model, Step] = field(default_factory=dict)
@@ -218,7 +218,7 @@ class Workbench:
     @property
     def busy(self) -> bool:
         """Whether long work is going on."""
-        return self.work is not None and self.work.state == "running"
+        return self.work.now is not None
 
     def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
         """One run replayed in windows of `horizon` s, or open loop (None)."""

@@ -1,0 +1,193 @@
+"""What each browser tab looks at: its campaign, and work that belongs to none. Tabs may differ."""
+
+import asyncio
+import gc
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Iterator, Mapping
+
+from nicegui import ui
+
+from rovsim.application.settings import WorkbenchSettings, compose
+from rovsim.apps.workbench.folders import remember
+from rovsim.apps.workbench.work import LongWork, reap
+from rovsim.core.errors import RovsimError
+from rovsim.dynamics.catalogue import Catalogue
+
+PRACTICE = Path("results/practice/raw")
+MOST = 200  # tabs remembered: one that slept for days finds its campaign
+
+
+class Session:
+    """One tab: the settings with its campaign, and long work that belongs to none.
+
+    `bench` is the open campaign, `problem` why it could not be opened, `proposal` of a folder that
+    nobody has described. `pages` of the tab that are there: a reload is the next before the last
+    is gone.
+    """
+
+    def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue, bench: Any) -> None:
+        self.settings, self.catalogue, self.bench = settings, catalogue, bench
+        self.problem, self.opened_at = "", 0.0
+        self.proposal: Any = None
+        self.described = Path()
+        self.scratch: Any = None
+        self.work, self.pages, self._changes = LongWork(), 0, 0
+        self._opening = asyncio.Lock()
+
+    @property
+    def name(self) -> str:
+        """Of the campaign."""
+        folder = self.settings.campaign
+        return self.bench.data.campaign.name if self.bench else Path(folder).name if folder else ""
+
+    def choose(self, folder: str) -> None:
+        """Open another campaign, or look into a folder that holds none."""
+        place = Path(folder).expanduser()
+        self.proposal = None
+        if folder and place.is_dir() and not (place / "campaign.yaml").exists():
+            self._look_into(place)
+            return
+        self.settings = self.settings.model_copy(update={"campaign": folder, "diagnosis": None})
+        self.bench, self.problem = None, ""
+        self._changes += 1
+
+    def _look_into(self, folder: Path) -> None:
+        from rovsim.apps.workbench import tasks
+
+        self.scratch = tempfile.TemporaryDirectory()
+        self.problem, self.described = "", folder
+        self.work.begin(
+            "Looking into the files", self._found, tasks.look_into, folder, Path(self.scratch.name)
+        )
+
+    def _found(self, proposal: Any) -> None:
+        self.proposal = proposal
+
+    def write(self, answers: Mapping[str, str]) -> None:
+        """Write campaign.yaml into the folder that was looked into, and open it."""
+        from rovsim.application.intake.write import write_proposal
+
+        try:
+            write_proposal(self.proposal.fully(answers), self.described)
+        except RovsimError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+            return
+        self.scratch.cleanup()
+        self.choose(str(self.described))
+
+    def leave(self) -> None:
+        """Forget what was looked into."""
+        self.proposal = None
+        self._changes += 1
+
+    def practise(self) -> None:
+        """Make the practice campaign, unless it is there, and open it."""
+        from rovsim.apps.workbench import tasks
+
+        if (PRACTICE / "campaign.yaml").exists():
+            self.choose(str(PRACTICE))
+            return
+        self.work.begin(
+            "Making a campaign",
+            lambda path: self.choose(str(path)),
+            tasks.practise,
+            compose(["tank=practice"]).tank,
+            PRACTICE,
+        )
+
+    async def opened(self) -> Any:
+        """The open campaign, read now if need be; None when there is none, or it cannot be read."""
+        async with self._opening:
+            if self.bench is None and self.settings.campaign and not self.problem:
+                from rovsim.apps.workbench.parts import in_thread
+                from rovsim.apps.workbench.workbench import Workbench
+
+                try:
+                    self.bench = await in_thread(Workbench.opened, self.settings, self.catalogue)
+                    self.opened_at = time.monotonic()
+                    remember(Path(self.settings.campaign))
+                    _keep_loaded()
+                except RovsimError as error:
+                    self.problem = str(error)
+        return self.bench
+
+    @property
+    def works(self) -> Iterator[LongWork]:
+        """Work of this tab alone, and on its campaign, which other tabs may look at as well."""
+        yield self.work
+        if self.bench is not None:
+            yield self.bench.work
+
+    @property
+    def busy(self) -> bool:
+        """Whether long work is going on."""
+        return any(work.now for work in self.works)
+
+    @property
+    def changes(self) -> tuple[int, ...]:
+        """Another one than before: the screen must be drawn again."""
+        return (self._changes, id(self.bench), *(work.ended for work in self.works))
+
+    def settle(self) -> None:
+        """Look after long work: take in what came of it."""
+        if not self.busy:
+            reap()
+        for work in list(self.works):
+            if work.settle() == "failed" and self.bench is None:
+                self.problem = work.why
+
+
+class Sessions:
+    """The tabs by the names that they give themselves; a new one begins with what was opened last.
+
+    A campaign stays in memory while a tab shows it, while work on it goes on, or if it is the last.
+    """
+
+    def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue) -> None:
+        self._first = Session(settings, catalogue, None)
+        self._by_tab: dict[str, Session] = {}
+
+    @property
+    def last(self) -> Session:
+        """The one that has opened its campaign last."""
+        opened = [one for one in self._by_tab.values() if one.bench is not None]
+        return max(opened, key=lambda one: one.opened_at, default=self._first)
+
+    def enter(self, tab: str) -> Session:
+        """The session of a tab, one page more."""
+        if tab not in self._by_tab:
+            last = self.last
+            self._by_tab[tab] = Session(last.settings, last.catalogue, last.bench)
+            self._by_tab[tab].opened_at = last.opened_at
+        session = self._by_tab.pop(tab)
+        self._by_tab[tab] = session  # the newest comes last
+        session.pages += 1
+        self._forget()
+        return session
+
+    def leave(self, session: Session) -> None:
+        """One page less."""
+        session.pages -= 1
+
+    def settle(self, session: Session) -> None:
+        """Look after a tab's work, and after campaigns that no tab shows any more."""
+        session.settle()
+        last = self.last
+        for one in self._by_tab.values():
+            if not one.pages and not one.busy and one is not last:
+                one.bench = None
+
+    def _forget(self) -> None:
+        gone = [t for t, one in self._by_tab.items() if not one.pages and one is not self.last]
+        for tab in gone[: max(0, len(self._by_tab) - MOST)]:
+            del self._by_tab[tab]
+
+
+def _keep_loaded() -> None:
+    """Collect what the last campaign left; never look through what is loaded now, for 0.2 s."""
+    if gc.get_freeze_count():
+        gc.unfreeze()
+        gc.collect()
+    gc.freeze()
