@@ -7,6 +7,7 @@ import sys
 
 import pytest
 import yaml
+from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import listed, main, override, quoted
@@ -164,14 +165,20 @@ def test_compare_writes_the_contract(campaign, tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("one_figure_a_run")
-def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, monkeypatch):
+def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     arguments = [f"campaign={campaign}", "residual=knn", "control=6dof", f"out={tmp_path / 'knn'}"]
     (tmp_path / "knn").mkdir()
     (tmp_path / "knn" / "of_others.db").touch()
-    main(["train", *arguments])
+    main(["train", *arguments, "--json"])
+    told = json.loads(capsys.readouterr().out)["errors"]
     kept = {p.name for p in (tmp_path / "results" / "mlflow").rglob("*") if p.is_file()}
     assert kept == {"model.yaml", "residual.npz", "comparison.json"}
+    client = MlflowClient(tracking_uri="sqlite:///results/mlflow.db")
+    (experiment,) = client.search_experiments(filter_string="name != 'Default'")
+    (run,) = client.search_runs([experiment.experiment_id])
+    assert run.info.run_name == "knn_6dof"
+    assert run.data.metrics["windows_2s"] == told["model"] > 0
     model = tmp_path / "knn" / "model.yaml"
     first = (tmp_path / "knn" / "residual.npz").read_bytes()
     main(["compare", f"campaign={campaign}", f"model=[nominal,{model}]", f"out={tmp_path / 'c'}"])

@@ -1,11 +1,12 @@
-"""What is tracked: a database that is whole, whoever is killed."""
+"""What is tracked: a database that is whole, whoever is killed; runs that can be ranked."""
 
 import pytest
 from mlflow.store.tracking import sqlalchemy_store
 from mlflow.tracking import MlflowClient
 
-from rovsim.application.settings import TrackingSettings
-from rovsim.application.tracking.runs import track
+from rovsim.application.settings import TrackingSettings, compose
+from rovsim.application.tracking.runs import ranking, track
+from rovsim.apps.cli.sweep import name_run
 from rovsim.core.errors import BadInput
 
 
@@ -32,6 +33,7 @@ def test_a_database_that_was_being_made_is_made_anew(tmp_path, monkeypatch):
     (run,) = client.search_runs([experiment.experiment_id])
     assert (run.info.run_name, run.data.params) == ("second", {"k": "5"})
     assert settings.artifacts in experiment.artifact_location
+    assert experiment.tags["mlflow.experimentKind"] == "custom_model_development"
 
 
 @pytest.mark.parametrize("uri", ["http://127.0.0.1:9", "sqlite:///text.db", "file:mlruns"])
@@ -56,3 +58,24 @@ def test_an_experiment_that_another_machine_makes_meanwhile_is_taken(tmp_path, m
     monkeypatch.setattr(MlflowClient, "get_experiment_by_name", unknown_at_first)
     tracked("second")
     assert len(asked) == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (["residual=knn", "control=3dof"], None),
+        (["residual=knn", "residual.k=3", "control=3dof"], "knn_3dof residual.k=3"),
+        (["residual=gp", "filter=savgol", "+a=1"], "gp_6dof filter=savgol +a=1"),
+        (["residual.k=3", "tracking.name=mine"], "mine"),
+    ],
+)
+def test_a_run_of_a_sweep_is_called_after_what_was_set(words, name):
+    settings = compose(["campaign=DIR", *(word for word in words if not word.startswith("+"))])
+    named = name_run(settings, ["command=train", "campaign='DIR'", *words])
+    assert named.tracking.name == name
+
+
+def test_models_are_ranked_where_there_is_a_test_run():
+    errors = {"nominal": 0.2, "model": 0.05, "untested": None}
+    assert ranking(errors, "model", "nominal") == {"windows_2s": 0.05, "windows_2s/of_base": 0.25}
+    assert ranking(errors, "untested", "nominal") == {}

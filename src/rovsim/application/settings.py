@@ -66,10 +66,14 @@ class BlindSettings(Section):
 
 
 class TrackingSettings(Section):
-    """Where MLflow keeps runs (`uri`) and their files (`artifacts`, for a local database)."""
+    """Where MLflow keeps runs (`uri`) and their files (`artifacts`, for a local database).
+
+    `name` of a run; None: residual and control.
+    """
 
     uri: str
     artifacts: str
+    name: str | None = None
 
 
 class CommandSettings(Section):

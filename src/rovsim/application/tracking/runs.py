@@ -15,6 +15,13 @@ from rovsim.core.files import appearing
 from rovsim.results.base import ByAxis
 from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
 
+RANKED_BY = "windows_2s"
+# MLflow's page of an experiment: made for models rather than prompts, this error in its table.
+SHOWN = {
+    "mlflow.experimentKind": "custom_model_development",
+    "mlflow.experiment.primaryMetric.name": RANKED_BY,
+    "mlflow.experiment.primaryMetric.greaterIsBetter": "False",
+}
 HORIZONS = (OPEN_LOOP, "0.5", "2", "5")
 PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes for each call
     "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",
@@ -60,6 +67,14 @@ def track(
         _log(client, run.info.run_id, params, metrics_of(scores) | dict(metrics or {}), files)
         client.set_terminated(run.info.run_id)
         return run.info.run_id
+
+
+def ranking(errors: Mapping[str, float | None], model: str, base: str) -> dict[str, float]:
+    """What models are ranked by, and by how much this one is better than its base."""
+    own, before = errors[model], errors[base]
+    if own is None or not before:
+        return {}
+    return {RANKED_BY: own, f"{RANKED_BY}/of_base": own / before}
 
 
 def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
@@ -161,7 +176,7 @@ def _experiment(client, settings: TrackingSettings, name: str) -> str:
     from mlflow.exceptions import MlflowException
 
     try:
-        return client.create_experiment(name, artifact_location=place)
+        return client.create_experiment(name, artifact_location=place, tags=SHOWN)
     except MlflowException:  # another machine was first: a lock of files ends at its own
         known = client.get_experiment_by_name(name)
         if known is None:

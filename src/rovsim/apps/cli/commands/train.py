@@ -14,7 +14,7 @@ from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, TrackingSettings
-from rovsim.application.tracking import track
+from rovsim.application.tracking import ranking, track
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import require
 from rovsim.core.progress import reported
@@ -43,16 +43,17 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     scored = score_models([base, corrected], data.motions, settings)
     found = scored.comparison
     found.write(out / "comparison.json")
+    errors = {step.model: step.windows_2s for step in scored.steps}
     with reported("logging to MLflow"):
         track(
             settings.tracking,
             experiment=data.campaign.name,
-            name=name,
+            name=settings.tracking.name or name,
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
             scores=found.models["model"].runs,
             files=[file, out / ARRAYS, out / "comparison.json"],
+            metrics=ranking(errors, corrected.name, base.name),
         )
-    errors = {step.model: step.windows_2s for step in scored.steps}
     text = tell_comparison(errors, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
     say(settings, f"{text}\n\n{file}", {"model": str(file), "errors": errors})
