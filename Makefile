@@ -18,6 +18,7 @@ help:
 	@echo "make crowd   two studies, two sweeps and a workbench at once on one database"
 	@echo "make soak    a long day at the workbench: 1,000 replays, 20 campaigns"
 	@echo "make test-slurm   the study and a sweep through a real Slurm on this machine (root, slurm-wlm)"
+	@echo "make commands   every command of README and docs, in a fresh shell"
 	@echo "make walk    a newcomer with a watch: fresh clone to a fallen error, own csv files to a verdict"
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
@@ -69,6 +70,10 @@ kills: setup
 
 crowd: setup
 	$(BIN)/python tests/crowd.py
+
+# Half an hour and more: every command of README and docs as it stands there.
+commands: setup
+	PYTHONPATH=tests $(BIN)/python tests/commands.py $(PAGES)
 
 soak: setup chromium
 	PYTHONPATH=tests $(BIN)/python tests/browser/soak.py
