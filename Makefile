@@ -5,7 +5,7 @@ SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 
-.PHONY: help setup study thesis test test-ui fuzz kills crowd soak test-slurm wheel-test walk ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
+.PHONY: help setup study thesis test test-ui fuzz kills crowd commands soak test-slurm wheel-test walk ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
