@@ -7,6 +7,7 @@ at random, which keeps every correlation within them, and destroys what a condit
 """
 
 from dataclasses import dataclass
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -130,14 +131,22 @@ def bin_errors(binning: Binning, error: Array, stretch: Array) -> Table:
     return Table(binning, mean, np.sqrt(spread), np.sqrt(square), alone, share)
 
 
-def weigh_evidence(binning: Binning, error: Array, stretch: Array, signs: Array) -> Array:
-    """How far the bin means of the errors (n,) are from zero, under each of the signs (g, f): (f,).
+def weigh_evidence(
+    cuts: Sequence[Binning], error: Array, stretch: Array, signs: Array
+) -> Array:
+    """How far the bin means of the errors (n,) are from zero: (c, f) of c cuts, f draws.
 
-    The sum over bins of (sum of the errors)^2 / sum over stretches of (their sums)^2: about 1 a bin
-    by chance, up to the number of stretches in it. Every bin has its own scale, so that a few large
-    errors at the end of a range neither make nor hide a finding.
+    The sum over bins of (sum of the errors)^2 / sum over stretches of (their sums)^2, the errors of
+    every stretch under each of the `signs` (g, f): about 1 a bin by chance, up to the number of
+    stretches in it. Every bin has its own scale, so that a few large errors at the end of a range
+    neither make nor hide a finding.
     """
-    total = sums(binning, error, stretch)[binning.judged]
-    scale = np.sum(total**2, axis=1)
-    total, scale = total[scale > 0], scale[scale > 0]
-    return np.sum((total @ signs) ** 2 / scale[:, None], axis=0)
+    parts = [sums(cut, error, stretch)[cut.judged] for cut in cuts]
+    owner = np.repeat(np.arange(len(cuts)), [len(part) for part in parts])
+    total = np.concatenate(parts)
+    scale = np.sqrt(np.sum(total**2, axis=1))
+    moved = scale > 0
+    squares = (total[moved] / scale[moved, None] @ signs) ** 2
+    found = np.zeros((len(cuts), signs.shape[1]))
+    np.add.at(found, owner[moved], squares)
+    return found

@@ -10,6 +10,7 @@ from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from threadpoolctl import threadpool_limits
 
 from rovsim import AXES
 from rovsim.evaluation.error_conditions.bins import (
@@ -84,7 +85,9 @@ def explain(blocks: Blocks, seed: int = 0) -> Explanation:
         cuts = [cut_bins(c, x, stretch) for c, x in blocks.values.items()]
         tables[axis] = {b.condition.name: bin_errors(b, error, stretch) for b in cuts}
         worth = max(SMALLEST, NEGLIGIBLE**2 * _relative_power(blocks, k))
-        found += [f for f in _of_axis(axis, error, cuts, stretch, seed) if f.share_of_error > worth]
+        with threadpool_limits(1, "blas"):  # the matrices are small: threads would wait
+            causes = _of_axis(axis, error, cuts, stretch, seed)
+        found += [f for f in causes if f.share_of_error > worth]
         enough = enough and int(stretch.max()) + 1 >= FEWEST
     return Explanation(blocks, tables, sorted(found, key=lambda f: -f.share_of_error), enough)
 
@@ -132,8 +135,8 @@ def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
 def _chances(error: Array, cuts: Sequence[Binning], stretch: Array, signs: Array) -> list[float]:
     """Chance that the most striking of all conditions is as striking as each one is."""
     none = np.ones((len(signs), 1))
-    flipped = np.array([weigh_evidence(b, error, stretch, signs) for b in cuts])
-    seen = np.array([weigh_evidence(b, error, stretch, none)[0] for b in cuts])
+    flipped = weigh_evidence(cuts, error, stretch, signs)
+    seen = weigh_evidence(cuts, error, stretch, none)[:, 0]
     mean, spread = flipped.mean(axis=1), flipped.std(axis=1)
     spread = np.where(spread > 0, spread, np.inf)
     highest = ((flipped - mean[:, None]) / spread[:, None]).max(axis=0)
