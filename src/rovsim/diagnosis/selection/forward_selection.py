@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import score_windows
+from rovsim.diagnosis.selection import loose_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.proposals import Proposal
@@ -19,9 +20,6 @@ ROUNDS = 3  # of trials, when none of the first matters
 SWAP = 1.0  # in twice the log likelihood: less is not worth another name
 SLIGHT = 0.01  # of what the last addition gained: while more is sought, less is not worth a swap
 PROMISING = 0.5  # of what a term explains: another name may do better than it promises, not twice
-# In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
-# thirty times, against a coefficient of a file that is known to be off.
-FILE_ODDS = 13.8
 # Of the best predicted gain: effects that promise about the same are all refitted, for the order of
 # first-order predictions is not that of fits (a torpedo's weight, sixth to first order, was best).
 LEVEL = 0.75
@@ -92,6 +90,8 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         for best in sorted(tried, key=workspace.score, reverse=True):
             if workspace.score(best) - workspace.score(current) < threshold:
                 break
+            if loose_file.explains(workspace, best, trying[tried.index(best)].term.id):
+                continue
             if find_relevant(workspace, best, [current.hypothesis.model])[0]:
                 return prune(workspace, best)
     return None
@@ -122,8 +122,9 @@ def contest(
             if _explains(workspace, p) > PROMISING * rest.loss:
                 trial = workspace.fit(rest.hypothesis.with_term(p.term))
                 deficit = workspace.score(current) - workspace.score(trial)
-                if deficit < -swap:
+                if deficit < -swap and not loose_file.explains(workspace, trial, p.term.id):
                     return contest(workspace, prune(workspace, trial), trials, swap)
+                deficit = loose_file.weigh(workspace, (current, term), (trial, p.term), deficit)
             rivals.append(Rival(p.term.id, term.id, deficit, trial))
     return current, rivals
 
@@ -166,20 +167,16 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 
 def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """Without effects that the vehicle file, where it is off anyway, explains about as well.
-
-    Such a file is off everywhere, much of it too little to be found; a special effect is seldom
-    there. What the file leaves unfound may favour a special name by chance.
-    """
-    terms = current.hypothesis.terms
-    if not any(term.id in STATED for term in terms):
+    """Without effects that the vehicle file, where it is off anyway, explains about as well."""
+    if not loose_file.is_off(current.hypothesis):
         return current
-    for term, rest in zip(terms, workspace.remove_each(current), strict=True):
-        limit = workspace.price * term.choices + FILE_ODDS
-        if term.id in STATED or workspace.loss_beside_file(rest) > limit:
+    left = loose_file.measure_cost(workspace, current)
+    for term, rest in zip(current.hypothesis.terms, workspace.remove_each(current), strict=True):
+        limit = loose_file.find_limit(workspace, term)
+        if workspace.cost_beside_file(rest.products) - left > limit:
             continue
         fewer = prune(workspace, _add_from_file(workspace, workspace.fit(rest.hypothesis)))
-        if workspace.score(fewer) > workspace.score(current) - FILE_ODDS:
+        if loose_file.measure_cost(workspace, fewer) - left <= limit:
             return prefer_file(workspace, fewer)
     return current
 

@@ -168,6 +168,10 @@ class SearchWorkspace:
             found.append(Removed(seen.at, M, float(M[0, 0]) - left, self._rank(M)))
         return found
 
+    def products_without(self, current: Fit, term: Term) -> Array:
+        """The `products` of the current hypothesis without one of its terms."""
+        return self.products(self._without(current, [(term,)])[0])
+
     def drop(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Hypothesis]:
         """The current hypothesis without each group of terms, the others refitted to first order.
 
@@ -215,12 +219,15 @@ class SearchWorkspace:
                     spread.append(own)
         return columns, np.array(spread)
 
-    def loss_beside_file(self, rest: Removed) -> float:
-        """How much less likely it is to do without a term, the vehicle file being off as it may."""
+    def cost_beside_file(self, products: Array) -> float:
+        """What is left of the sum of squares where the vehicle file is off as it may be.
+
+        To first order, from `products` of the innovations and the columns.
+        """
         columns, spread = self.file_columns
         own = [1 + j for j in columns]
-        H, b = rest.products[np.ix_(own, own)], rest.products[own, 0]
-        return rest.loss - float(b @ solve(H + np.diag(spread**-2.0), b))
+        H, b = products[np.ix_(own, own)], products[own, 0]
+        return float(products[0, 0] - b @ solve(H + np.diag(spread**-2.0), b))
 
     def list_modes(self, term: Term) -> list[Term]:
         """Starts of the same effect, if it has modes, with the same free values."""

@@ -131,9 +131,7 @@ def bin_errors(binning: Binning, error: Array, stretch: Array) -> Table:
     return Table(binning, mean, np.sqrt(spread), np.sqrt(square), alone, share)
 
 
-def weigh_evidence(
-    cuts: Sequence[Binning], error: Array, stretch: Array, signs: Array
-) -> Array:
+def weigh_evidence(cuts: Sequence[Binning], error: Array, stretch: Array, signs: Array) -> Array:
     """How far the bin means of the errors (n,) are from zero: (c, f) of c cuts, f draws.
 
     The sum over bins of (sum of the errors)^2 / sum over stretches of (their sums)^2, the errors of
