@@ -1,0 +1,70 @@
+"""A special effect beside a vehicle file that may be off everywhere."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rovsim.diagnosis.selection.loose_file import FILE_ODDS, explains, weigh
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+
+PRICE = 10.0
+LIMIT = PRICE + FILE_ODDS  # of an effect with one number
+
+
+@given(seed=st.integers(0, 10_000), count=st.integers(1, 6))
+def test_a_loose_file_takes_what_its_numbers_take_within_their_spread(seed, count):
+    random = np.random.default_rng(seed)
+    rows, spread = random.normal(size=(1 + count, 40)), random.uniform(0.01, 3.0, count)
+    workspace = SimpleNamespace(file_columns=(list(range(count)), spread))
+    cost = SearchWorkspace.cost_beside_file(workspace, rows @ rows.T)
+    stacked = np.hstack([rows, np.vstack([np.zeros(count), np.diag(1.0 / spread)])])
+    x = np.linalg.lstsq(stacked[1:].T, -stacked[0], rcond=None)[0]
+    assert cost == pytest.approx(np.sum((stacked[0] + x @ stacked[1:]) ** 2), rel=1e-6)
+
+
+def term(name):
+    return SimpleNamespace(id=name, choices=1)
+
+
+def fit(cost, *names):
+    """A fit that leaves `cost` of the sum of squares beside a loose file."""
+    return SimpleNamespace(seen=cost, hypothesis=SimpleNamespace(terms=[term(n) for n in names]))
+
+
+def workspace_of(without=0.0):
+    """`without`: what is left beside a loose file if a term is taken away."""
+    return SimpleNamespace(
+        price=PRICE, products=lambda seen: seen, cost_beside_file=lambda cost: cost,
+        products_without=lambda found, term: without,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("loss", "names", "explained"),
+    [
+        (LIMIT - 1.0, ("added_mass", "constant_wrench"), True),
+        (LIMIT + 1.0, ("added_mass", "constant_wrench"), False),
+        (LIMIT - 1.0, ("constant_wrench",), False),  # nothing says that the file is off
+        (LIMIT - 1.0, ("added_mass", "net_buoyancy"), False),  # of the file itself
+    ],
+)
+def test_a_special_effect_must_do_without_a_file_that_is_off(loss, names, explained):
+    assert explains(workspace_of(100.0 + loss), fit(100.0, *names), names[-1]) is explained
+
+
+@given(more=st.floats(-60.0, 60.0))
+def test_who_is_likelier_does_not_depend_on_who_was_selected(more):
+    file, special = fit(100.0, "net_buoyancy"), fit(100.0 + more, "constant_wrench", "added_mass")
+    file.hypothesis.terms.append(term("added_mass"))
+    own, other = (file, term("net_buoyancy")), (special, term("constant_wrench"))
+    there = weigh(workspace_of(), own, other, 0.0)
+    assert there == pytest.approx(-weigh(workspace_of(), other, own, 0.0))
+    assert there == pytest.approx(more + LIMIT)
+
+
+def test_two_effects_of_the_file_are_weighed_as_they_are():
+    drag, mass = (fit(100.0, "linear_damping"), term("linear_damping")), fit(1.0, "added_mass")
+    assert weigh(workspace_of(), drag, (mass, term("added_mass")), 7.0) == 7.0
