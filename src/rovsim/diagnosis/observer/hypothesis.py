@@ -35,7 +35,7 @@ class Term:
         """The effect's id."""
         return self.effect.id
 
-    @property
+    @cached_property
     def parameters(self) -> list[Parameter]:
         """The free parameters, with the range that the fit keeps to."""
         by_name = {p.name: p for p in self.effect.parameters}

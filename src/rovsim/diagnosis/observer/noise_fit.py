@@ -1,6 +1,7 @@
 """The most likely noise of innovations, axis by axis."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Callable, NamedTuple, Sequence
 
 import numpy as np
@@ -104,19 +105,20 @@ class _AxisInnovations:
 
     def cost(self, noise: Array) -> float:
         """Negative log likelihood of a noise (5,), up to a constant; infinite where it has none."""
-        found = sum(
-            self._of_run(noise, run, old, e)
-            for e, run, old in zip(self.e, self.runs, self.filters, strict=True)
-        )
+        found = sum(negative_log_likelihood(noise, *known) for known in self._known)
         return float(found) / self.draws if np.isfinite(found) else np.inf
 
-    def _of_run(self, noise: Array, run: ObservedRun, old: AxisFilter, e: Array) -> float:
+    @cached_property
+    def _known(self) -> list[tuple]:
+        """Of each run all that its likelihood needs, but for the noise."""
+        each = zip(self.e, self.runs, self.filters, strict=True)
+        return [self._of_run(run, old, e) for e, run, old in each]
+
+    def _of_run(self, run: ObservedRun, old: AxisFilter, e: Array) -> tuple:
         i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])
-        return float(
-            negative_log_likelihood(
-                noise, kind, h, self.motion.over(h, kind), old.poles, old.forgets, e, run.rows,
-                run.settled, run.shown[:, i],
-            )
+        return (
+            kind, h, self.motion.over(h, kind), old.poles, old.forgets, e, run.rows, run.settled,
+            run.shown[:, i],
         )  # fmt: skip
 
 
