@@ -21,7 +21,7 @@ method. Effects are immutable and add: a model is a list of them.
 from abc import ABC, abstractmethod
 from collections import namedtuple
 from copy import copy
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Mapping
+from typing import Any, ClassVar, Literal, Mapping, Protocol
 
 import numpy as np
 from numpy import ndarray as Array
@@ -33,10 +33,19 @@ from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.parameters import Parameter, Signature
 from rovsim.dynamics.engine.types import At, Vector6
 
-if TYPE_CHECKING:
-    from rovsim.dynamics.vehicle import Vehicle
-
 Means = Literal["any", "commands", "demands", "thrusters", "surfaces", "waterplane"]
+
+
+class Actuated(Protocol):
+    """What effects ask of a vehicle: how many thrusters it has, and its control surfaces."""
+
+    @property
+    def thruster_count(self) -> int:
+        """Number of thrusters."""
+
+    @property
+    def surface_names(self) -> tuple[str, ...]:
+        """Names of the control surfaces, in the vehicle file's order."""
 
 
 class Effect(ABC):
@@ -124,7 +133,7 @@ class Effect(ABC):
         return cls.starts
 
     @classmethod
-    def on(cls, vehicle: "Vehicle") -> "type[Effect]":
+    def on(cls, vehicle: Actuated) -> "type[Effect]":
         """The same effect with the parameters and starts that it has on a vehicle."""
         return cls
 

@@ -1,16 +1,12 @@
 """Rudders and fins that lift less than they should."""
 
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Effect, Parameter
+from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter
 from rovsim.dynamics.effects.parameters import Signature
-
-if TYPE_CHECKING:
-    from rovsim.dynamics.vehicle import Vehicle
 
 
 def _gain(name: str) -> Parameter:
@@ -40,9 +36,9 @@ class FinEffectiveness(Coefficients):
     parameters = (_gain("all"),)
 
     @classmethod
-    def on(cls, vehicle: "Vehicle") -> type[Effect]:
+    def on(cls, vehicle: Actuated) -> type[Effect]:
         """Its surfaces by name."""
-        return _of(tuple(one.name for one in vehicle.surfaces))
+        return _of(vehicle.surface_names)
 
     def enter(self, body: Body) -> None:
         """Scale the lift of each surface, in the vehicle file's order."""

@@ -2,16 +2,12 @@
 
 from functools import cache
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Effect, Parameter, Shaping
+from rovsim.dynamics.effects.base import Actuated, Effect, Parameter, Shaping
 from rovsim.dynamics.effects.parameters import Signature
-
-if TYPE_CHECKING:
-    from rovsim.dynamics.vehicle import Vehicle
 
 
 class ThrusterOrder(Shaping):
@@ -38,9 +34,9 @@ class ThrusterOrder(Shaping):
     starts = ({"first": 1.0, "second": 2.0},)
 
     @classmethod
-    def on(cls, vehicle: "Vehicle") -> type[Effect]:
+    def on(cls, vehicle: Actuated) -> type[Effect]:
         """All pairs of its thrusters."""
-        return _among(len(vehicle.thrusters.units))
+        return _among(vehicle.thruster_count)
 
     def shaped(self, command: Array) -> Array:
         """Two columns in each other's place."""

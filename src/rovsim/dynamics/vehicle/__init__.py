@@ -7,10 +7,11 @@ cross_flow      forces of products of velocities, named as by SNAME
 surfaces        rudders and fins
 file            the whole file
 check           whether its parts fit together
+load            a vehicle by its name or from a file
 """
 
-from rovsim.dynamics.vehicle.file import (
-    Vehicle,
+from rovsim.dynamics.vehicle.file import Vehicle
+from rovsim.dynamics.vehicle.load import (
     build_vehicle,
     default_vehicle,
     known_vehicle,

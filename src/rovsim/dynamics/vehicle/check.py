@@ -2,22 +2,20 @@
 
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Iterator
+from typing import Iterator
 
 import numpy as np
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
-
-if TYPE_CHECKING:
-    from rovsim.dynamics.vehicle.file import Vehicle
+from rovsim.dynamics.vehicle.file import Vehicle
 
 UNIT = 0.01  # how far the length of a direction may be from 1
 HANGING = ("heave", "roll", "pitch")  # axes on which weight and buoyancy act
 Finding = tuple[str, str, str]  # found, expected, remedy
 
 
-def check_vehicle(vehicle: "Vehicle", where: Path | str) -> None:
+def check_vehicle(vehicle: Vehicle, where: Path | str) -> None:
     """Refuse parts that do not fit together.
 
     Raises:
@@ -28,7 +26,7 @@ def check_vehicle(vehicle: "Vehicle", where: Path | str) -> None:
             raise BadInput(found, where=where, expected=expected, remedy=remedy)
 
 
-def _names(vehicle: "Vehicle") -> Iterator[Finding]:
+def _names(vehicle: Vehicle) -> Iterator[Finding]:
     for name, count in Counter(vehicle.command_columns).items():
         if count > 1:
             found = f"{count} command columns are called {name}"
@@ -37,7 +35,7 @@ def _names(vehicle: "Vehicle") -> Iterator[Finding]:
         yield "a surface is called all", "another name: all means all of them", "Rename it."
 
 
-def _mixer(vehicle: "Vehicle") -> Iterator[Finding]:
+def _mixer(vehicle: Vehicle) -> Iterator[Finding]:
     count, mixer = len(vehicle.thrusters.units), vehicle.thrusters.mixer
     for axis in AXES if mixer else ():
         row = getattr(mixer, axis)
@@ -46,7 +44,7 @@ def _mixer(vehicle: "Vehicle") -> Iterator[Finding]:
             yield found, "one number per thruster", "Complete that row."
 
 
-def _thrusters(vehicle: "Vehicle") -> Iterator[Finding]:
+def _thrusters(vehicle: Vehicle) -> Iterator[Finding]:
     for unit in vehicle.thrusters.units:
         length = float(np.linalg.norm(unit.direction))
         if abs(length - 1.0) > UNIT:
@@ -64,7 +62,7 @@ def _thrusters(vehicle: "Vehicle") -> Iterator[Finding]:
             yield found, "thrusters.force_curve, or one of its own", "Add one."
 
 
-def _surfaces(vehicle: "Vehicle") -> Iterator[Finding]:
+def _surfaces(vehicle: Vehicle) -> Iterator[Finding]:
     jets = [unit.name for unit in vehicle.thrusters.units if not unit.azimuth]
     for one in vehicle.surfaces:
         normal = np.array(one.normal)
@@ -77,7 +75,7 @@ def _surfaces(vehicle: "Vehicle") -> Iterator[Finding]:
             yield found, "the name of a thruster that does not turn", nearest(one.in_wake_of, jets)
 
 
-def _inertia(vehicle: "Vehicle") -> Iterator[Finding]:
+def _inertia(vehicle: Vehicle) -> Iterator[Finding]:
     moments = {"roll": "Ixx", "pitch": "Iyy", "yaw": "Izz"}
     for axis, name in moments.items():
         if axis in vehicle.degrees_of_freedom and getattr(vehicle.rigid_body.inertia, name) is None:
@@ -86,7 +84,7 @@ def _inertia(vehicle: "Vehicle") -> Iterator[Finding]:
             yield found, f"a value for it, since the vehicle moves in {axis}", remedy
 
 
-def _buoyancy(vehicle: "Vehicle") -> Iterator[Finding]:
+def _buoyancy(vehicle: Vehicle) -> Iterator[Finding]:
     if vehicle.floats or not set(HANGING) & set(vehicle.degrees_of_freedom):
         return
     for name in ("displaced_volume", "center_of_buoyancy"):
@@ -95,7 +93,7 @@ def _buoyancy(vehicle: "Vehicle") -> Iterator[Finding]:
             yield f"'rigid_body.{name}' is missing", f"a value for 'rigid_body.{name}'", remedy
 
 
-def _products(vehicle: "Vehicle") -> Iterator[Finding]:
+def _products(vehicle: Vehicle) -> Iterator[Finding]:
     for name in vehicle.cross_flow:
         if name in vehicle.hydrodynamics.cross_flow:
             found = f"'{name}' stands in cross_flow and in hydrodynamics.cross_flow"

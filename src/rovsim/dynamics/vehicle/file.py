@@ -1,7 +1,5 @@
 """A vehicle file: what stands in it, and the nominal effects it stands for."""
 
-from functools import cache
-from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
@@ -9,16 +7,12 @@ from numpy import ndarray as Array
 from pydantic import Field, PositiveFloat
 
 from rovsim import AXES
-from rovsim.core.errors import BadInput, nearest
-from rovsim.core.schema import Section, checked
-from rovsim.core.shipped import conf_file, conf_names
-from rovsim.core.yaml_files import read_yaml
+from rovsim.core.schema import Section
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.dynamics.effects.rigid_body import RigidBody
 from rovsim.dynamics.effects.waterplane import WaterplaneStiffness
-from rovsim.dynamics.vehicle.check import check_vehicle
 from rovsim.dynamics.vehicle.cross_flow import CrossFlow, Products
 from rovsim.dynamics.vehicle.curves import NonNegative
 from rovsim.dynamics.vehicle.hydrodynamics import Hydrodynamics
@@ -116,6 +110,16 @@ class Vehicle(Section):
         return np.array([axis in self.degrees_of_freedom for axis in AXES])
 
     @property
+    def thruster_count(self) -> int:
+        """Number of thrusters."""
+        return len(self.thrusters.units)
+
+    @property
+    def surface_names(self) -> tuple[str, ...]:
+        """Names of the control surfaces, in the file's order."""
+        return tuple(one.name for one in self.surfaces)
+
+    @property
     def floats(self) -> bool:
         """Whether it has a waterplane."""
         return self.waterplane is not None
@@ -128,7 +132,7 @@ class Vehicle(Section):
         """
         units = self.thrusters.units
         own = [[u.name, f"{u.name}_angle"] if u.azimuth else [u.name] for u in units]
-        return (*(name for names in own for name in names), *(one.name for one in self.surfaces))
+        return (*(name for names in own for name in names), *self.surface_names)
 
     @property
     def angles(self) -> tuple[bool, ...]:
@@ -174,44 +178,3 @@ class HeldAxes(Coefficients):
     def enter(self, body: Body) -> None:
         """Hold them."""
         body.free = self.free
-
-
-@cache
-def default_vehicle() -> str:
-    """Name of the vehicle where none is named: conf/default_vehicle.yaml says which."""
-    path = conf_file("default_vehicle.yaml")
-    assert path is not None  # it comes with rovsim
-    return str(read_yaml(path)["vehicle"])
-
-
-def known_vehicle(name: str) -> Path | None:
-    """The file of a vehicle that has a name, None if there is none."""
-    return conf_file(f"vehicle/{name}.yaml")
-
-
-def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
-    """Load a vehicle by its name in conf/vehicle/, or by a path (relative to `beside`).
-
-    Raises:
-        BadInput: no such vehicle, or its file does not describe one.
-    """
-    path = known_vehicle(name) or (beside or Path()) / name
-    if not path.is_file():
-        raise BadInput(
-            f"unknown vehicle '{name}'",
-            where=beside or "vehicle",
-            expected="a name in conf/vehicle/ or the path of a vehicle file",
-            remedy=nearest(name, conf_names("vehicle")),
-        )
-    return build_vehicle(read_yaml(path), path)
-
-
-def build_vehicle(content: object, where: Path | str) -> Vehicle:
-    """The vehicle of a file's content.
-
-    Raises:
-        BadInput: it does not describe one.
-    """
-    vehicle = checked(Vehicle, content, where)
-    check_vehicle(vehicle, where)
-    return vehicle

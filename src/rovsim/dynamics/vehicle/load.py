@@ -1,0 +1,52 @@
+"""Vehicles by their names in conf/vehicle/, or from a file."""
+
+from functools import cache
+from pathlib import Path
+
+from rovsim.core.errors import BadInput, nearest
+from rovsim.core.schema import checked
+from rovsim.core.shipped import conf_file, conf_names
+from rovsim.core.yaml_files import read_yaml
+from rovsim.dynamics.vehicle.check import check_vehicle
+from rovsim.dynamics.vehicle.file import Vehicle
+
+
+@cache
+def default_vehicle() -> str:
+    """Name of the vehicle where none is named: conf/default_vehicle.yaml says which."""
+    path = conf_file("default_vehicle.yaml")
+    assert path is not None  # it comes with rovsim
+    return str(read_yaml(path)["vehicle"])
+
+
+def known_vehicle(name: str) -> Path | None:
+    """The file of a vehicle that has a name, None if there is none."""
+    return conf_file(f"vehicle/{name}.yaml")
+
+
+def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
+    """Load a vehicle by its name in conf/vehicle/, or by a path (relative to `beside`).
+
+    Raises:
+        BadInput: no such vehicle, or its file does not describe one.
+    """
+    path = known_vehicle(name) or (beside or Path()) / name
+    if not path.is_file():
+        raise BadInput(
+            f"unknown vehicle '{name}'",
+            where=beside or "vehicle",
+            expected="a name in conf/vehicle/ or the path of a vehicle file",
+            remedy=nearest(name, conf_names("vehicle")),
+        )
+    return build_vehicle(read_yaml(path), path)
+
+
+def build_vehicle(content: object, where: Path | str) -> Vehicle:
+    """The vehicle of a file's content.
+
+    Raises:
+        BadInput: it does not describe one.
+    """
+    vehicle = checked(Vehicle, content, where)
+    check_vehicle(vehicle, where)
+    return vehicle
