@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rovsim.diagnosis.observer.least_squares import (
+    eliminate_columns,
     inner_products,
     project_out,
     select_columns,
@@ -27,6 +28,22 @@ def test_the_few_that_matter_are_chosen_among_many(columns):
     assert by_name[6] == pytest.approx(-2.0, abs=0.05)
     left = target + found.x @ columns[list(found.chosen)]
     assert found.decrease == pytest.approx(target @ target - left @ left, rel=1e-6)
+
+
+def test_two_that_hide_each_other_are_found_from_above(columns):
+    apart = np.random.default_rng(6).normal(size=500)
+    alike = np.vstack([columns, columns[0] + 0.05 * apart])
+    target = -20.0 * (alike[0] - alike[-1]) + columns[7]  # of `apart`, which no column shows
+    H, b = inner_products(alike), alike @ target
+    alone = np.max(b**2 / np.diag(H) * (np.arange(len(b)) != 7))
+    found = eliminate_columns(H, b, price=2.0 * alone)
+    assert set(found.chosen) == {0, 7, 8}
+    assert found.x == pytest.approx([20.0, -1.0, -20.0])
+    assert found.decrease == pytest.approx(target @ target)
+
+
+def test_nothing_is_kept_of_what_explains_nothing(columns):
+    assert eliminate_columns(inner_products(columns), np.zeros(8), price=12.0).chosen == ()
 
 
 def test_the_joint_solution_is_the_bounded_one(columns):

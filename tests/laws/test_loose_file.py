@@ -7,8 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.diagnosis.selection.loose_file import FILE_ODDS, explains, weigh
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.selection.loose_file import (
+    FILE_ODDS,
+    FileNumber,
+    cost_beside,
+    explains,
+    weigh,
+)
 
 PRICE = 10.0
 LIMIT = PRICE + FILE_ODDS  # of an effect with one number
@@ -18,8 +23,8 @@ LIMIT = PRICE + FILE_ODDS  # of an effect with one number
 def test_a_loose_file_takes_what_its_numbers_take_within_their_spread(seed, count):
     random = np.random.default_rng(seed)
     rows, spread = random.normal(size=(1 + count, 40)), random.uniform(0.01, 3.0, count)
-    workspace = SimpleNamespace(file_columns=(list(range(count)), spread))
-    cost = SearchWorkspace.cost_beside_file(workspace, rows @ rows.T)
+    numbers = [FileNumber(None, "", 1 + k, one) for k, one in enumerate(spread)]
+    cost = cost_beside(numbers, rows @ rows.T)
     stacked = np.hstack([rows, np.vstack([np.zeros(count), np.diag(1.0 / spread)])])
     x = np.linalg.lstsq(stacked[1:].T, -stacked[0], rcond=None)[0]
     assert cost == pytest.approx(np.sum((stacked[0] + x @ stacked[1:]) ** 2), rel=1e-6)
@@ -37,8 +42,9 @@ def fit(cost, *names):
 def workspace_of(without=0.0):
     """`without`: what is left beside a loose file if a term is taken away."""
     return SimpleNamespace(
-        price=PRICE, products=lambda seen: seen, cost_beside_file=lambda cost: cost,
-        products_without=lambda found, term: without,
+        price=PRICE, products=lambda seen: np.array([[seen]]),
+        products_without=lambda found, term: np.array([[without]]),
+        sensitivities=SimpleNamespace(base_model=None, blocks=()),
     )  # fmt: skip
 
 

@@ -77,6 +77,24 @@ def select_columns(H: Array, b: Array, price: float) -> Gain:
     return Gain(float(-b[chosen] @ x), tuple(chosen), x)
 
 
+def eliminate_columns(H: Array, b: Array, price: float) -> Gain:
+    """The columns that are worth their price beside each other: from all of them, down.
+
+    Two of opposite sign (linear and quadratic drag of one axis) are found, though neither explains
+    anything alone.
+    """
+    chosen = [j for j in range(len(b)) if H[j, j] > 0.0]
+    while chosen:
+        own = H[np.ix_(chosen, chosen)]
+        x, variance = solve(own, b[chosen]), np.diag(solve(own, np.eye(len(chosen))))
+        worth = x**2 / variance
+        weakest = int(np.argmin(worth))
+        if worth[weakest] >= price:
+            return Gain(float(b[chosen] @ x), tuple(chosen), -x)
+        chosen.pop(weakest)
+    return Gain(0.0, (), np.empty(0))
+
+
 def _worth(H: Array, b: Array, chosen: list[int]) -> Array:
     """Decrease (k,) of the sum of squares by each further column."""
     if not chosen:

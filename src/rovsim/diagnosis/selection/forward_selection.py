@@ -10,7 +10,6 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection import loose_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
@@ -91,7 +90,9 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
             if workspace.score(best) - workspace.score(current) < threshold:
                 break
             if loose_file.explains(workspace, best, trying[tried.index(best)].term.id):
-                continue
+                best = add_file(workspace, current)
+                if workspace.score(best) - workspace.score(current) < threshold:
+                    continue
             if find_relevant(workspace, best, [current.hypothesis.model])[0]:
                 return prune(workspace, best)
     return None
@@ -168,27 +169,26 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     """Without effects that the vehicle file, where it is off anyway, explains about as well."""
-    if not loose_file.is_off(current.hypothesis):
-        return current
-    left = loose_file.measure_cost(workspace, current)
-    for term, rest in zip(current.hypothesis.terms, workspace.remove_each(current), strict=True):
-        limit = loose_file.find_limit(workspace, term)
-        if workspace.cost_beside_file(rest.products) - left > limit:
+    for term in current.hypothesis.terms:
+        if not loose_file.explains(workspace, current, term.id):
             continue
-        fewer = prune(workspace, _add_from_file(workspace, workspace.fit(rest.hypothesis)))
-        if loose_file.measure_cost(workspace, fewer) - left <= limit:
+        rest = workspace.fit(workspace.drop(current, [(term,)])[0])
+        fewer = prune(workspace, add_file(workspace, rest))
+        more = loose_file.measure_cost(workspace, fewer)
+        if more - loose_file.measure_cost(workspace, current) <= loose_file.find_limit(
+            workspace, term
+        ):
             return prefer_file(workspace, fewer)
     return current
 
 
-def _add_from_file(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """With all that the vehicle file states and that is worth its price, one at a time."""
-    while True:
-        left = [p for p in list_promising(workspace, current) if p.term.id in STATED]
-        trial = workspace.fit(current.hypothesis.with_term(left[0].term)) if left else current
-        if workspace.score(trial) <= workspace.score(current):
-            return current
-        current = trial
+def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """With all that the vehicle file states and that is worth its price."""
+    wanted = loose_file.propose_file(workspace, current)
+    if wanted is None:
+        return current
+    trial = workspace.fit(wanted)
+    return trial if workspace.score(trial) > workspace.score(current) else current
 
 
 def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:

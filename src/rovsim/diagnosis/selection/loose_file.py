@@ -3,13 +3,23 @@
 Where something that the file states was selected, the file is off elsewhere too, mostly by too
 little to be found: a dozen such numbers, none of them worth its price, may explain together what a
 special effect seems to. So there it is judged with all of the file free, as far as such files are
-off (`nominal_terms.py`), and to first order.
+off (`nominal_terms.py`), and to first order. Where the file explains it, its numbers are sought
+together: linear and quadratic drag of opposite sign look like friction, and neither alone explains
+anything.
 """
 
+from typing import NamedTuple
+
+import numpy as np
+from numpy import ndarray as Array
+
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
+from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED
+from rovsim.diagnosis.selection.nominal_terms import STATED, spread_of_file
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.dynamics.effects.thrusters import ThrusterGain
 
 # In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
 # thirty times, against a coefficient of a file that is known to be off.
@@ -17,14 +27,58 @@ FILE_ODDS = 13.8
 ARGUABLE = 100.0  # in twice the log likelihood: beyond it no file makes up for the difference
 
 
+class FileNumber(NamedTuple):
+    """A parameter of a candidate that the file states.
+
+    `row` of the workspace's products; `spread`, in scales, how far the file may be off.
+    """
+
+    candidate: Candidate
+    parameter: str
+    row: int
+    spread: float
+
+
 def is_off(h: Hypothesis) -> bool:
     """Whether something was selected that the vehicle file states."""
     return any(term.id in STATED for term in h.terms)
 
 
+def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:
+    """All that the vehicle file can be wrong about."""
+    base, found = workspace.sensitivities.base_model, []
+    for block in workspace.sensitivities.blocks:
+        if not block.candidate.absent or block.candidate.effect.id not in STATED:
+            continue
+        each = zip(block.derivatives, block.candidate.term().parameters, strict=True)
+        for column, parameter in each:
+            if spread := spread_of_file(base, block.candidate.effect, parameter):
+                found.append(FileNumber(block.candidate, parameter.name, 1 + column, spread))
+    return found
+
+
+def cost_beside(numbers: list[FileNumber], products: Array) -> float:
+    """What is left of the sum of squares with all numbers of the file free, to first order.
+
+    Args:
+        numbers: of the file.
+        products: of the innovations and the candidates' columns (1 + c, 1 + c).
+    """
+    own = [number.row for number in numbers]
+    spread = np.array([number.spread for number in numbers])
+    H, b = products[np.ix_(own, own)], products[own, 0]
+    return float(products[0, 0] - b @ solve(H + np.diag(spread**-2.0), b))
+
+
 def measure_cost(workspace: SearchWorkspace, found: Fit) -> float:
-    """What a fit leaves of the sum of squares, all of the file free beside it."""
-    return workspace.cost_beside_file(workspace.products(found.seen))
+    """The same of a fit."""
+    return cost_beside(list_numbers(workspace), workspace.products(found.seen))
+
+
+def measure_loss(workspace: SearchWorkspace, found: Fit, term: Term) -> float:
+    """How much more is left beside a loose file without one term of a fit."""
+    numbers, rest = list_numbers(workspace), workspace.products_without(found, term)
+    return cost_beside(numbers, rest) - cost_beside(numbers, workspace.products(found.seen))
 
 
 def find_limit(workspace: SearchWorkspace, term: Term) -> float:
@@ -34,12 +88,10 @@ def find_limit(workspace: SearchWorkspace, term: Term) -> float:
 
 def explains(workspace: SearchWorkspace, found: Fit, name: str) -> bool:
     """Whether a file that is off anyway explains what a special effect of a fit does."""
-    term = next(one for one in found.hypothesis.terms if one.id == name)
     if name in STATED or not is_off(found.hypothesis):
         return False
-    rest = workspace.products_without(found, term)
-    loss = workspace.cost_beside_file(rest) - measure_cost(workspace, found)
-    return loss <= find_limit(workspace, term)
+    term = next(one for one in found.hypothesis.terms if one.id == name)
+    return measure_loss(workspace, found, term) <= find_limit(workspace, term)
 
 
 def weigh(
@@ -55,3 +107,19 @@ def weigh(
         return deficit
     more = measure_cost(workspace, trial) - measure_cost(workspace, current)
     return more + find_limit(workspace, rival) - find_limit(workspace, term)
+
+
+def propose_file(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
+    """With all numbers of the file that are worth their price beside each other; None: nothing.
+
+    To first order. Without the gain of the thrusters: any other number left out would seem to fix
+    the common scale, and the gain would follow it away from what the file says.
+    """
+    numbers = [n for n in list_numbers(workspace) if n.candidate.effect is not ThrusterGain]
+    own, M = [number.row for number in numbers], workspace.products(current.seen)
+    gain = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.price)
+    found = current.hypothesis
+    for j, x in zip(gain.chosen, gain.x, strict=True):
+        term = numbers[j].candidate.term([numbers[j].parameter])
+        found = found.with_term(term.at(term.x + x))
+    return found if gain.chosen else None

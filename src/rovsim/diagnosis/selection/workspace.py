@@ -18,7 +18,6 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products, project_out, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit
-from rovsim.diagnosis.selection.nominal_terms import spread_of_file
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, rank_proposals
 from rovsim.diagnosis.selection.sensitivities import (
     Sensitivities,
@@ -204,30 +203,6 @@ class SearchWorkspace:
         if not np.isfinite(products).all():
             return []
         return rank_proposals(products, self.sensitivities.blocks, self.price)
-
-    @cached_property
-    def file_columns(self) -> tuple[list[int], Array]:
-        """Columns (j,) of what a vehicle file can be wrong about, and how far, in their units."""
-        base = self.sensitivities.base_model
-        columns, spread = [], []
-        for block in self.sensitivities.blocks:
-            term = block.candidate.term()
-            for column, parameter in zip(block.derivatives, term.parameters, strict=True):
-                own = spread_of_file(base, block.candidate.effect, parameter)
-                if block.candidate.absent and own:
-                    columns.append(column)
-                    spread.append(own)
-        return columns, np.array(spread)
-
-    def cost_beside_file(self, products: Array) -> float:
-        """What is left of the sum of squares where the vehicle file is off as it may be.
-
-        To first order, from `products` of the innovations and the columns.
-        """
-        columns, spread = self.file_columns
-        own = [1 + j for j in columns]
-        H, b = products[np.ix_(own, own)], products[own, 0]
-        return float(products[0, 0] - b @ solve(H + np.diag(spread**-2.0), b))
 
     def list_modes(self, term: Term) -> list[Term]:
         """Starts of the same effect, if it has modes, with the same free values."""
