@@ -9,8 +9,9 @@
 # # The figures and tables of a chapter
 #
 # Physics first, then a learned residual for what is left. Everything is written as a thesis takes
-# it: figures as PDF, 150 mm wide, and tables for LaTeX (package `booktabs`). The recordings are
-# those of [the tutorial](tutorial.py): run that first, or open a campaign of your own.
+# it: figures as PDF, 150 mm wide, and tables for LaTeX (packages `booktabs` and `siunitx`). The
+# recordings are those of [the tutorial](tutorial.py): run that first, or open a campaign of your
+# own.
 
 # %%
 from pathlib import Path

@@ -170,7 +170,7 @@ def test_the_published_figure_shows_what_is_in_every_fold_and_stands_on_effects(
     figure = drawn("against_published", {"published_errors": found})
     (legend,) = figure.legends
     shown = [text.get_text() for text in legend.get_texts()]
-    assert shown == ["nominal", "effects", "effects+knn_6dof"]
+    assert shown == ["nominal", "nominal + effects", "effects + KNN (6-DoF)"]
 
 
 def test_an_unknown_figure_names_the_nearest():

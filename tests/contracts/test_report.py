@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
 from statistics import geometric_mean
@@ -20,7 +21,7 @@ from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.html.verdict import explain, part_sentences
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
-from rovsim.reporting.wording import several, significant
+from rovsim.reporting.wording import explain_model, several, significant, title
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import DiagnosisErrors, LookedAt, Unexplained
 from rovsim.results.error_conditions import ErrorConditions
@@ -248,7 +249,7 @@ def test_effects_and_residual_are_said_cell_by_cell(content):
     models = {"effects+knn_6dof": one, "nominal": one}
     (sentence,) = published_errors.tell_standings(known.model_copy(update={"models": models}))
     assert sentence == (
-        "effects+knn_6dof: 22 of 24 cells below the mark, geometric mean of the ratios –. "
+        "effects + KNN (6-DoF): 22 of 24 cells below the mark, geometric mean of the ratios –. "
         "Not below: a yaw velocity MAE (1.25), b yaw acceleration RMSE (–)."
     )
 
@@ -287,11 +288,51 @@ def test_tables_hold_the_comparisons_numbers(content, quantity):
     latex = table.latex()
     assert all(axis in latex for axis in AXES)
     assert r"\toprule" in latex
-    assert latex.count(r"\textbf{") >= 6
+    assert latex.count(r"\bfseries ") >= 6
 
 
-def test_latex_special_characters_are_escaped():
-    assert r"zero\_acceleration" in tabulate_ladder(study()["ladder"]).latex()
+def test_latex_special_characters_are_escaped(content):
+    table = tabulate_ladder(content["ladder"])
+    table = replace(table, frame=table.frame.rename(index={"nominal": "my_model & mine"}))
+    assert r"my\_model \& mine &" in table.latex()
+
+
+def test_latex_numbers_are_aligned_at_the_decimal_point(content):
+    table = tabulate_errors(content["comparison"])
+    table.frame.iloc[0, :4] = [float("nan"), 3.2e-5, 123.4, 0.00467]
+    latex = table.latex()
+    assert latex.startswith(r"% In the preamble: \usepackage{booktabs,siunitx}")
+    widths = re.findall(r"S\[table-format=(\d)\.(\d)\]", latex)
+    assert widths == [("1", "4"), ("1", "4"), ("3", "4"), ("1", "5"), ("1", "4"), ("1", "4")]
+    row = next(line for line in latex.splitlines() if line.startswith("nominal &"))
+    assert row.split(" & ")[1:4] == ["{–}", r"\bfseries {\num{3.20e-05}}", "123"]
+
+
+def test_models_have_readable_names_on_paper_and_raw_ones_for_programs(content):
+    table = tabulate_ladder(content["ladder"])
+    html = rendered(ladder=content["ladder"], comparison=content["comparison"])
+    for raw, said in (("zero_acceleration", "constant velocity"), ("knn_6dof", "KNN (6-DoF)")):
+        assert f"{raw}," in table.csv()
+        assert f"{said} &" in table.latex()
+        assert f'<th scope="row">{said}</th>' in html
+        assert raw not in html
+    assert f"<dt>constant velocity</dt><dd>{explain_model('zero_acceleration')}" in html
+
+
+@pytest.mark.parametrize(
+    ("model", "said", "meaning"),
+    [
+        ("effects+knn_6dof", "effects + KNN (6-DoF)", "nominal + effects, and nearest neighbours"),
+        ("svgp_all", "sparse GP (all runs)", "nominal, and a sparse Gaussian process"),
+        ("+thruster_lag", "+ thruster_lag", "the step above"),
+        ("effects", "nominal + effects", "nominal, and the effects"),
+        ("my_own", "my_own", ""),
+    ],
+)
+def test_a_model_is_called_and_explained(model, said, meaning):
+    assert title(model) == said
+    assert explain_model(model).startswith(meaning)
+    assert bool(explain_model(model)) == bool(meaning)
 
 
 def test_of_many_runs_it_says_which_are_drawn(content):

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.reporting.figures.palette import Look, looks
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import title
 from rovsim.results.base import or_nan
 from rovsim.results.error_conditions import ConditionTable, ModelConditions
 from rovsim.results.ladder import Ladder
@@ -37,7 +37,7 @@ def chart_ladder(ladder: Ladder) -> LadderChart:
     """The bars of a ladder."""
     style = looks(step.model for step in ladder.models)
     bars = tuple(
-        LadderBar(s.model, short(s.model, NAME), or_nan(s.windows_2s), style[s.model])
+        LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), style[s.model])
         for s in ladder.models
     )
     return LadderChart(bars, or_nan(ladder.noise_floor))

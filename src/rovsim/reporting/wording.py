@@ -1,9 +1,30 @@
 """Names and numbers as people write them."""
 
 import math
+import re
 from typing import Iterable, Sequence
 
 LONGEST = 40  # letters of a name before its middle is left out
+# The study's own models; a user's keep the name of their file.
+TITLES = {
+    "zero_acceleration": "constant velocity", "refitted": "nominal, refitted",
+    "effects": "nominal + effects", "noise_floor": "noise floor",
+}  # fmt: skip
+MEANINGS = {
+    "zero_acceleration": "a vehicle that keeps its velocity; no model should be worse",
+    "nominal": "the vehicle file as it is",
+    "refitted": "nominal; drag, added mass, buoyancy and gain of thrust fitted to the train runs",
+    "effects": "nominal, and the effects that the diagnosis selected",
+    "noise_floor": "what a perfect model would show, because the measurement is noisy",
+}
+LEARNERS = {  # id: what people say, and in full
+    "knn": ("KNN", "nearest neighbours"),
+    "gp": ("GP", "a Gaussian process"),
+    "svgp": ("sparse GP", "a sparse Gaussian process"),
+}
+CONTROLS = {"3dof": "3-DoF", "6dof": "6-DoF", "all": "all runs"}
+LEARNED = re.compile(rf"(?:(.*)\+)?({'|'.join(LEARNERS)})_({'|'.join(CONTROLS)})")
+STEP = re.compile(r"\+(\w+)")  # of a diagnosis' ladder
 MOST = 8  # names told of many: a line of run ids
 
 
@@ -12,6 +33,31 @@ def short(name: str, length: int = LONGEST) -> str:
     if len(name) <= length:
         return name
     return f"{name[: length // 2]}…{name[-(length // 2 - 1) :]}"
+
+
+def title(model: str, length: int = LONGEST) -> str:
+    """Return a model's name as people say it: `effects+knn_6dof` is "effects + KNN (6-DoF)"."""
+    if learned := LEARNED.fullmatch(model):
+        base, learner, control = learned.groups()
+        said = f"{LEARNERS[learner][0]} ({CONTROLS[control]})"
+        return short(f"{base} + {said}" if base else said, length)
+    if effect := STEP.fullmatch(model):
+        return short(f"+ {effect[1]}", length)
+    return short(TITLES.get(model, model), length)
+
+
+def explain_model(model: str) -> str:
+    """What a model of the study is; nothing of one that its user made."""
+    if learned := LEARNED.fullmatch(model):
+        base, learner, control = learned.groups()
+        of = "" if control == "all" else f" under {CONTROLS[control]} control"
+        return (
+            f"{title(base or 'nominal')}, and {LEARNERS[learner][1]} that learned the rest of the "
+            f"acceleration from the train runs{of}"
+        )
+    if STEP.fullmatch(model):
+        return "the step above, and this effect"
+    return MEANINGS.get(model, "")
 
 
 def several(names: Sequence[str]) -> str:

@@ -19,6 +19,7 @@ from rovsim.reporting.figures.style import save
 from rovsim.reporting.html.verdict import explain
 from rovsim.reporting.report_data import ONCE, PER_RUN, ReportData, select_arguments
 from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
+from rovsim.reporting.wording import title
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
@@ -120,7 +121,7 @@ class ShownComparison(Figures):
         parts = [html.heading("Error on the test runs"), html.table(self.errors.to_frame())]
         parts += [html.heading("Velocity RMSE of 2 s windows"), html.table(self.table())]
         for name, lines in self.sentences.items():
-            parts += [html.heading(f"Where {name} fails"), html.sentences(lines)]
+            parts += [html.heading(f"Where {title(name)} fails"), html.sentences(lines)]
         return "".join([*parts, self._picture("error_growth")])
 
 

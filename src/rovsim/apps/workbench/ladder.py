@@ -10,7 +10,7 @@ from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.reporting.charts import chart_ladder
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import significant, title
 from rovsim.results.base import or_none
 from rovsim.results.ladder import Ladder
 
@@ -31,7 +31,7 @@ async def show(bench: Workbench, place: Place) -> None:
     chart(chart_of(ladder), about, 60 + 36 * len(ladder.steps))
     rows = [
         (
-            s.model,
+            title(s.model),
             [
                 cell(s.windows_2s, f"{s.model}/windows_2s"),
                 *(cell(s.velocity_mae[a], f"{s.model}/velocity_mae/{a}") for a in AXES),

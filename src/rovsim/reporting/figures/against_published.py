@@ -11,7 +11,7 @@ from rovsim.evaluation.held_out.published_errors import COUNTED, PUBLISHED
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import Look, Style, looks
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import short, title
 from rovsim.results.base import or_nan
 from rovsim.results.ladder import EFFECTS
 from rovsim.results.published_errors import PublishedCell, PublishedErrors
@@ -40,7 +40,7 @@ def draw(*, published_errors: PublishedErrors) -> Figure:
         _panel(axes, cells, style)
         axes.set_ylabel(f"{LABELS[metric]} / mark (–)")
     legend(
-        figure, [Line2D([], [], label=short(n), **_look(k, style[n])) for k, n in enumerate(names)]
+        figure, [Line2D([], [], label=title(n), **_look(k, style[n])) for k, n in enumerate(names)]
     )
     beyond = any(_ratio(c, n) > HIGHEST for c in published_errors.cells for n in names)
     note(figure, [f"On the upper edge: {HIGHEST:g} or more, or no value." if beyond else ""])

@@ -8,7 +8,7 @@ from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import listed
+from rovsim.reporting.wording import listed, title
 from rovsim.results.base import or_nan
 from rovsim.results.growth import Growth
 
@@ -31,7 +31,7 @@ def draw(*, growth: Growth) -> Figure:
             values = list(map(or_nan, curve.velocity_rmse[axis]))
             if np.isfinite(values).any():
                 drawn.add(name)
-                axes.plot(curve.horizon_s, values, label=name, **style[name].line())
+                axes.plot(curve.horizon_s, values, label=title(name), **style[name].line())
         axes.set_title(axis)
         axes.set_ylim(bottom=0)
         axes.set_xlim(left=0)
@@ -41,7 +41,7 @@ def draw(*, growth: Growth) -> Figure:
             axes.set_ylabel(f"velocity RMSE ({unit})")
     for axes in panels[1]:
         axes.set_xlabel("time since start (s)")
-    missing = [name for name in growth.models if name not in drawn]
+    missing = [title(name) for name in growth.models if name not in drawn]
     legend(figure, lines(style))
     note(figure, [f"No values: {listed(missing)}." if missing else ""])
     return figure

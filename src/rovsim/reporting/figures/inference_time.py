@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 
 from rovsim.reporting.figures.legends import legend, nothing, plain_log
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import title
 from rovsim.results.timing import RATES, BothWays, Latency, Timing
 
 SECTION = "timing"
@@ -30,7 +30,7 @@ def draw(*, timing: Timing) -> Figure:
     for row, both in enumerate(timing.inference.values()):
         for way, (color, shift) in WAYS.items():
             _line(axes, len(names) - 1 - row + shift, getattr(both, way), color)
-    axes.set_yticks(range(len(names)), [short(n, 24) for n in reversed(names)])
+    axes.set_yticks(range(len(names)), [title(n, 24) for n in reversed(names)])
     axes.set_ylim(-0.6, max(len(names), 1) - 0.4)
     axes.set_xlabel("time of one prediction (µs)")
     axes.grid(False, axis="y")

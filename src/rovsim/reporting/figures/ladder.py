@@ -11,7 +11,7 @@ from rovsim.reporting.charts import chart_ladder
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import short, significant
+from rovsim.reporting.wording import significant, title
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 
 SECTION = "ladder"
@@ -74,7 +74,7 @@ def _value(axes: Axes, y: int, value: float, top: float) -> None:
 
 def _remarks(ladder: Ladder, steps: Mapping[str, float], top: float) -> list[str]:
     splits = sorted({step.split for step in ladder.steps})
-    beyond = [short(name) for name, value in steps.items() if value > top]
+    beyond = [title(name) for name, value in steps.items() if value > top]
     return [
         f"Runs of the {' and '.join(splits)} split." if splits else "",
         f"The bar of {beyond[0]} is longer than the axis." if beyond else "",

@@ -14,19 +14,19 @@ from matplotlib.ticker import FuncFormatter
 
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.style import FONT_SIZE, MM, WIDTH
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import title
 
 EM = FONT_SIZE / 72  # inches
 
 
 def lines(looks: dict[str, Look]) -> list[Artist]:
     """Legend entries for lines."""
-    return [Line2D([], [], label=short(n), **look.line()) for n, look in looks.items()]
+    return [Line2D([], [], label=title(n), **look.line()) for n, look in looks.items()]
 
 
 def patches(looks: dict[str, Look]) -> list[Artist]:
     """Legend entries for bars."""
-    return [Patch(label=short(n), **look.bar()) for n, look in looks.items()]
+    return [Patch(label=title(n), **look.bar()) for n, look in looks.items()]
 
 
 def areas(looks: dict[str, Look]) -> list[Artist]:

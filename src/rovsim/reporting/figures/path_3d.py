@@ -13,7 +13,7 @@ from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.series import broken, masked
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import listed
+from rovsim.reporting.wording import listed, title
 
 SECTION = "compare"
 CAPTION = (
@@ -49,7 +49,7 @@ def draw(
         if np.isfinite(seen).sum() < np.isfinite(path).sum():
             leaving.append(name)
         paths[name] = seen
-        axes.plot(*broken(time, seen)[1].T, label=name, **style[name].line())
+        axes.plot(*broken(time, seen)[1].T, label=title(name), **style[name].line())
     for name in reversed(paths):  # the measured ends lie on top
         _ends(axes, paths[name], style[name].color)
     if tank is not None and np.isfinite(tank).all():

@@ -3,7 +3,7 @@
 from pandas import DataFrame, MultiIndex
 
 from rovsim import AXES
-from rovsim.reporting.wording import listed
+from rovsim.reporting.wording import listed, title
 from rovsim.results.comparison import OPEN_LOOP, Comparison
 
 
@@ -50,7 +50,7 @@ def relate(errors: DataFrame, base: str = "nominal") -> DataFrame:
 
 def name_gaps(errors: DataFrame) -> str:
     """Say which models lack a value on some axis."""
-    lacking = errors.index[errors.isna().any(axis=1)]
+    lacking = [title(model) for model in errors.index[errors.isna().any(axis=1)]]
     return f"No value on some axis or run: {listed(lacking)}." if len(lacking) else ""
 
 

@@ -12,7 +12,7 @@ from rovsim.reporting.figures.panels import plot_all, shade, six_panels
 from rovsim.reporting.figures.series import excerpt, masked
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.units import VELOCITY, VELOCITY_UNITS
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import title
 from rovsim.simulation.bands import LEVEL
 
 SECTION = "compare"
@@ -49,7 +49,7 @@ def draw(
         shade(axes, time[part], band[:, part], style[name])
     if part.stop - part.start < len(time):
         remarks.append(f"Excerpt of a run of {time[-1] - time[0]:.0f} s.")
-    shades = {f"{LEVEL:.0%} band of {short(name)}": style[name] for name in bands}
+    shades = {f"{LEVEL:.0%} band of {title(name)}": style[name] for name in bands}
     legend(figure, [*lines(style), *areas(shades)])
     note(figure, remarks)
     return figure

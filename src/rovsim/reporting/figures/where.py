@@ -12,7 +12,7 @@ from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import Look, looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.units import ACCELERATION_UNITS
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import title
 from rovsim.results.error_conditions import ConditionTable, ErrorConditions, ModelConditions
 
 SECTION = "where"
@@ -107,7 +107,7 @@ def _remarks(models: Mapping[str, ModelConditions]) -> Sequence[str]:
     if not models:
         return ["No model was searched."]
     splits = {m.split for m in models.values()}
-    told = [f"{short(n)}: runs of the {m.split} split" for n, m in models.items()]
+    told = [f"{title(n)}: runs of the {m.split} split" for n, m in models.items()]
     return [
         f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(told)}.",
         "Percent: share of the squared error that varies with the condition, model "

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from rovsim.reporting.charts import chart_conditions
 from rovsim.reporting.figures.legends import note, nothing
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import title
 from rovsim.results.error_conditions import ErrorConditions
 
 SECTION = "where"
@@ -39,7 +39,7 @@ def draw(*, where: ErrorConditions) -> Figure:
     axes.set_yticks(range(len(rows)), rows)
     axes.tick_params(length=0)
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    note(figure, [f"Model {short(name)}, runs of the {model.split} split."])
+    note(figure, [f"Model {title(name)}, runs of the {model.split} split."])
     return figure
 
 

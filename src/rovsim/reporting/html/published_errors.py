@@ -6,7 +6,7 @@ from rovsim.evaluation.held_out.pitfalls import PITFALLS
 from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED, stand
 from rovsim.reporting.html.marked import table
 from rovsim.reporting.tables import QUANTITIES
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import significant, title
 from rovsim.results.ladder import EFFECTS
 from rovsim.results.pitfalls import Cost, Pitfalls
 from rovsim.results.published_errors import ModelStanding, PublishedErrors
@@ -25,8 +25,9 @@ def _sentence(name: str, found: ModelStanding) -> str:
         f"{c.run} {c.axis} {QUANTITIES[c.metric][0]} ({_number(c.ratio)})" for c in found.not_below
     )
     return (
-        f"{name}: {found.below} of {found.cells} cells below the mark, geometric mean of the "
-        f"ratios {_number(found.geometric_mean)}. " + (f"Not below: {missed}." if missed else "")
+        f"{title(name)}: {found.below} of {found.cells} cells below the mark, geometric mean of "
+        f"the ratios {_number(found.geometric_mean)}. "
+        + (f"Not below: {missed}." if missed else "")
     ).strip()
 
 

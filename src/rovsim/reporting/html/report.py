@@ -25,7 +25,7 @@ from rovsim.reporting.tables import (
     tabulate_ladder,
     tabulate_published_errors,
 )
-from rovsim.reporting.wording import several, significant
+from rovsim.reporting.wording import explain_model, several, significant, title
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.published_errors import PublishedErrors
@@ -110,6 +110,7 @@ def render(report: Report) -> str:
             ladder=tabulate_ladder(data.ladder) if data.ladder else None,
             published=_published(data.published_errors) if data.published_errors else None,
             pitfalls=tell_pitfalls(data.pitfalls) if data.pitfalls else [],
+            models=_explained(data),
             timing=data.timing.inference if data.timing else {},
             rates=RATES,
             quality=data.quality,
@@ -132,6 +133,7 @@ def _environment() -> Environment:
     environment.filters["significant"] = lambda value: significant(or_nan(value))
     environment.filters["mathml"] = lambda latex: Markup(mathml(latex))
     environment.filters["several"] = several
+    environment.filters["title"] = title
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
     return environment
 
@@ -154,6 +156,14 @@ def _text(value: object) -> str:
 
 def _errors(comparison: Comparison) -> list[Table]:
     return [tabulate_errors(comparison, h, "test", quantity) for h, quantity in COMPARED]
+
+
+def _explained(data: ReportData) -> dict[str, str]:
+    """What the models are, by the names they have in the report."""
+    compared = list(data.comparison.models) if data.comparison else []
+    steps = [step.model for step in data.ladder.steps] if data.ladder else []
+    told = {title(name): explain_model(name) for name in (*steps, *compared)}
+    return {name: text for name, text in told.items() if text}
 
 
 def _published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:

@@ -12,7 +12,7 @@ from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import listed, short, significant
+from rovsim.reporting.wording import listed, significant, title
 from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 from rovsim.results.quality import Quality
@@ -41,7 +41,7 @@ def summarize(data: ReportData) -> list[str]:
 def band_sentences(coverage: Bands) -> list[str]:
     """Say how much of the test runs lies inside the bands of each model."""
     return [
-        f"The {coverage.level:.0%} bands of {short(name)} hold {listed(_held(model))}."
+        f"The {coverage.level:.0%} bands of {title(name)} hold {listed(_held(model))}."
         for name, model in coverage.models.items()
     ]
 
@@ -130,7 +130,7 @@ def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[st
         return ["No learned residual can be compared with the nominal model on the test runs."]
     best = min(learned, key=lambda name: learned[name])
     return [
-        _best_sentence(best, learned[best], len(learned), measure),
+        _best_sentence(title(best), learned[best], len(learned), measure),
         *_per_axis(best, relate(errors).reindex([best]).loc[best]),
         *_others(learned, best),
     ]
@@ -181,7 +181,7 @@ def _per_axis(best: str, row: Series) -> list[str]:
 
 def _others(learned: Mapping[str, float], best: str) -> list[str]:
     failing = [
-        f"{name} (+{_percent(r - 1)})" if r > 1 + EQUAL else f"{name} (no change)"
+        f"{title(name)} (+{_percent(r - 1)})" if r > 1 + EQUAL else f"{title(name)} (no change)"
         for name, r in learned.items()
         if name != best and r >= 1 - EQUAL
     ]
@@ -194,8 +194,8 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
     if len(models) < 2:
         return []
     best = min(models, key=lambda name: models[name])
-    text = f"On the ladder the lowest error is that of {best}, {significant(models[best])}"
-    others = [f"{n} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
+    text = f"On the ladder the lowest error is that of {title(best)}, {significant(models[best])}"
+    others = [f"{title(n)} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
               if n in models and n != best]  # fmt: skip
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]
     floor = steps.get(NOISE_FLOOR, 0.0)

@@ -2,7 +2,7 @@
 
 from typing import Mapping
 
-from rovsim.reporting.wording import listed, significant
+from rovsim.reporting.wording import listed, significant, title
 from rovsim.results.timing import RATES, Latency, Timing
 
 
@@ -51,7 +51,7 @@ def _promise(rate: int) -> str:
 
 
 def _names(counted: Mapping[str, int], rate: int) -> str:
-    names = [name for name, value in counted.items() if value == rate]
+    names = [title(name) for name, value in counted.items() if value == rate]
     return f" ({listed(names)})"
 
 

@@ -6,7 +6,7 @@ from typing import Mapping, Sequence
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.html.sentences import band_sentences
 from rovsim.reporting.html.verdict import NO_TEST, Missing, explain
-from rovsim.reporting.wording import several, short, significant
+from rovsim.reporting.wording import several, significant, title
 from rovsim.results.bands import Bands
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
@@ -38,10 +38,10 @@ def tell_comparison(
 
 def _errors(errors: Mapping[str, float | None]) -> list[str]:
     lines = ["", *textwrap.wrap(MEANING, WIDTH), ""]
-    width = max((len(short(name)) for name in errors), default=0)
+    width = max((len(title(name)) for name in errors), default=0)
     most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
     lines += [
-        f"  {short(n):<{width}}  {_bar((e or 0.0) / most)} {significant(or_nan(e))}"
+        f"  {title(n):<{width}}  {_bar((e or 0.0) / most)} {significant(or_nan(e))}"
         for n, e in errors.items()
     ]
     return lines
@@ -52,7 +52,7 @@ def _findings(where: ErrorConditions) -> list[str]:
         return []
     name, model = list(where.models.items())[-1]
     told, rest = model.sentences[:MOST], len(model.sentences) - MOST
-    head = f"where {short(name)} fails ({model.split} runs {several(model.runs)})"
+    head = f"where {title(name)} fails ({model.split} runs {several(model.runs)})"
     lines = ["", *textwrap.wrap(head, WIDTH), ""]
     for one in told:
         lines += textwrap.wrap(one, WIDTH, initial_indent="  - ", subsequent_indent="    ")
