@@ -16,12 +16,8 @@ from rovsim.results.base import ByAxis
 from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
 
 RANKED_BY = "windows_2s"
-# MLflow's page of an experiment: made for models rather than prompts, this error in its table.
-SHOWN = {
-    "mlflow.experimentKind": "custom_model_development",
-    "mlflow.experiment.primaryMetric.name": RANKED_BY,
-    "mlflow.experiment.primaryMetric.greaterIsBetter": "False",
-}
+# MLflow's page of an experiment: the one for models, not for prompts.
+SHOWN = {"mlflow.experimentKind": "custom_model_development"}
 HORIZONS = (OPEN_LOOP, "0.5", "2", "5")
 PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes for each call
     "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",
