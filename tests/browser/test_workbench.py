@@ -243,6 +243,14 @@ def test_a_link_keeps_what_a_screen_shows_through_reload_and_back(tab):
     shown()
 
 
+def test_a_wide_window_is_used(tab):
+    tab.page.set_viewport_size({"width": 1920, "height": 1080})
+    tab.go("compare")
+    for one in (READY["compare"], ".path canvas"):
+        tab.page.wait_for_selector(one)
+        assert tab.page.locator(one).first.bounding_box()["width"] > 0.75 * 1920
+
+
 def test_an_address_of_another_day_is_no_error(tab):
     tab.go("compare?run=gone&models=gone&axes=warp&horizon=x&from=y")
     tab.page.wait_for_selector(READY["compare"])
@@ -252,6 +260,8 @@ def test_an_address_of_another_day_is_no_error(tab):
 def test_an_address_that_is_none_shows_a_way_on(tab):
     tab.page.goto(f"{tab.address}/nowhere")
     tab.page.get_by_role("heading", name="No such screen").wait_for()
+    tab.page.wait_for_timeout(1000)  # for a screen that ought not to come
+    assert tab.page.get_by_role("heading").all_inner_texts() == ["No such screen"]
     tab.complaints.clear()  # of the browser, about the status 404
     tab.page.locator(".screen").get_by_role("link", name="Compare").click()
     tab.page.wait_for_selector(READY["compare"])

@@ -8,6 +8,7 @@ from typing import Any, Callable
 
 from nicegui import PageArguments, ui
 from nicegui import app as server
+from nicegui.page_arguments import RouteMatch
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from rovsim.application.settings import WorkbenchSettings
@@ -41,6 +42,10 @@ LOOK = 0.25  # s between two looks at long work
 
 class Screens(ui.sub_pages):
     """The screens by their addresses, and a way on from an address that is none."""
+
+    def _render_page(self, match: RouteMatch) -> bool:
+        """A screen; none where the address goes on behind that of a screen."""
+        return not match.remaining_path and super()._render_page(match)
 
     def _render_404(self) -> None:
         heading("No such screen", "The address is wrong, or of another version.")
