@@ -19,7 +19,7 @@ from rovsim.reporting.html import leave_one_run_out, published_errors, report, t
 from rovsim.reporting.html.marked import BEGIN, END
 from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.html.verdict import explain, part_sentences
-from rovsim.reporting.report_data import ReportData
+from rovsim.reporting.report_data import ReportData, describe
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import explain_model, several, significant, title
 from rovsim.results.comparison import Comparison
@@ -149,6 +149,16 @@ def test_terminal_and_page_say_the_same(content):
         assert " ".join(remark.split()) in text
 
 
+def test_the_ranking_in_the_terminal_falls(content):
+    ranking = [
+        FittedEffect(effect=f"effect_{k}", parameters={}, error_reduction=share)
+        for k, share in enumerate((0.2, 0.5, 0.0, 0.01, 0.3, 0.1, 0.4))
+    ]
+    found = content["diagnosis"].model_copy(update={"ranking": tuple(ranking)})
+    said = terminal.tell_diagnosis(found, built_in()).partition("each alone")[2]
+    assert re.findall(r"effect_(\d)", said) == ["1", "6", "4", "0", "5"]
+
+
 def test_a_campaign_without_a_test_run_is_told_so(content):
     none = ErrorConditions(models={})
     said = terminal.tell_comparison({"nominal": None}, none, tested=False)
@@ -270,6 +280,19 @@ def test_mistakes_are_said_run_by_run(content, tmp_path):
     pitfalls.write(tmp_path / "pitfalls.json")
     leave_one_run_out.main([str(tmp_path), str(tmp_path / "page.md")])
     assert sentence in (tmp_path / "page.md").read_text()
+
+
+def test_figures_of_the_first_run_are_shown_and_those_of_others_unfold():
+    drawn = (("error_growth", ""), ("velocities", "a"), ("velocities", "b"), ("path_3d", "a"))
+    pictures = [report.Picture(name, b"\x89PNG", describe(name, run), run) for name, run in drawn]
+    compared = ReportData(comparison=Comparison(models={}))
+    html = report.render(report.Report("x", compared, pictures))
+    before, of_a, of_b = html.split("<details")
+    assert before.count("<figure>") == 1
+    assert of_a.startswith(" open><summary>Figures of run a</summary>")
+    assert of_a.count("<figure>") == 2
+    assert of_b.startswith("><summary>Figures of run b</summary>")
+    assert of_b.count("<figure>") == 1
 
 
 def test_an_empty_study_is_a_page_too():

@@ -10,6 +10,7 @@ from numpy import ndarray as Array
 from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
 from rovsim.results.budget import BudgetTotals
@@ -143,5 +144,5 @@ def describe(figure: str, run: str, data: ReportData | None = None) -> str:
         return ""
     if figure == "budget":
         model = data.budgets[run].model if data and run in data.budgets else ""
-        return f"run {run}, model {model}" if model else f"run {run}"
+        return f"run {run}, model {title(model)}" if model else f"run {run}"
     return f"run {run}, {'open loop' if figure == 'path_3d' else f'{SHOWN} s windows'}"

@@ -37,4 +37,4 @@ def write_report(
 def _read_picture(path: Path) -> report.Picture:
     """A figure's file is called by the figure, or by figure-run."""
     name, _, run = (path.stem, "", "") if path.stem in ONCE else path.stem.partition("-")
-    return report.Picture.read(path, name, describe(name, run))
+    return report.Picture.read(path, name, describe(name, run), run)

@@ -34,4 +34,4 @@ def _draw(out: Path, figure: str, run: str, data: ReportData) -> tuple[report.Pi
     drawn = kind(figure).draw(**select_arguments(figure, data, run, list(data.replays)))
     paths = save(drawn, out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
-    return report.Picture.read(png, figure, describe(figure, run, data)), paths
+    return report.Picture.read(png, figure, describe(figure, run, data), run), paths

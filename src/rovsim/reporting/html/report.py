@@ -44,14 +44,15 @@ COMPARED = (
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawn figure: registered name, PNG, and what it shows ("run 6dof-2, 2 s windows")."""
+    """A drawn figure: registered name, PNG, what it shows ("run 6dof-2, 2 s windows"), its run."""
 
     name: str
     png: bytes
     about: str = ""
+    run: str = ""
 
     @staticmethod
-    def read(path: Path, name: str, about: str = "") -> "Picture":
+    def read(path: Path, name: str, about: str = "", run: str = "") -> "Picture":
         """Read a PNG that `rovsim.reporting.figures.style.save` wrote.
 
         Raises:
@@ -63,7 +64,7 @@ class Picture:
             found = f"cannot be read ({error.strerror})"
         else:
             if png.startswith(b"\x89PNG"):
-                return Picture(name, png, about)
+                return Picture(name, png, about, run)
             found = "is not a PNG picture"
         remedy = "Draw the figure again."
         raise BadInput(found, where=path, expected="a figure of the study", remedy=remedy)
@@ -180,5 +181,9 @@ def _tell_undrawn(data: ReportData) -> str:
     )
 
 
-def _by_section(pictures: Sequence[Picture]) -> dict[str, list[Picture]]:
-    return {s: [p for p in pictures if kind(p.name).section == s] for s in SECTIONS}
+def _by_section(pictures: Sequence[Picture]) -> dict[str, dict[str, list[Picture]]]:
+    """Pictures by section and run; those of no run in particular come first."""
+    found: dict[str, dict[str, list[Picture]]] = {section: {"": []} for section in SECTIONS}
+    for picture in pictures:
+        found[kind(picture.name).section].setdefault(picture.run, []).append(picture)
+    return found
