@@ -80,13 +80,11 @@ def _effect(share: float, words: Missing) -> list[str]:
 
 
 def _ranking(ranking: Sequence[FittedEffect]) -> list[str]:
-    shown = [(r.effect, r.error_reduction) for r in ranking if (r.error_reduction or 0.0) > 0.0]
+    helping = [(r.error_reduction or 0.0, r.effect) for r in ranking]
+    shown = sorted((one for one in helping if one[0] > 0.0), reverse=True)[:RANKED]
     if not shown:
         return []
-    rows = [
-        f"  {effect:<22}{_bar(share or 0.0)} {100 * (share or 0.0):.0f} %"
-        for effect, share in shown[:RANKED]
-    ]
+    rows = [f"  {effect:<22}{_bar(share)} {100 * share:.0f} %" for share, effect in shown]
     return ["", "each alone, at its first estimate:", *rows]
 
 
