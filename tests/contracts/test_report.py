@@ -134,7 +134,8 @@ def test_the_verdict_says_what_how_much_how_sure_and_what_is_open(html):
         "0.1500 ± 0.0078 s",
         "removes 42\u202f% of the error, probability 0.970",
         "These runs cannot tell input_delay and thruster_lag apart.",
-        "The runner-up for quadratic_damping is linear_damping, 90 times less likely.",
+        "The next best explanation instead of quadratic_damping is linear_damping: 90 times less "
+        "likely.",
         "falls from 0.190 to 0.0440",
         "noise floor",
         "Nothing can be said about roll and pitch",
@@ -155,7 +156,7 @@ def test_the_ranking_in_the_terminal_falls(content):
         for k, share in enumerate((0.2, 0.5, 0.0, 0.01, 0.3, 0.1, 0.4))
     ]
     found = content["diagnosis"].model_copy(update={"ranking": tuple(ranking)})
-    said = terminal.tell_diagnosis(found, built_in()).partition("each alone")[2]
+    said = terminal.tell_diagnosis(found, built_in()).partition("removes alone")[2]
     assert re.findall(r"effect_(\d)", said) == ["1", "6", "4", "0", "5"]
 
 
@@ -271,7 +272,8 @@ def test_mistakes_are_said_run_by_run(content, tmp_path):
     (sentence,) = published_errors.tell_pitfalls(pitfalls)
     assert sentence == (
         "Wrong clock: bins of about 0.157 s replayed as if each lasted 0.1 s. Velocity RMSE of the "
-        "open loop / spread: 0.500 becomes 1.25 (a), 0.500 becomes – (b)."
+        "open loop, in standard deviations of the measured velocity: 0.500 becomes "
+        "1.25 (a), 0.500 becomes – (b)."
     )
     html = rendered(published_errors=content["published_errors"], pitfalls=pitfalls)
     assert sentence in unescape(html)
@@ -377,7 +379,7 @@ def test_long_lists_of_runs_are_cut():
 def test_what_was_not_looked_at_is_said():
     part = LookedAt(seconds=900.0, of=48000.0, wider=7.3)
     (said,) = part_sentences(part)
-    assert said.startswith("Looked at: those 15.0 of the 800 min of train runs that tell most.")
+    assert said.startswith("Of 800 min of train runs, the 15.0 min that tell most were looked at.")
     assert "7.3 times narrower" in said
     assert part_sentences(LookedAt(seconds=60.0, of=60.0, wider=1.0)) == []
 

@@ -99,7 +99,9 @@ def test_it_is_said_in_plain_words_with_what_to_measure(flown):
     assert FIX_SCALE in advise(asked, [], [], built_in())
     told = ScaleOfForces(std=scale.std, parameters=scale.parameters)
     one = study()["diagnosis"].model_copy(update={"common_scale": told})
-    said = [r for r in explain(one, built_in()).remarks if "up to one factor" in r]
+    said = [r for r in explain(one, built_in()).remarks if "up to one common factor" in r]
     assert len(said) == 1
     assert "added_mass" in said[0]
-    assert not any("up to one factor" in r for r in explain(study()["diagnosis"], {}).remarks)
+    assert not any(
+        "up to one common factor" in r for r in explain(study()["diagnosis"], {}).remarks
+    )

@@ -6,9 +6,9 @@ from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 
 FIX_SCALE = (
-    "To fix the common scale of thrust, inertia and drag, measure one force: the pull on a spring "
-    "balance at a steady command, for the force curve of the vehicle file, or how far a known "
-    "weight heels the vehicle, for its centre of buoyancy."
+    "To fix the common scale of thrust, inertia and drag, measure one force. Either measure the "
+    "pull on a spring balance at a steady command (for the force curve of the vehicle file), or "
+    "how far a known weight heels the vehicle (for its centre of buoyancy)."
 )
 
 
@@ -39,8 +39,8 @@ def advise(
         )
         both = ",".join(groups[0][:2])
         parts.append(
-            f"`rovsim design 'between=[{both}]'` plans such a flight for a vehicle that can hold a "
-            "place."
+            f"`rovsim design 'between=[{both}]'` plans such a flight, for a vehicle that can stay "
+            "in one place."
         )
     if joint:
         parts.append(_apart(joint, catalogue))
@@ -52,8 +52,9 @@ def advise(
     if found.structures:
         first = found.structures[0]
         parts.append(
-            f"Hold station without commands, then move slowly in {first.axis} alone: whether the "
-            f"remainder ({first.what}) stays tells if it comes from the vehicle or from outside."
+            f"Record some time without commands, then move slowly in {first.axis} alone. If the "
+            f"remainder ({first.what}) is there without commands too, it comes from outside; if "
+            "only with motion, from the vehicle."
         )
     return " ".join(parts) or _confirm(found)
 

@@ -22,9 +22,9 @@ async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
     heading(TITLE, QUESTION)
     text(
-        "Each step on the test runs, which nothing was fitted to: velocity error after being set "
-        "to the measured state every 2 s, in units of the measured velocity's standard "
-        "deviation."
+        "Each step on the test runs, to which nothing was fitted: velocity error of the model, "
+        "restarted from the measured state every 2 s, in units of the measured velocity's "
+        "standard deviation."
     )
     ladder = await computed(bench.ladder)
     about = "Error of each step, the noise floor as a line"

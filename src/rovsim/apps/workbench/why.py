@@ -83,8 +83,8 @@ def _errors(error: DiagnosisErrors) -> None:
         tile("With the effects", error.with_effects, "error/with_effects", "test runs")
         tile("Noise floor", error.noise_floor, "error/noise_floor", "of a perfect model, about")
     text(
-        "Velocity error after being set to the measured state every 2 s, in units of the measured "
-        "velocity's standard deviation.", "soft",
+        "Velocity error of the model, restarted from the measured state every 2 s, in units of the "
+        "measured velocity's standard deviation.", "soft",
     )  # fmt: skip
 
 

@@ -17,8 +17,11 @@ NEGATIVE = {
 # On the condition's own axis: what it means that error and condition have equal, or other, signs.
 RELATIONS = {
     "speed": ("brakes too much when moving fast", "brakes too little when moving fast"),
-    "thrust": ("answers too weakly to its thrust", "answers too strongly to its thrust"),
-    "change": ("answers too late to a change of thrust", "answers too early to a change of thrust"),
+    "thrust": ("responds too weakly to its thrust", "responds too strongly to its thrust"),
+    "change": (
+        "responds too late to a change of thrust",
+        "responds too early to a change of thrust",
+    ),
     "attitude": ("rights itself too strongly", "rights itself too weakly"),
 }
 USUAL = {
@@ -48,8 +51,8 @@ def summarize(explanation: Explanation) -> list[str]:
         return ["Too little was recorded to tell under which condition the model fails."]
     if not explanation.findings:
         return [
-            "No condition explains the error: whatever varies (speed, thrust, attitude, place, "
-            "time), the mean error stays within what chance gives."
+            "No condition explains the error. Over speed, thrust, attitude, place and time, the "
+            "mean error is no larger than chance would make it."
         ]
     return [say(found) for found in explanation.findings]
 
@@ -139,7 +142,11 @@ def _share(found: Finding) -> str:
     at = found.table.binning.condition
     text = f"{share} is constant." if at.kind == THROUGHOUT else f"{share} varies with it."
     others = [c.name for c in found.alike[:2]]
-    return f"{text} (As well with {' or '.join(others)}: they varied together.)" if others else text
+    return (
+        f"{text} (It varies as well with {' or '.join(others)}: they varied together.)"
+        if others
+        else text
+    )
 
 
 def _usual(found: Finding) -> str:

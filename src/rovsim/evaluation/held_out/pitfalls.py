@@ -18,7 +18,8 @@ from rovsim.results.pitfalls import Cost
 from rovsim.simulation.replay import replay
 from rovsim.simulation.settings import ReplaySettings
 
-ERROR, SHARE = "velocity RMSE of the open loop / spread", "share of residual acceleration foretold"
+ERROR = "velocity RMSE of the open loop, in standard deviations of the measured velocity"
+SHARE = "share of the residual acceleration that is predicted"
 # What was done, and what `right` and `wrong` measure.
 PITFALLS = {
     "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", ERROR),

@@ -14,7 +14,7 @@ from rovsim.results.growth import Growth
 
 SECTION = "compare"
 CAPTION = (
-    "Velocity error against the time since the model was set to the measured state, "
+    "Velocity error against the time since the model was started from the measured state, "
     "one panel per axis, on the test runs."
 )
 

@@ -41,7 +41,7 @@ def summarize(data: ReportData) -> list[str]:
 def band_sentences(coverage: Bands) -> list[str]:
     """Say how much of the test runs lies inside the bands of each model."""
     return [
-        f"The {coverage.level:.0%} bands of {title(name)} hold {listed(_held(model))}."
+        f"Inside the {coverage.level:.0%} bands of {title(name)} lie {listed(_held(model))}."
         for name, model in coverage.models.items()
     ]
 
@@ -91,8 +91,8 @@ def nominal_sentences(errors: DataFrame) -> list[str]:
     ]
     missing = row.index[row.isna()]
     return [
-        "On the test runs, set to the measured state every 2 s, the nominal model misses the "
-        f"measured velocity by {listed(parts)} (root mean square).",
+        "The nominal model was replayed on the test runs, restarted from the measured state every "
+        f"2 s. It misses the measured velocity by {listed(parts)} (root mean square).",
         *([f"It has no value in {listed(missing)}."] if len(missing) else []),
         *_against_nothing(errors),
     ]
@@ -104,9 +104,9 @@ def _against_nothing(errors: DataFrame) -> list[str]:
         return []
     beaten = ratio.index[ratio >= 1 - EQUAL]
     if len(beaten):
-        return [f"In {listed(beaten)} it is no better than assuming that the velocity is kept."]
+        return [f"In {listed(beaten)} it is no better than a vehicle that keeps its velocity."]
     where = "every axis with a value" if ratio.isna().any() else "every axis"
-    return [f"On {where} it is closer than assuming that the vehicle keeps its velocity."]
+    return [f"On {where} it is better than a vehicle that simply keeps its velocity."]
 
 
 def quiet_sentences(quality: Mapping[str, Quality]) -> list[str]:
@@ -161,7 +161,9 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
         text = f"{which} {best} {verb}{tail}"
         return f"{text}." if count == 1 else f"{text} ({measure})."
     change = (
-        "leaves the error as it is" if ratio <= 1 + EQUAL else f"raises it by {_percent(ratio - 1)}"
+        "leaves the error as it is"
+        if ratio <= 1 + EQUAL
+        else f"raises the error by {_percent(ratio - 1)}"
     )
     if count == 1:
         return f"The learned residual {best} does not help: it {change} ({measure})."
@@ -194,7 +196,7 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
     if len(models) < 2:
         return []
     best = min(models, key=lambda name: models[name])
-    text = f"On the ladder the lowest error is that of {title(best)}, {significant(models[best])}"
+    text = f"On the ladder {title(best)} has the lowest error, {significant(models[best])}"
     others = [f"{title(n)} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
               if n in models and n != best]  # fmt: skip
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]
@@ -207,7 +209,8 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
 def _floor_sentence(ratio: float, floor: float) -> str:
     if ratio <= 1 + REACHED:
         return (
-            f"It reaches the noise floor, {significant(floor)}: no model can be seen to do better."
+            f"It reaches the noise floor, {significant(floor)}. With these recordings no model can "
+            "be shown to be better."
         )
     return (
         f"A perfect model would show about {significant(floor)} (noise floor); "

@@ -46,7 +46,7 @@ def _deadlines(what: str, entries: Mapping[str, Latency]) -> list[str]:
 
 def _promise(rate: int) -> str:
     if rate == 0:
-        return f"even a {min(RATES)} Hz loop would have been missed at least once"
+        return f"at least one call was too late even for a {min(RATES)} Hz loop"
     return f"no call was too late for a {rate} Hz loop"
 
 

@@ -17,8 +17,8 @@ WIDTH, BAR = 80, 24  # a terminal has 80 columns unless it was made wider
 MOST = 6  # findings printed; the report has them all
 RANKED = 5  # effects of the ranking printed
 MEANING = (
-    "error on the test runs: velocity, the model set to the measured state again every 2 s, in "
-    "units of the measured velocity's standard deviation, mean over the excited axes"
+    "error on the test runs: of the velocity, the model restarted from the measured state every "
+    "2 s; in units of the measured velocity's standard deviation; mean over the excited axes"
 )
 
 
@@ -85,7 +85,7 @@ def _ranking(ranking: Sequence[FittedEffect]) -> list[str]:
     if not shown:
         return []
     rows = [f"  {effect:<22}{_bar(share)} {100 * share:.0f} %" for share, effect in shown]
-    return ["", "each alone, at its first estimate:", *rows]
+    return ["", "error that each effect removes alone, at its first estimate:", *rows]
 
 
 def _bar(share: float) -> str:

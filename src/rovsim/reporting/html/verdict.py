@@ -22,14 +22,14 @@ VERDICTS = {
     "missing_effects": "The model lacks physics that the catalogue knows.",
     "adequate": "Nothing is missing: what is left is noise.",
     "unexplained": "Something is missing that the catalogue does not know.",
-    "insufficient_data": "The recording does not say: too little was recorded, or moved.",
+    "insufficient_data": "The recordings cannot tell: too short, or some axis never moved.",
 }
 INTERVAL = 1.96  # standard deviations to either side hold 95 %
 MOST_PUSHES = 3  # moments of a disturbance that are told
 MANY = 1e6  # odds that need no number
 NO_TEST = (
-    "No test run could be used, so there is no error to report; "
-    "`split: test` in campaign.yaml holds a run out."
+    "No test run could be used, so there is no error to report. "
+    "Write `split: test` for a run in campaign.yaml to hold it out."
 )
 
 
@@ -123,7 +123,7 @@ def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
     text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
     text += " (velocity in 2 s windows, in units of its standard deviation)."
     if not math.isfinite(floor):
-        why = "not all is noise, or poses were measured in part only"
+        why = "not all that is left is noise, or only parts of the pose were measured"
         return f"{text} What a perfect model would show cannot be estimated: {why}."
     return f"{text} A perfect model would show about {significant(floor)} (noise floor)."
 
@@ -151,9 +151,10 @@ def scale_sentences(scale: ScaleOfForces | None) -> list[str]:
         return []
     owners = listed(list(dict.fromkeys(name.split(".")[0] for name in scale.parameters)))
     return [
-        f"Forces are known up to one factor, uncertain by {percent(scale.std)} (one standard "
-        "deviation): with more thrust, inertia and drag by the same share a vehicle moves alike. "
-        f"What goes along with it is in {owners}; the intervals include it."
+        "All forces are known only up to one common factor, which is uncertain by "
+        f"{percent(scale.std)} (one standard deviation). A vehicle with 10 % more thrust, inertia "
+        f"and drag would move in the same way. The factor acts on values of {owners}; their "
+        "intervals include it."
     ]
 
 
@@ -161,7 +162,7 @@ def _runner_up(rival: RivalEffect) -> str:
     odds = math.exp(min(0.5 * or_nan(rival.deficit), 700.0))
     times = "more than a million" if odds > MANY else f"{significant(odds, 2)}"
     name, instead = rival.effect, rival.instead_of
-    return f"The runner-up for {instead} is {name}, {times} times less likely."
+    return f"The next best explanation instead of {instead} is {name}: {times} times less likely."
 
 
 def unexplained_sentences(found: Diagnosis) -> list[str]:
@@ -182,7 +183,7 @@ def _law_sentences(found: Diagnosis) -> list[str]:
         worth += f"; with it the error on the test runs is {significant(step.windows_2s)}"
     return [
         f"A law for it: {law.meaning} {law.equation} with {values}. {worth}.",
-        f"It is written as {law.file}: read it, change it, and add it with "
+        f"It is in the file {law.file}. Read it, change it if you like, and add it with "
         f"`rovsim add diagnosis=… effects_file={law.file} model=NEW.yaml`.",
     ]
 
@@ -195,7 +196,7 @@ def _disturbance_sentences(found: Diagnosis) -> list[str]:
     low, high = force.band_hz
     sizes = [f"{a} {significant(or_nan(force.rms[a]), 2)} {_unit(a)}" for a in force.axes]
     said = f"No law was found for it: a disturbance of {listed(sizes)} (RMS)."
-    said += f" Most of its power lies from {low:.2g} to {high:.2g} Hz."
+    said += f" Most of its power lies between {low:.2g} and {high:.2g} Hz."
     times = [f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MOST_PUSHES]]
     return [said + (f" It was strongest at {listed(times)}." if times else "")]
 
@@ -208,14 +209,14 @@ def still_sentences(axes: Sequence[str]) -> list[str]:
     """Axes that nobody moved."""
     if not axes:
         return []
-    return [f"Nothing can be said about {listed(axes)}: no train run moves there."]
+    return [f"Nothing can be said about {listed(axes)}: no train run moves on that axis."]
 
 
 def silent_sentences(found: Diagnosis) -> list[str]:
     """Axes that nobody measured, and effects that the recordings could not show."""
     axes, effects = found.not_measured, found.not_observable
-    unmeasured = f"Nothing was measured of {listed(axes)}: errors have no value there."
-    unseen = f"These recordings could not show {listed(effects)}, were they there."
+    unmeasured = f"Not measured, and so without errors: {listed(axes)}."
+    unseen = f"Even if present, these could not be seen in these recordings: {listed(effects)}."
     return [*([unmeasured] if axes else []), *([unseen] if effects else [])]
 
 
@@ -225,7 +226,7 @@ def part_sentences(looked_at: LookedAt | None) -> list[str]:
         return []
     part, whole = (significant(s / 60.0, 3) for s in (looked_at.seconds, looked_at.of))
     return [
-        f"Looked at: those {part} of the {whole} min of train runs that tell most. With all of "
+        f"Of {whole} min of train runs, the {part} min that tell most were looked at. With all of "
         f"them the intervals could be up to {looked_at.wider:.1f} times narrower "
         "(search.most_seconds)."
     ]

@@ -4,8 +4,8 @@ rovsim ui [campaign=DIR] [model=[nominal,FILE,…]] [diagnosis=OUT/diagnosis.jso
           [open=true]
 
 Served on this machine only, without the internet, until Ctrl+C. Without a campaign it offers those
-near here, and one to practise on. What it computes lies in `out` (results/CAMPAIGN/ui). Needs the
-extra rovsim[workbench].
+in this folder, and one to practise on. What it computes lies in `out` (results/CAMPAIGN/ui). Needs
+the extra rovsim[workbench].
 """
 
 import socket
