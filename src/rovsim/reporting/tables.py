@@ -157,8 +157,8 @@ def tabulate_ladder(ladder: Ladder) -> Table:
         for step in ladder.steps
     }  # fmt: skip
     return Table(
-        caption="The error falling step by step on the test runs: velocity RMSE of 2 s windows in "
-        "units of the measured velocity's standard deviation, and acceleration RMSE per axis. "
+        caption="Error of each step on the test runs: velocity RMSE of 2 s windows in units of the "
+        "measured velocity's standard deviation, and acceleration RMSE per axis. "
         "Lowest of each column in bold; the noise floor is a bound, not a model.",
         label="tab:ladder",
         columns=columns,
