@@ -79,23 +79,33 @@ def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
-    """The best single addition, refitted and pruned; None when none beats chance and matters."""
+    """The best single addition, refitted and pruned; None when none beats chance and matters.
+
+    Where the vehicle file is off, it is no special effect that the file explains; if nothing else
+    is left, several numbers of the file that only matter together.
+    """
     left = list_promising(workspace, current)
     for _ in range(ROUNDS):
         level = sum(p.gain > LEVEL * left[0].gain for p in left)
         trying = keep_close(left, max(workspace.settings.trials, level))
         left = [p for p in left if p not in trying]
-        tried = [workspace.fit(current.hypothesis.with_term(p.term)) for p in trying]
-        for best in sorted(tried, key=workspace.score, reverse=True):
-            if workspace.score(best) - workspace.score(current) < threshold:
+        tried = [(workspace.fit(current.hypothesis.with_term(p.term)), p.term.id) for p in trying]
+        for best, name in sorted(tried, key=lambda one: workspace.score(one[0]), reverse=True):
+            if not _beats_chance(workspace, best, current, threshold):
                 break
-            if loose_file.explains(workspace, best, trying[tried.index(best)].term.id):
-                best = add_file(workspace, current)
-                if workspace.score(best) - workspace.score(current) < threshold:
-                    continue
+            if loose_file.explains(workspace, best, name):
+                continue
             if find_relevant(workspace, best, [current.hypothesis.model])[0]:
                 return prune(workspace, best)
-    return None
+    more = add_file(workspace, current) if loose_file.is_off(current.hypothesis) else current
+    if not _beats_chance(workspace, more, current, threshold):
+        return None
+    noticed = find_relevant(workspace, more, [current.hypothesis.model])[0]
+    return prune(workspace, more) if noticed else None
+
+
+def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: float) -> bool:
+    return more is not less and workspace.score(more) - workspace.score(less) >= threshold
 
 
 def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Model]) -> Array:
@@ -125,7 +135,8 @@ def contest(
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -swap and not loose_file.explains(workspace, trial, p.term.id):
                     return contest(workspace, prune(workspace, trial), trials, swap)
-                deficit = loose_file.weigh(workspace, (current, term), (trial, p.term), deficit)
+                weight = loose_file.weigh(workspace, (current, term), (trial, p.term), deficit)
+                deficit = max(0.0, weight)  # likelier only beside a loose file: not told apart
             rivals.append(Rival(p.term.id, term.id, deficit, trial))
     return current, rivals
 
