@@ -24,12 +24,11 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.loose_file import is_off
 from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, spread_of_file
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import ThrusterGain
-
-SEVERAL = 3  # effects that a file states: one or two may be all that is wrong
 
 
 def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
@@ -44,8 +43,7 @@ def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSc
     h = found.hypothesis
     freed = _free_rest(h)
     further = [name for name in name_parameters(freed) if name not in name_parameters(h)]
-    several = sum(term.id in STATED for term in h.terms) >= SEVERAL
-    opened = leave_open(found, freed, runs) if several and further else None
+    opened = leave_open(found, freed, runs) if is_off(h) and further else None
     if opened is None:
         return include_scale(found, runs)
     spread = _list_spreads(h, freed)

@@ -10,6 +10,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection import loose_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
@@ -84,7 +85,7 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
     Where the vehicle file is off, it is no special effect that the file explains; if nothing else
     is left, several numbers of the file that only matter together.
     """
-    left = list_promising(workspace, current)
+    left, off = list_promising(workspace, current), loose_file.is_off(current.hypothesis)
     for _ in range(ROUNDS):
         level = sum(p.gain > LEVEL * left[0].gain for p in left)
         trying = keep_close(left, max(workspace.settings.trials, level))
@@ -93,11 +94,11 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         for best, name in sorted(tried, key=lambda one: workspace.score(one[0]), reverse=True):
             if not _beats_chance(workspace, best, current, threshold):
                 break
-            if loose_file.explains(workspace, best, name):
+            if off and loose_file.explains(workspace, best, name):
                 continue
             if find_relevant(workspace, best, [current.hypothesis.model])[0]:
                 return prune(workspace, best)
-    more = add_file(workspace, current) if loose_file.is_off(current.hypothesis) else current
+    more = add_file(workspace, current) if off else current
     if not _beats_chance(workspace, more, current, threshold):
         return None
     noticed = find_relevant(workspace, more, [current.hypothesis.model])[0]
@@ -125,7 +126,7 @@ def contest(
 
     `swap`: by how much more, in twice the log likelihood.
     """
-    rivals = []
+    rivals, off = [], loose_file.is_off(current.hypothesis)
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_challengers(workspace, term, rest, trials):
@@ -133,7 +134,9 @@ def contest(
             if _explains(workspace, p) > PROMISING * rest.loss:
                 trial = workspace.fit(rest.hypothesis.with_term(p.term))
                 deficit = workspace.score(current) - workspace.score(trial)
-                if deficit < -swap and not loose_file.explains(workspace, trial, p.term.id):
+                if deficit < -swap and not (
+                    off and loose_file.explains(workspace, trial, p.term.id)
+                ):
                     return contest(workspace, prune(workspace, trial), trials, swap)
                 weight = loose_file.weigh(workspace, (current, term), (trial, p.term), deficit)
                 deficit = max(0.0, weight)  # likelier only beside a loose file: not told apart
@@ -180,17 +183,24 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     """Without effects that the vehicle file, where it is off anyway, explains about as well."""
-    for term in current.hypothesis.terms:
-        if not loose_file.explains(workspace, current, term.id):
-            continue
-        rest = workspace.fit(workspace.drop(current, [(term,)])[0])
-        fewer = prune(workspace, add_file(workspace, rest))
-        more = loose_file.measure_cost(workspace, fewer)
-        if more - loose_file.measure_cost(workspace, current) <= loose_file.find_limit(
-            workspace, term
-        ):
-            return prefer_file(workspace, fewer)
+    terms = current.hypothesis.terms
+    if not any(term.id in STATED for term in terms):
+        return current
+    for term in terms:
+        if loose_file.explains(workspace, current, term.id):
+            rest = workspace.fit(workspace.drop(current, [(term,)])[0])
+            fewer = prune(workspace, add_file(workspace, rest))
+            if _is_as_good(workspace, fewer, current, term):
+                return prefer_file(workspace, fewer)
     return current
+
+
+def _is_as_good(workspace: SearchWorkspace, fewer: Fit, current: Fit, term: Term) -> bool:
+    """Whether more of the file makes up for a special term, as far as such a term is rare."""
+    if not loose_file.is_off(current.hypothesis):
+        return workspace.score(fewer) > workspace.score(current) - loose_file.FILE_ODDS
+    costs = [loose_file.measure_cost(workspace, one) for one in (fewer, current)]
+    return costs[0] - costs[1] <= loose_file.find_limit(workspace, term)
 
 
 def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:

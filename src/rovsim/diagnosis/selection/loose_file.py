@@ -1,6 +1,6 @@
 """A special effect beside a vehicle file that may be off everywhere.
 
-Where something that the file states was selected, the file is off elsewhere too, mostly by too
+Where several effects that the file states were selected, it is off elsewhere too, mostly by too
 little to be found: a dozen such numbers, none of them worth its price, may explain together what a
 special effect seems to. So there it is judged with all of the file free, as far as such files are
 off (`nominal_terms.py`), and to first order. Where the file explains it, its numbers are sought
@@ -21,6 +21,7 @@ from rovsim.diagnosis.selection.nominal_terms import STATED, spread_of_file
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
+SEVERAL = 3  # effects of the file: one or two may be all that is wrong
 # In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
 # thirty times, against a coefficient of a file that is known to be off.
 FILE_ODDS = 13.8
@@ -40,8 +41,8 @@ class FileNumber(NamedTuple):
 
 
 def is_off(h: Hypothesis) -> bool:
-    """Whether something was selected that the vehicle file states."""
-    return any(term.id in STATED for term in h.terms)
+    """Whether so much was selected of what the vehicle file states that it is off everywhere."""
+    return sum(term.id in STATED for term in h.terms) >= SEVERAL
 
 
 def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:
@@ -87,8 +88,8 @@ def find_limit(workspace: SearchWorkspace, term: Term) -> float:
 
 
 def explains(workspace: SearchWorkspace, found: Fit, name: str) -> bool:
-    """Whether a file that is off anyway explains what a special effect of a fit does."""
-    if name in STATED or not is_off(found.hypothesis):
+    """Whether all of the file together explains what a special effect of a fit does."""
+    if name in STATED:
         return False
     term = next(one for one in found.hypothesis.terms if one.id == name)
     return measure_loss(workspace, found, term) <= find_limit(workspace, term)
