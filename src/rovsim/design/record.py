@@ -4,8 +4,8 @@ What a diagnosis would learn from a flight is then computed by what will compute
 """
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.integrate import cumulative_simpson
 
 from rovsim.core.rotations import continuous
 from rovsim.core.run import Commands, RunInfo
@@ -45,8 +45,8 @@ def _bins(
     time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, around: Surroundings
 ) -> Motion:
     """Velocities are means over the bins."""
-    way = cumulative_simpson(fine, x=around.edges, axis=0, initial=0.0)[:: around.parts]
-    mean = np.diff(way, axis=0) / np.diff(time)[:, None]
+    way = scipy.integrate.cumulative_simpson(fine, x=around.edges, axis=0, initial=0.0)
+    mean = np.diff(way[:: around.parts], axis=0) / np.diff(time)[:, None]
     change = np.vstack([np.full(6, np.nan), np.diff(mean, axis=0) / np.diff(time)[1:, None]])
     return Motion(
         INFO, around.site, time[:-1], eta[:-1], mean, change, nu[:-1],

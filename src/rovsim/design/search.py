@@ -10,8 +10,8 @@ from itertools import product
 from typing import Any, Sequence, cast
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.optimize import Bounds, differential_evolution
 
 from rovsim.core.run import Commands
 from rovsim.design.flight import Chances, Envelope, predict
@@ -127,9 +127,9 @@ def search(where: Range, settings: DesignSettings, seed: int) -> list[Tried]:
     single = _one_axis_each(where)
     rate(single.T)
     first = _begin(archive, single, where, settings.population, np.random.default_rng(seed))
-    differential_evolution(
+    scipy.optimize.differential_evolution(
         cast(Any, rate),  # whole generations, which its types do not know
-        Bounds(np.zeros(first.shape[1]), np.ones(first.shape[1])),
+        scipy.optimize.Bounds(np.zeros(first.shape[1]), np.ones(first.shape[1])),
         init=first, maxiter=settings.rounds, tol=0.0, atol=0.0,
         mutation=(0.3, 0.9), recombination=0.6, polish=False, updating="deferred",
         vectorized=True, rng=np.random.default_rng(seed),

@@ -9,9 +9,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
 from pydantic import Field
-from scipy.spatial import cKDTree
 
 from rovsim import AXES
 from rovsim.learning.export import Kernel, export_expansion
@@ -44,7 +44,7 @@ def huberize(X: Array, Y: Array, settings: GaussianSettings) -> Array:
     if settings.huberized is None or len(X) <= NEARBY:
         return Y
     Z = fit_scaling("standard", X).apply(X)
-    _, near = cKDTree(Z).query(Z, NEARBY + 1)
+    _, near = scipy.spatial.cKDTree(Z).query(Z, NEARBY + 1)
     usual = np.median(Y[np.asarray(near)[:, 1:]], axis=1)
     reach = settings.huberized * MAD * np.median(np.abs(Y - usual), axis=0)
     return usual + np.clip(Y - usual, -reach, reach)

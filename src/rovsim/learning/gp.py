@@ -4,9 +4,9 @@ from time import perf_counter
 from typing import Any, Literal, Mapping, Sequence
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
 from pydantic import Field
-from scipy.linalg import eigh
 
 from rovsim import AXES
 from rovsim.dynamics.learned.layout import MOST_POINTS
@@ -53,7 +53,7 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
         loss = _tune(model, settings, progress)
         Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])
         arrays |= gaussian.hyperparameters(model) | {"points": Z, "targets": T}
-        spectra = [eigh(rbf(Z, Z, lengthscale)) for lengthscale in arrays["lengthscale"]]
+        spectra = [scipy.linalg.eigh(rbf(Z, Z, scale)) for scale in arrays["lengthscale"]]
         arrays["noise"] *= _factors(arrays, spectra)
         gaussian.set_hyperparameters(model, arrays)
         _condition(model, Z, T)

@@ -4,9 +4,9 @@ from time import perf_counter
 from typing import Literal, Mapping
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
 from pydantic import Field
-from scipy.spatial import cKDTree
 
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.layout import MOST_NEIGHBOURS
@@ -75,7 +75,7 @@ def best_k(Z: Array, Y: Array, weights: str) -> int:
     missed = np.zeros(len(tried))
     for out in split_rows(len(Z)):
         kept = np.setdiff1d(np.arange(len(Z)), out)
-        distance, near = map(np.asarray, cKDTree(Z[kept]).query(Z[out], tried[-1]))
+        distance, near = map(np.asarray, scipy.spatial.cKDTree(Z[kept]).query(Z[out], tried[-1]))
         share = np.ones_like(distance) if weights == "uniform" else 1.0 / (distance + CONSTANT)
         known = np.cumsum(share[..., None] * Y[kept][near], axis=1)
         for i, k in enumerate(tried):

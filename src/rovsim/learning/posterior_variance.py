@@ -12,9 +12,8 @@ variance nowhere by more than l^2 / (s2 (l + s2)) of the prior's. An RBF kernel 
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.linalg import eigh
-from scipy.spatial.distance import cdist
 
 EXACT = 1e-6  # of the prior variance: what the exported variance may differ from the process' own
 ROUGH = 5e-2  # the same for fading, at a tenth of the cost; 1 - rho stays right within a quarter
@@ -51,7 +50,8 @@ class PosteriorVariance:
 
 def rbf(X: Array, Z: Array, lengthscale: Array) -> Array:
     """Kernel matrix (x, z) of scaled features, with the value 1 at distance 0."""
-    return np.exp(-0.5 * cdist(X / lengthscale, Z / lengthscale, "sqeuclidean"))
+    squares = scipy.spatial.distance.cdist(X / lengthscale, Z / lengthscale, "sqeuclidean")
+    return np.exp(-0.5 * squares)
 
 
 def decompose_exact(values: Array, vectors: Array, noise: float) -> PosteriorVariance:
@@ -78,7 +78,7 @@ def _least(noise: float, bound: float) -> float:
 
 def decompose_quadratic(A: Array) -> PosteriorVariance:
     """A process with rho = 1 - k' A k, for a symmetric A (n, n)."""
-    values, vectors = eigh(0.5 * (A + A.T))
+    values, vectors = scipy.linalg.eigh(0.5 * (A + A.T))
     order = np.argsort(-np.abs(values))
     return PosteriorVariance(
         0.0, values[order], np.ascontiguousarray(vectors[:, order].T), len(values)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 
 from rovsim.core import rotations
 from rovsim.dynamics.mocap_view import MocapView
@@ -100,9 +100,8 @@ class NoiseDraws:
             return np.zeros((count, 6))
         keep = np.exp(-period / self.colour_memory)
         kicks = self.random.normal(size=(count, 6)) * self.colour * np.sqrt(1.0 - keep**2)
-        return np.stack(
-            [lfilter([1.0], [1.0, -k], x) for k, x in zip(keep, kicks.T, strict=True)], 1
-        )
+        axes = zip(keep, kicks.T, strict=True)
+        return np.stack([scipy.signal.lfilter([1.0], [1.0, -k], x) for k, x in axes], 1)
 
 
 def _move(motion: Motion, off: Array, nu: Array, nu_dot: Array) -> Motion:

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy import ndarray as Array
-from scipy.ndimage import gaussian_filter1d
 
 from rovsim.core import rotations
 from rovsim.measurement.recording.channels import Channel
@@ -90,7 +90,7 @@ class OnClock:
         for k, column in enumerate(apart.T):
             known = np.isfinite(column)
             if known.any():
-                smooth = gaussian_filter1d(column[known], sigma, mode="reflect")
+                smooth = scipy.ndimage.gaussian_filter1d(column[known], sigma, mode="reflect")
                 found[:, k] = np.interp(self.clock, direct.time[known], smooth)
         return found
 
