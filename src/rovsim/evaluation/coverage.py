@@ -6,7 +6,7 @@ from numpy import ndarray as Array
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.bands import Coverage
 from rovsim.results.base import ByAxis
-from rovsim.simulation.bands import Band
+from rovsim.simulation.prediction import Band
 from rovsim.simulation.replay import Spans
 
 

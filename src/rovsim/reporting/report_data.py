@@ -23,8 +23,7 @@ from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.quality import Quality
 from rovsim.results.timing import Timing
-from rovsim.simulation.bands import Band
-from rovsim.simulation.prediction import Replay
+from rovsim.simulation.prediction import Band, Replay
 
 SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
 R = TypeVar("R", bound=Result)

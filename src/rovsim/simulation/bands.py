@@ -6,7 +6,7 @@ reported with the noise of the readings, all as fitted. What was measured is one
 the model and its noise are right: a 90 % band then holds 90 % of it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Iterator
 
 import numpy as np
@@ -18,34 +18,16 @@ from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.noise_draws import NoiseDraws
-from rovsim.simulation.prediction import Prediction
+from rovsim.simulation.prediction import LEVEL, Band, Prediction
 from rovsim.simulation.replay import Case, Spans, predict_all
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 
-LEVEL = 0.9
 # A draw falls below the i-th of n others with probability i / (n + 1): with 39 the ends of the band
 # are the second and the last but one.
 DRAWS = 39
 LEAD_IN = 5.0  # s before a part of a run: what thrusters and filters remember is over by then
 LONGEST = 300.0  # s at once: draws of longer ones would not fit into memory
-
-
-@dataclass(frozen=True, eq=False)
-class Band:
-    """Lower and upper end, at motion.time; NaN where nothing is predicted.
-
-    `nu` (2, n, 6) m/s, rad/s; `place` (2, n, 6): position NED m, then roll, pitch and yaw in rad,
-    counted on from the measured ones where each window begins.
-    """
-
-    nu: Array
-    place: Array
-
-    @staticmethod
-    def empty(count: int) -> "Band":
-        """Nothing, at `count` instants."""
-        return Band(np.full((2, count, 6), np.nan), np.full((2, count, 6), np.nan))
 
 
 def why_without_bands(model: Model, motion: Motion) -> str | None:

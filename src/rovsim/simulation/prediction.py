@@ -9,6 +9,8 @@ from numpy import ndarray as Array
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.run import RunInfo
 
+LEVEL = 0.9  # of what is measured that a band holds
+
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
@@ -65,3 +67,20 @@ class Replay:
         names = dict.fromkeys(key.split("/")[0] for key in a if "/" in key)
         horizons = {h: Prediction(a[f"{h}/eta"], a[f"{h}/nu"], a[f"{h}/nu_dot"]) for h in names}
         return Replay(model, RunInfo(*run), a["time"], horizons)
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """Lower and upper end, at motion.time; NaN where nothing is predicted.
+
+    `nu` (2, n, 6) m/s, rad/s; `place` (2, n, 6): position NED m, then roll, pitch and yaw in rad,
+    counted on from the measured ones where each window begins.
+    """
+
+    nu: Array
+    place: Array
+
+    @staticmethod
+    def empty(count: int) -> "Band":
+        """Nothing, at `count` instants."""
+        return Band(np.full((2, count, 6), np.nan), np.full((2, count, 6), np.nan))

@@ -11,7 +11,8 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.bands import Bands, Coverage, ModelBands, RunBands
-from rovsim.simulation.bands import LEVEL, Band, foresee, why_without_bands
+from rovsim.simulation.bands import foresee, why_without_bands
+from rovsim.simulation.prediction import LEVEL, Band
 from rovsim.simulation.replay import find_spans
 from rovsim.simulation.settings import LADDER
 

@@ -13,7 +13,7 @@ from rovsim.reporting.figures.series import excerpt, masked
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.units import VELOCITY, VELOCITY_UNITS
 from rovsim.reporting.wording import title
-from rovsim.simulation.bands import LEVEL
+from rovsim.simulation.prediction import LEVEL
 
 SECTION = "compare"
 NO_BANDS: Mapping[str, Array] = MappingProxyType({})
