@@ -1,6 +1,6 @@
 """The study as the workflow sees it: its campaign, runs and models, settings and code digests."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
@@ -34,6 +34,7 @@ class Study:
     """
 
     config: Mapping[str, Any]
+    _residuals: dict[str, Mapping[str, object]] = field(default_factory=dict, init=False)
 
     @cached_property
     def settings(self) -> Settings:
@@ -165,6 +166,12 @@ class Study:
         return learner_settings(self._residual(kind), "conf/residual")
 
     def _residual(self, kind: str) -> Mapping[str, object]:
+        """Composed once: Hydra takes as long as all that a rule asks for beside it."""
+        if kind not in self._residuals:
+            self._residuals[kind] = self._compose_residual(kind)
+        return self._residuals[kind]
+
+    def _compose_residual(self, kind: str) -> Mapping[str, object]:
         kept = [word for word in self._overrides if not word.startswith("residual=")]
         if kind != self.settings.residual["kind"]:
             kept = [word for word in kept if not word.startswith("residual.")]
