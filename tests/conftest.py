@@ -28,6 +28,12 @@ def pytest_collection_modifyitems(items):
 
 
 @pytest.fixture
-def one_figure_a_run(monkeypatch):
-    """`rovsim compare` draws each run once: for tests of its numbers (test_cli draws them all)."""
-    monkeypatch.setattr("rovsim.apps.cli.commands.compare.PER_RUN", ("velocities",))
+def few_figures(monkeypatch):
+    """`compare` and `diagnose` draw one figure of each kind: for tests of their numbers.
+
+    test_cli, test_diagnose and the study draw them all.
+    """
+    commands = "rovsim.apps.cli.commands"
+    monkeypatch.setattr(f"{commands}.compare.ONCE", ("excitation",))
+    monkeypatch.setattr(f"{commands}.compare.PER_RUN", ("velocities",))
+    monkeypatch.setattr(f"{commands}.diagnose.FIGURES", ("ranking",))

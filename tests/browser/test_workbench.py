@@ -74,6 +74,7 @@ def found(tab) -> None:
     tab.page.wait_for_selector(".verdict", timeout=180_000)
 
 
+@pytest.mark.usefixtures("few_figures")
 def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbench, campaign):
     folder = workbench[1]
     tab.go("compare")

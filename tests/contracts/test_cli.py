@@ -164,7 +164,7 @@ def test_compare_writes_the_contract(campaign, tmp_path, capsys):
     assert run["windows"]["2"]["velocity_rmse"]["surge"] < zero["velocity_rmse"]["surge"]
 
 
-@pytest.mark.usefixtures("one_figure_a_run")
+@pytest.mark.usefixtures("few_figures")
 def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     arguments = [f"campaign={campaign}", "residual=knn", "control=6dof", f"out={tmp_path / 'knn'}"]

@@ -35,7 +35,7 @@ def write_files():
         Path(text.split("\n")[0].removeprefix("# ")).write_text(text, encoding="utf-8")
 
 
-@pytest.mark.usefixtures("one_figure_a_run")
+@pytest.mark.usefixtures("few_figures")
 def test_the_page_works_as_printed():
     write_files()
     commands = [line for text in blocks("sh") for line in text.replace("\\\n", " ").splitlines()]

@@ -27,7 +27,7 @@ def commands() -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("one_figure_a_run")
+@pytest.mark.usefixtures("few_figures")
 def test_the_tutorial_ends_with_the_error_fallen(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for line in commands():
