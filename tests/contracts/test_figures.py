@@ -9,6 +9,7 @@ from matplotlib.patches import Rectangle
 
 from rovsim.core.errors import BadInput
 from rovsim.reporting.figures import SECTIONS, kind, kinds
+from rovsim.reporting.figures.series import averaged
 from rovsim.reporting.figures.style import save, styled
 from rovsim.reporting.report_data import ONCE, PER_RUN
 from rovsim.results.comparison import Comparison
@@ -176,3 +177,35 @@ def test_the_published_figure_shows_what_is_in_every_fold_and_stands_on_effects(
 def test_an_unknown_figure_names_the_nearest():
     with pytest.raises(BadInput, match="Did you mean 'ladder'"):
         kind("lader")
+
+
+def test_lines_reach_from_the_lowest_to_the_highest_run():
+    content = study()
+    model = content["comparison"].models["knn_6dof"]
+    tests = [run for run in model.runs.values() if run.split == "test"]
+    sway = [run.windows["2"].velocity_rmse["sway"] for run in tests]
+    axes = drawn("error_by_axis", content).axes[0]
+    ends = axes.collections[list(content["comparison"].models).index("knn_6dof")].get_segments()
+    np.testing.assert_allclose(ends[1][:, 1], [min(sway), max(sway)])
+    assert min(sway) < max(sway)
+
+
+def test_noise_does_not_hide_the_residual():
+    content = study()
+    noise = np.random.default_rng(0).normal(0.0, 3.0, content["nu_dot"].shape)
+    content["predicted_nu_dot"] = {"nominal": content["nu_dot"] - 1.0}
+    content["nu_dot"] = content["nu_dot"] + noise
+    (line,) = [
+        one for one in drawn("residual_series", content).axes[0].lines if len(one.get_ydata()) > 99
+    ]
+    shown = np.asarray(line.get_ydata(), float)
+    step = np.median(np.diff(content["time"]))
+    assert np.nanstd(shown) < 1.5 * 3.0 / np.sqrt(0.5 / step)
+    assert np.nanmean(shown) == pytest.approx(1.0, abs=0.2)
+
+
+def test_a_mean_over_time_is_that_of_its_neighbours_and_gaps_stay_gaps():
+    time = np.arange(8.0)
+    values = np.array([1.0, 2.0, 3.0, np.nan, 5.0, 6.0, 7.0, 9.0])[:, None]
+    found = averaged(time, values, 2.0)[:, 0]
+    np.testing.assert_allclose(found, [1.5, 2.0, 2.5, np.nan, 5.5, 6.0, 22 / 3, 8.0])

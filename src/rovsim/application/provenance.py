@@ -82,7 +82,11 @@ def _version(package: str) -> str | None:
 def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
     """Code, with the user's own effects, and versions behind a result."""
     packages = {name: installed for name in PACKAGES if (installed := _version(name))}
-    versions = {"rovsim": rovsim.__version__, "python": platform.python_version(), **packages}
+    system = f"{platform.system()} {platform.machine()}"
+    versions = {
+        "rovsim": rovsim.__version__, "python": platform.python_version(), "system": system,
+        **packages,
+    }  # fmt: skip
     return {"code": digest("rovsim", effects=catalogue.files), "versions": versions}
 
 

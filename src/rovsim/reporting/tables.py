@@ -134,7 +134,7 @@ def tabulate_errors(
     errors = pool(comparison, quantity, horizon, split)
     return Table(
         caption=f"{heading[0].upper()}{heading[1:]} per axis on the {split} runs, "
-        f"{name_horizon(horizon)}. Lowest of each column in bold.",
+        f"{name_horizon(horizon)}. Lowest of each column in bold, ties too.",
         label=f"tab:{quantity.replace('_', '-')}-{horizon.replace('_', '-')}-{split}",
         columns=columns,
         frame=errors.set_axis([column.name for column in columns], axis=1),
@@ -159,7 +159,7 @@ def tabulate_ladder(ladder: Ladder) -> Table:
     return Table(
         caption="Error of each step on the test runs: velocity RMSE of 2 s windows in units of the "
         "measured velocity's standard deviation, and acceleration RMSE per axis. "
-        "Lowest of each column in bold; the noise floor is a bound, not a model.",
+        "Lowest of each column in bold, ties too; the noise floor is a bound, not a model.",
         label="tab:ladder",
         columns=columns,
         frame=_frame(rows, columns),
@@ -181,7 +181,7 @@ def tabulate_published_errors(published_errors: PublishedErrors) -> Table:
     return Table(
         caption="Held-out runs against the published numbers: cells (run, axis, metric) in which a "
         "model is not below the smallest published error, and the geometric mean of its error "
-        "divided by that, over all cells and per axis. Lowest of each column in bold.",
+        "divided by that, over all cells and per axis. Lowest of each column in bold, ties too.",
         label="tab:published_errors",
         columns=columns,
         frame=_frame(rows, columns),

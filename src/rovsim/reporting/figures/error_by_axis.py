@@ -10,7 +10,13 @@ from pandas import DataFrame
 from rovsim import AXES
 from rovsim.reporting.figures.legends import legend, note, nothing, patches
 from rovsim.reporting.figures.palette import Look, Style, looks
-from rovsim.reporting.figures.pooled import name_gaps, name_horizon, pool, relate
+from rovsim.reporting.figures.pooled import (
+    between_runs,
+    name_gaps,
+    name_horizon,
+    pool,
+    relate,
+)
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.reporting.wording import significant
@@ -19,7 +25,8 @@ from rovsim.results.comparison import Comparison
 SECTION = "compare"
 CAPTION = (
     "Velocity and acceleration error per axis and model: in physical units above, "
-    "divided by the nominal model's error below (1 = as good as nominal, lower is better)."
+    "divided by the nominal model's error below (1 = as good as nominal, lower is better). "
+    "Thin lines reach from the lowest to the highest run."
 )
 QUANTITIES = (
     ("velocity_rmse", "velocity RMSE", VELOCITY_UNITS),
@@ -37,9 +44,10 @@ def draw(*, comparison: Comparison, horizon: str = "2", split: str = "test") -> 
     remarks = []
     for k, (quantity, label, units) in enumerate(QUANTITIES):
         errors = pool(comparison, quantity, horizon, split)
-        ratios = relate(errors)
+        ratios, ends = relate(errors), between_runs(comparison, quantity, horizon, split)
         for half, axes in zip((slice(0, 3), slice(3, 6)), rows[2 * k], strict=True):
             _bars(axes, errors[list(AXES[half])], style)
+            _whiskers(axes, *(end[list(AXES[half])] for end in ends))
             axes.set_ylabel(f"{label} ({units[half][0]})")
         for half, axes in zip((slice(0, 3), slice(3, 6)), rows[2 * k + 1], strict=True):
             _bars(axes, ratios[list(AXES[half])], style)
@@ -69,6 +77,15 @@ def _bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
     if errors.isna().all(axis=None):
         nothing(axes, "no values")
         axes.set_ylim(0, 1)
+
+
+def _whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
+    """From the lowest to the highest run, over the bars."""
+    width = 0.8 / max(len(low), 1)
+    for k, (least, most) in enumerate(zip(low.to_numpy(), high.to_numpy(), strict=True)):
+        at = np.arange(len(least)) + (k + 0.5) * width - 0.4
+        axes.vlines(at, least, most, color="#222222", linewidth=0.8)
+    axes.set_ylim(bottom=0)
 
 
 def _against_nominal(axes: Axes, ratios: DataFrame) -> None:

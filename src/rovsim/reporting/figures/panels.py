@@ -12,7 +12,7 @@ from rovsim.reporting.figures.legends import nothing
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.series import broken, limits
 from rovsim.reporting.figures.style import sheet
-from rovsim.reporting.wording import listed
+from rovsim.reporting.wording import listed, title
 
 
 def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, list[Axes]]:
@@ -44,8 +44,8 @@ def plot_all(
     silent = [axis for axis, yes in zip(AXES, seen, strict=True) if not yes] if seen.any() else []
     return [
         f"Nothing was measured of {listed(silent)}." if silent else "",
-        f"Partly beyond the axes: {listed(sorted(leaving))}." if leaving else "",
-        f"No values: {listed(empty)}." if empty else "",
+        f"Partly beyond the axes: {listed(map(title, sorted(leaving)))}." if leaving else "",
+        f"No values: {listed(map(title, empty))}." if empty else "",
     ]
 
 

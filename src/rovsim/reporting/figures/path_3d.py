@@ -18,7 +18,8 @@ from rovsim.reporting.wording import listed, title
 SECTION = "compare"
 CAPTION = (
     "Measured and simulated path of the vehicle in the tank, to scale and with up pointing up; "
-    "a circle marks the start, a square the end."
+    "a circle marks the start, a square the end. In open loop nothing corrects a model: small "
+    "errors add up, and even a good model can end metres away."
 )
 ELEVATION, AZIMUTH = 25, 60  # degrees
 FILL_HEIGHT, FILL_WIDTH = 0.75, 1.25  # found by eye: no label is cut at any shape of box

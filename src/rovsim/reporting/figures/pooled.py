@@ -42,6 +42,15 @@ def pool(
     return DataFrame(means, index=list(AXES)).T ** (1 / power)
 
 
+def between_runs(
+    comparison: Comparison, quantity: str, horizon: str = "2", split: str = "test"
+) -> tuple[DataFrame, DataFrame]:
+    """Lowest and highest value of the runs that `pool` puts together: a row a model, each."""
+    runs = tidy(comparison, quantity, horizon, split).groupby(["model", "axis"])["value"]
+    shape = {"index": list(comparison.models), "columns": list(AXES)}
+    return runs.min().unstack().reindex(**shape), runs.max().unstack().reindex(**shape)
+
+
 def relate(errors: DataFrame, base: str = "nominal") -> DataFrame:
     """Every model's errors divided by those of `base`; NaN where there is nothing to divide."""
     reference = errors.reindex([base]).loc[base]

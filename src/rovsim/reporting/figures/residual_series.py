@@ -8,14 +8,16 @@ from numpy import ndarray as Array
 from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.panels import plot_all, six_panels
-from rovsim.reporting.figures.series import excerpt, masked
+from rovsim.reporting.figures.series import averaged, excerpt, masked
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.units import ACCELERATION_UNITS
+from rovsim.results.error_conditions import BLOCK
 
 SECTION = "compare"
 CAPTION = (
-    "Acceleration residual, measured minus simulated, over time, one panel per axis. "
-    "A perfect model would leave only noise around zero."
+    f"Acceleration residual, measured minus simulated, over time, one panel per axis; means over "
+    f"{BLOCK:g} s, which noise does not hide. A perfect model would leave only a little noise "
+    "around zero."
 )
 LETTERS = ("Δu̇", "Δv̇", "Δẇ", "Δṗ", "Δq̇", "Δṙ")
 
@@ -31,7 +33,10 @@ def draw(
     """
     measured = masked(nu_dot, usable)
     part = excerpt(time, measured)
-    curves = {name: (measured - values)[part] for name, values in predicted_nu_dot.items()}
+    curves = {
+        name: averaged(time, measured - values, BLOCK)[part]
+        for name, values in predicted_nu_dot.items()
+    }
     style = looks(curves)
     figure, axes = six_panels(LETTERS, ACCELERATION_UNITS)
     remarks = plot_all(axes, time[part], curves, style) if curves else ["No model was given."]

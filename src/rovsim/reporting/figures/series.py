@@ -28,6 +28,23 @@ def masked(values: Array, usable: Array | None) -> Array:
     return values
 
 
+def averaged(time: Array, values: Array, seconds: float) -> Array:
+    """Means of `values` (n, ...) over so many seconds around each sample; NaN stays NaN."""
+    if len(time) < 2:
+        return values
+    half = max(0, round(0.5 * seconds / float(np.median(np.diff(time)))))
+    known = np.isfinite(values)
+    sums, counts = (
+        np.pad(np.cumsum(x, axis=0, dtype=float), [(1, 0)] + [(0, 0)] * (values.ndim - 1))
+        for x in (np.where(known, values, 0.0), known)
+    )
+    at = np.arange(len(time))
+    low, high = np.maximum(at - half, 0), np.minimum(at + half + 1, len(time))
+    return np.where(
+        known, (sums[high] - sums[low]) / np.maximum(counts[high] - counts[low], 1), np.nan
+    )
+
+
 def excerpt(time: Array, values: Array, length: float = EXCERPT) -> slice:
     """Return the liveliest stretch of at most `length` seconds; all of a shorter run.
 
