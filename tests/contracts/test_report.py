@@ -333,6 +333,18 @@ def test_latex_numbers_are_aligned_at_the_decimal_point(content):
     assert row.split(" & ")[1:4] == ["{–}", r"\bfseries {\num{3.20e-05}}", "123"]
 
 
+def test_the_ladder_has_the_fit_that_others_know(content):
+    table = tabulate_ladder(content["ladder"])
+    for step in content["ladder"].steps:
+        assert table.frame.at[step.model, "fit"] == pytest.approx(100 * (1 - step.windows_2s))
+    assert "%" not in table.caption  # LaTeX would leave out the rest
+    assert (table.best()["fit"] == table.best()["windows_2s"]).all()
+    none = ErrorConditions(models={})
+    said = terminal.tell_comparison({"nominal": 0.3, "lost": None}, none, tested=True)
+    assert "0.300, fit 70 %" in said
+    assert re.search(r"lost +·+ –$", said, re.MULTILINE)
+
+
 def test_models_have_readable_names_on_paper_and_raw_ones_for_programs(content):
     table = tabulate_ladder(content["ladder"])
     html = rendered(ladder=content["ladder"], comparison=content["comparison"])

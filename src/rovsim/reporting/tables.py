@@ -13,7 +13,7 @@ from rovsim.core.files import write_text
 from rovsim.evaluation.held_out.published_errors import METRICS
 from rovsim.reporting.figures.pooled import name_horizon, pool
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
-from rovsim.reporting.wording import significant, title
+from rovsim.reporting.wording import fit, significant, title
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
@@ -34,12 +34,13 @@ QUANTITIES = {
 
 @dataclass(frozen=True)
 class Column:
-    """A column: its name in CSV, heading on paper, unit, and whether paper shows it."""
+    """A column: name in CSV, heading and unit on paper, if paper shows it, if high is good."""
 
     name: str
     heading: str
     unit: str
     printed: bool = True
+    high_is_good: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +58,7 @@ class Table:
         return [column for column in self.columns if column.printed]
 
     def best(self) -> DataFrame:
-        """Whether a number is its column's lowest as printed; a bound is no model, never the best.
+        """Whether a number is its column's best as printed; a bound is no model, never the best.
 
         Returns:
             Like `frame`, True or False.
@@ -65,7 +66,11 @@ class Table:
         shown = self.frame.map(lambda value: float(f"{value:.2e}")).drop(
             NOISE_FLOOR, errors="ignore"
         )
-        return shown.eq(shown.min()).reindex(self.frame.index, fill_value=False)
+        best = shown.min()
+        for column in self.columns:
+            if column.high_is_good:
+                best[column.name] = shown[column.name].max()
+        return shown.eq(best).reindex(self.frame.index, fill_value=False)
 
     def csv(self) -> str:
         """All columns at full precision; an empty cell where there is no value."""
@@ -143,7 +148,10 @@ def tabulate_errors(
 
 def tabulate_ladder(ladder: Ladder) -> Table:
     """One row per step of a ladder; velocity MAE only in the CSV, to fit the page."""
-    columns = [Column("windows_2s", "2 s windows", "–")]
+    columns = [
+        Column("windows_2s", "error", "–"),
+        Column("fit", "fit", "%", high_is_good=True),
+    ]
     for quantity, printed in (("acceleration_rmse", True), ("velocity_mae", False)):
         _, units = QUANTITIES[quantity]
         columns += [
@@ -152,14 +160,15 @@ def tabulate_ladder(ladder: Ladder) -> Table:
         ]
     rows = {
         step.model: [
-            or_nan(step.windows_2s), *step.acceleration_rmse.array(), *step.velocity_mae.array()
+            or_nan(step.windows_2s), fit(or_nan(step.windows_2s)),
+            *step.acceleration_rmse.array(), *step.velocity_mae.array()
         ]
         for step in ladder.steps
     }  # fmt: skip
     return Table(
-        caption="Error of each step on the test runs: velocity RMSE of 2 s windows in units of the "
-        "measured velocity's standard deviation, and acceleration RMSE per axis. "
-        "Lowest of each column in bold, ties too; the noise floor is a bound, not a model.",
+        caption="Each step on the test runs. Error: velocity RMSE of 2 s windows in units of the "
+        "measured velocity's standard deviation. Fit: 1 minus the error. Per axis: acceleration "
+        "RMSE. Best of each column in bold, ties too; the noise floor is a bound, not a model.",
         label="tab:ladder",
         columns=columns,
         frame=_frame(rows, columns),

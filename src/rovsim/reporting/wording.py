@@ -73,6 +73,11 @@ def listed(names: Iterable[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
+def fit(error: float) -> float:
+    """An error in standard deviations as the NRMSE fit of system identification, in percent."""
+    return 100.0 * (1.0 - error)
+
+
 def significant(value: float, digits: int = 3) -> str:
     """Return `value` to so many significant figures, without an exponent where it is readable."""
     if not math.isfinite(value):

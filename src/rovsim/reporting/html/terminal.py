@@ -6,7 +6,7 @@ from typing import Mapping, Sequence
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.html.sentences import band_sentences
 from rovsim.reporting.html.verdict import NO_TEST, Missing, explain
-from rovsim.reporting.wording import several, significant, title
+from rovsim.reporting.wording import fit, several, significant, title
 from rovsim.results.bands import Bands
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
@@ -18,7 +18,8 @@ MOST = 6  # findings printed; the report has them all
 RANKED = 5  # effects of the ranking printed
 MEANING = (
     "error on the test runs: of the velocity, the model restarted from the measured state every "
-    "2 s; in units of the measured velocity's standard deviation; mean over the excited axes"
+    "2 s; in units of the measured velocity's standard deviation; mean over the excited axes. "
+    "Fit is 100 % minus this error (NRMSE fit)"
 )
 
 
@@ -41,10 +42,13 @@ def _errors(errors: Mapping[str, float | None]) -> list[str]:
     width = max((len(title(name)) for name in errors), default=0)
     most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
     lines += [
-        f"  {title(n):<{width}}  {_bar((e or 0.0) / most)} {significant(or_nan(e))}"
-        for n, e in errors.items()
+        f"  {title(n):<{width}}  {_bar((e or 0.0) / most)} {_told(e)}" for n, e in errors.items()
     ]
     return lines
+
+
+def _told(error: float | None) -> str:
+    return significant(or_nan(error)) + (f", fit {fit(error):.0f} %" if error is not None else "")
 
 
 def _findings(where: ErrorConditions) -> list[str]:
