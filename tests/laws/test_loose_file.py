@@ -7,13 +7,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.loose_file import (
     FILE_ODDS,
     FileNumber,
     cost_beside,
     explains,
+    propose_file,
     weigh,
 )
+from rovsim.diagnosis.selection.proposals import rank_proposals
+from rovsim.diagnosis.selection.sensitivities import CandidateColumns
+from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 PRICE = 10.0
 OFF = ("linear_damping", "quadratic_damping", "added_mass")
@@ -81,3 +89,25 @@ def test_two_effects_of_the_file_are_weighed_as_they_are():
 def test_a_file_with_one_or_two_wrong_effects_may_be_right_elsewhere():
     own = fit(100.0, *OFF[:2]), term(OFF[0])
     assert weigh(workspace_of(), own, (fit(1.0, "lift"), term("lift")), 7.0) == 7.0
+
+
+def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
+    drags = [Candidate(one, one(), ("heave",)) for one in (LinearDamping, QuadraticDamping)]
+    blocks = [CandidateColumns(drag, None, (k,)) for k, drag in enumerate(drags)]
+    random = np.random.default_rng(3)
+    slow = random.normal(size=400)
+    columns = np.vstack([slow, slow + 0.1 * random.normal(size=400)])
+    hidden = columns[0] - columns[1]  # of opposite sign: hardly anything is left of them
+    rows = np.vstack([-50.0 * hidden, columns])
+    alone = rank_proposals(rows @ rows.T, blocks, price=400.0)
+    assert all(one.gain < 0.0 for one in alone)
+    base = nominal(load_vehicle(default_vehicle()))
+    workspace = SimpleNamespace(
+        price=400.0, products=lambda seen: rows @ rows.T,
+        sensitivities=SimpleNamespace(base_model=base, blocks=blocks),
+    )  # fmt: skip
+    both = propose_file(workspace, SimpleNamespace(seen=None, hypothesis=Hypothesis(base)))
+    assert [(one.id, one.free) for one in both.terms] == [
+        ("linear_damping", ("heave",)), ("quadratic_damping", ("heave",)),
+    ]  # fmt: skip
+    assert both.x == pytest.approx([50.0, -50.0])
