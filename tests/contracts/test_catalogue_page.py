@@ -10,11 +10,11 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.conditions import average_blocks
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.reporting.catalogue.entries import PAGE, PICTURES, entry, page
 from rovsim.reporting.catalogue.flight import fly, found, seen, settings
 from rovsim.reporting.figures.signature import signature, write
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -8,13 +8,13 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot, Stick
 from rovsim.evaluation.budget import Budget
 from rovsim.evaluation.force_balance import RESTORING, balance_forces
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.measured_states import (
     accelerate_as_measured,
     as_true,
     drive_as_measured,
 )
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 

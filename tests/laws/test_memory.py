@@ -9,11 +9,11 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.fluid_memory import ARM, FluidMemory
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.initial_memory import lag_of_lines, measured_memory
 from rovsim.simulation.replay import replay, simulate
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, sticks
 

@@ -13,12 +13,12 @@ from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.sensing import MarkerOffset, WorldTilt
 from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.dynamics.low_pass import LowPass, in_body, in_world
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.measured_states import as_true
 from rovsim.simulation.replay import replay, simulate
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, sticks
 

@@ -10,10 +10,10 @@ from hypothesis.extra.numpy import arrays
 
 from rovsim.core.rotations import exp, log, matrix, multiply, normalized
 from rovsim.dynamics.effects.sensing import MarkerMisalignment, MarkerOffset, WorldTilt
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.replay import replay, simulate
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, sticks
 

@@ -14,11 +14,11 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.scored import score
 from rovsim.evaluation.scores import Sums, subtract
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import Log, TankSettings
 from rovsim.simulation.synthetic_tank.true_run import fly_run

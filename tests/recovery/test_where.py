@@ -12,9 +12,9 @@ from rovsim.evaluation.error_conditions.conditions import average_blocks
 from rovsim.evaluation.error_conditions.findings import explain
 from rovsim.evaluation.error_conditions.search import search_conditions
 from rovsim.evaluation.error_conditions.sentences import summarize
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.error_conditions import BLOCK
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from synthetic_study import driven
 from worlds import at_rest, model, motion, sticks

@@ -18,7 +18,6 @@ from numpy import ndarray as Array
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.budget import Budget
-from rovsim.learning.pairs import Samples
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.drive import Drive
@@ -27,6 +26,7 @@ from rovsim.simulation.measured_states import (
     as_true,
     drive_as_measured,
 )
+from rovsim.simulation.samples import Samples
 from rovsim.simulation.settings import ReplaySettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"

@@ -1,123 +1,17 @@
-"""Training pairs for a learned residual: features, and what the model's acceleration misses.
+"""Training pairs for a learned residual: features, and what the model's acceleration misses."""
 
-Teacher-forced: the model is evaluated at the measured state, a_res = a_real - a_sim.
-"""
-
-from dataclasses import dataclass, replace
 from typing import Any, Sequence
 
 import numpy as np
-from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.learned.features import FeatureSettings, assemble
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import LearnerSettings, Progress, Trained, train
-from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.measured_states import (
-    accelerate_as_measured,
-    as_true,
-    drive_as_measured,
-    interpolate_state,
-    nearest_steps,
-)
-from rovsim.simulation.replay import simulate
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
-from rovsim.simulation.step_grid import StepGrid
-
-
-@dataclass(frozen=True, eq=False)
-class Samples:
-    """What a residual may look at and should predict, n samples of one run.
-
-    `index` (n,) into motion.time; `nu` (n, 6), `attitude` (n, 4), `wrench` (n, 6) of the thrusters,
-    `a_sim` (n, 6) instantaneous acceleration of the model there, `a_res` (n, 6) what it misses.
-    """
-
-    index: Array
-    nu: Array
-    attitude: Array
-    wrench: Array
-    a_sim: Array
-    a_res: Array
-
-    def features(self, settings: FeatureSettings) -> Array:
-        """Features X (n, d)."""
-        return assemble(settings, self.nu, self.a_sim, self.wrench, self.attitude)
-
-
-def sample_run(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> Samples:
-    """Samples of one run at its usable instants.
-
-    All in true axes at CO: where the model says that the motion capture sees another point or other
-    axes, the measurement is turned back first, so that tau_res = M a_res in a free replay. On axes
-    that were not measured nothing is missing.
-    """
-    motion = as_true(model, motion)
-    make = _of_bins if motion.binned else _of_samples
-    found = make(model, motion, signals.suited(motion.measured), settings)
-    return replace(found, a_res=blank(motion.measured, found.a_res, 0.0))
-
-
-def _of_samples(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> Samples:
-    """At each sample, under the thrust around it; the model's acceleration is filtered too."""
-    drive = drive_as_measured(model, motion, settings)
-    a_sim = accelerate_as_measured(model, motion, drive)
-    period = float(motion.time[1] - motion.time[0])
-    kept = [np.arange(a, b) for a, b in motion.segments()]
-    like = np.concatenate(
-        [signals.filter.smoothed(a_sim[k], period) for k in kept] or [np.empty((0, 6))]
-    )
-    index = np.concatenate([*kept, np.arange(0)])
-    return Samples(
-        index, motion.nu[index], motion.eta[index, 3:], drive.wrench[index], a_sim[index],
-        motion.nu_dot[index] - like,
-    )  # fmt: skip
-
-
-def _of_bins(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> Samples:
-    """At each bin's start; the model makes the same backward difference of means of two bins."""
-    fits = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
-    index, drive = 1 + np.flatnonzero(fits), drive_as_measured(model, motion, settings)
-    a_sim = accelerate_as_measured(model, motion, drive)[index]
-    a_real_like = _differences_of_bins(model, motion, settings, index)
-    return Samples(
-        index, motion.state_nu[index], motion.eta[index, 3:], drive.wrench[index], a_sim,
-        motion.nu_dot[index] - a_real_like,
-    )  # fmt: skip
-
-
-def _differences_of_bins(
-    model: Model, motion: Motion, settings: ReplaySettings, index: Array
-) -> Array:
-    """Backward difference (n, 6) of the model's means over two bins, from the start of the first.
-
-    `index` (n,) of the second bins.
-    """
-    grid, edges = StepGrid.over(motion, settings.step), np.append(motion.time, motion.end)
-    nearest = nearest_steps(motion, grid)
-    begins, ends = nearest[index - 1], np.maximum(nearest[index + 1], nearest[index - 1] + 1)
-    starts = [
-        (int(b), int(e - b), interpolate_state(motion, grid.edges[b]))
-        for b, e in zip(begins, ends, strict=True)
-    ]
-    found = np.empty((len(index), 6))
-    paths = simulate(model, motion, starts, settings)
-    for row, (k, b, path) in enumerate(zip(index, begins, paths, strict=True)):
-        fine = grid.edges[b : b + len(path)]
-        two = bin_means(fine, path[:, 7:], np.clip(edges[k - 1 : k + 2], fine[0], fine[-1]))
-        found[row] = backward_difference(two, motion.time[k - 1 : k + 1])[1]
-    return found
 
 
 def flown_with(control: str, run: Any) -> bool:

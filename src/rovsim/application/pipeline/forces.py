@@ -4,8 +4,8 @@ from rovsim.application.sections import SimulationSettings
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.budget import Budget
 from rovsim.evaluation.force_balance import balance_forces
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.samples import sample_run
 
 
 def balance_run(model: Model, motion: Motion, settings: SimulationSettings) -> Budget:

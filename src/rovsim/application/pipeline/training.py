@@ -10,9 +10,10 @@ from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.evaluation.latency import time_both_ways
-from rovsim.learning.pairs import choose_training_runs, sample_run, train_residual
+from rovsim.learning.pairs import choose_training_runs, train_residual
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.timing import Timing
+from rovsim.simulation.samples import sample_run
 
 
 def train(

@@ -17,9 +17,9 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 
 EVERY = 10  # samples: the filter passes a few Hz, frames come at 100

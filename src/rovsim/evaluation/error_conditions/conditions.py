@@ -16,10 +16,10 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.rotations import to_euler
-from rovsim.learning.pairs import Samples
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.error_conditions import BLOCK
+from rovsim.simulation.samples import Samples
 
 SEEN = 0.5  # share of a block that must have been seen
 SPEEDS = (

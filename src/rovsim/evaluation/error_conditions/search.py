@@ -6,10 +6,10 @@ from typing import Collection, Sequence
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.conditions import Blocks, average_blocks, join_blocks
 from rovsim.evaluation.error_conditions.findings import Explanation, explain
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 
 

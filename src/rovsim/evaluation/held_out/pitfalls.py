@@ -9,13 +9,13 @@ from numpy import ndarray as Array
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread, normalize, rms, subtract
 from rovsim.learning.learner import LearnerSettings, Trained, train
-from rovsim.learning.pairs import Samples, sample_run
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import OPEN_LOOP
 from rovsim.results.pitfalls import Cost
 from rovsim.simulation.replay import replay
+from rovsim.simulation.samples import Samples, sample_run
 from rovsim.simulation.settings import ReplaySettings
 
 ERROR = "velocity RMSE of the open loop, in standard deviations of the measured velocity"

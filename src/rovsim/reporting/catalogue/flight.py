@@ -15,7 +15,6 @@ from rovsim.dynamics.model_file import describe_effect
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
 from rovsim.evaluation.error_conditions.conditions import Blocks, Condition, average_blocks
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
@@ -23,6 +22,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.signature import Seen
 from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.simulation.command_columns import mark_angles
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import (

@@ -26,9 +26,9 @@ from rovsim.core.extras import require
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
-from rovsim.learning.pairs import sample_run
 from rovsim.measurement.campaign import load_campaign
 from rovsim.results.timing import Bench
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
