@@ -17,7 +17,6 @@ test runs       opened once, for the errors that are reported
 from dataclasses import dataclass, replace
 from typing import Callable, Sequence
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.checks.common_scale import CommonScale
@@ -38,7 +37,7 @@ from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.forward_selection import search, search_unnoticed
 from rovsim.diagnosis.selection.gate import Gate, keep_apart
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, polish
+from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
 from rovsim.diagnosis.selection.held_out import drop_idle
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
@@ -275,4 +274,4 @@ def _trace(found: _Settled) -> ForceInTime | None:
 
 def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     """Fitted once more to all runs under its own noise, with filters that suit it."""
-    return polish(selection.found, runs, np.inf if selection.complete else REACH)
+    return polish(selection.found, runs, selection.reach)

@@ -33,6 +33,7 @@ SLIGHT = 0.005  # of the error: what is let go one after the other adds up to ab
 CERTAIN = 2.0  # standard errors over many windows
 FEWEST = 2  # windows: one tells nothing of chance
 CLOSE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
+LOST = 1.0  # of the error: more is no matter of which windows there happen to be
 SMALLEST = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
 
 
@@ -69,10 +70,10 @@ class Gate:
             weakest = self._find_harmful(selection, found)
             if weakest is None:
                 break
-            found = selection.workspace.fit(weakest)
+            found = selection.fit(weakest)
         if self.runs and self._is_worse(found.hypothesis.model, found.hypothesis.base):
             base = replace(found.hypothesis, terms=())
-            found = selection.workspace.fit(base)
+            found = selection.fit(base)
         return replace(selection, found=found), found is selection.found
 
     def favours(self, more: Model, less: Model, share: float) -> bool:
@@ -111,7 +112,7 @@ class Gate:
             if not idle:
                 break
             losses = [_ratio(errors[1 + k], errors[0]) for k in idle]
-            found = selection.workspace.fit(fewer[idle[int(np.argmin(losses))]])
+            found = selection.fit(fewer[idle[int(np.argmin(losses))]])
         return replace(selection, found=found)
 
     def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:
@@ -128,12 +129,11 @@ class Gate:
 
         Refitted to first order, and in full where that comes close.
         """
-        h, workspace = found.hypothesis, selection.workspace
-        fewer = workspace.drop(found, groups)
+        h, fewer = found.hypothesis, selection.workspace.drop(found, groups)
         errors = self._errors([h.model, *(one.model for one in fewer)])
         for k, one in enumerate(fewer):
             if _ratio(errors[1 + k], errors[0]) < 1.0 + CLOSE:
-                fewer[k] = workspace.fit(one).hypothesis
+                fewer[k] = selection.fit(one).hypothesis
         return fewer, self._errors([h.model, *(one.model for one in fewer)])
 
     def _is_worse(self, model: Model, before: Model) -> bool:
@@ -181,10 +181,13 @@ def _ratio(error: Array, other: Array) -> float:
 
 
 def _costs(error: Array, usual: Array, least: float) -> bool:
-    """Whether an error (w,) is surely larger than the usual one, and by more than that share."""
-    if not np.isfinite(error).all():
-        return True
-    return _ratio(error, usual) - 1.0 > least and _is_surely_less(usual, error)
+    """Whether an error (w,) is surely larger than the usual one, and by more than that share.
+
+    Several times as large it may be because of a few windows in which a model is lost: these make
+    the mean large and nothing sure.
+    """
+    more = _ratio(error, usual) - 1.0
+    return more > LOST or (more > least and _is_surely_less(usual, error))
 
 
 def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN) -> bool:

@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass, field
 
-from rovsim.diagnosis.selection.gauss_newton import Fit
+import numpy as np
+
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 SURE = 6.0  # twice a log likelihood: odds of 20 to 1
@@ -34,6 +37,15 @@ class Selection:
     found: Fit
     rivals: tuple[Rival, ...]
     complete: bool
+
+    @property
+    def reach(self) -> float:
+        """How far a fit may go from where it starts, in scales."""
+        return np.inf if self.complete else REACH
+
+    def fit(self, start: Hypothesis) -> Fit:
+        """Fit another hypothesis as this one was found."""
+        return self.workspace.fit(start, self.reach)
 
     @property
     def named_rivals(self) -> list[Rival]:
