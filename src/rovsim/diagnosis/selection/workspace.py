@@ -169,6 +169,8 @@ class SearchWorkspace:
 
     def products_without(self, current: Fit, term: Term) -> Array:
         """The `products` of the current hypothesis without one of its terms."""
+        if known := self._removed.get(current.hypothesis.key):
+            return known[current.hypothesis.terms.index(term)].products
         return self.products(self._without(current, [(term,)])[0])
 
     def drop(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Hypothesis]:
