@@ -36,4 +36,6 @@ def few_figures(monkeypatch):
     commands = "rovsim.apps.cli.commands"
     monkeypatch.setattr(f"{commands}.compare.ONCE", ("excitation",))
     monkeypatch.setattr(f"{commands}.compare.PER_RUN", ("velocities",))
-    monkeypatch.setattr(f"{commands}.diagnose.FIGURES", ("ranking",))
+    monkeypatch.setattr(f"{commands}.diagnose.EARLY", [])
+    monkeypatch.setattr("rovsim.application.pipeline.shown_diagnosis.FIGURES", ("ranking",))
+    monkeypatch.setattr("rovsim.core.second_process.usable_cores", lambda: 1)

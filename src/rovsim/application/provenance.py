@@ -38,18 +38,18 @@ def digest(*names: str, effects: Sequence[Path] = ()) -> str:
         wanted |= graph.find_upstream_modules(name)
     for package in _discovered(wanted):
         wanted |= graph.find_descendants(package)
+    return _digest([*map(_file, sorted(wanted)), *(effects if MODEL in wanted else ())])
+
+
+def own_digest(package: str, effects: Sequence[Path] = ()) -> str:
+    """Digest of a package's own modules, whatever they import, and of files of `effects`."""
+    return _digest([*sorted(_file(package).parent.rglob("*.py")), *effects])
+
+
+def _digest(files: Sequence[Path]) -> str:
     content = hashlib.sha256()
-    outside = effects if MODEL in wanted else ()
-    for path in (*map(_file, sorted(wanted)), *outside):
+    for path in files:
         content.update(path.read_bytes())
-    return content.hexdigest()[:16]
-
-
-def own_digest(package: str) -> str:
-    """Digest of a package's own modules, whatever they import."""
-    content = hashlib.sha256()
-    for name in sorted({package, *_graph().find_descendants(package)}):
-        content.update(_file(name).read_bytes())
     return content.hexdigest()[:16]
 
 
@@ -87,7 +87,7 @@ def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
         "rovsim": rovsim.__version__, "python": platform.python_version(), "system": system,
         **packages,
     }  # fmt: skip
-    return {"code": digest("rovsim", effects=catalogue.files), "versions": versions}
+    return {"code": own_digest("rovsim", catalogue.files), "versions": versions}
 
 
 def provenance(

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterator
 
 from rovsim.core.errors import RovsimError
+from rovsim.core.imports import end_at_once
 from rovsim.core.progress import heard_by
 from rovsim.core.remade import ReadAgain, Remade, read_again
 from rovsim.core.schema import S, checked
@@ -127,6 +128,7 @@ class Job:
 @contextmanager
 def job(snakemake: Any) -> Iterator[Job]:
     """Log to the rule's log; an expected error becomes one message and exit code 2."""
+    end_at_once()
     path = snakemake.log[0]
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s")
     logging.info("rule %s %s", snakemake.rule, dict(snakemake.wildcards))

@@ -46,9 +46,18 @@ def diagnose_campaign(
     settings: DiagnosisSettings,
     catalogue: Catalogue,
     stage: Callable[[str], None],
+    failing: Callable[[ErrorConditions], None] = lambda where: None,
 ) -> Diagnosed:
-    """Diagnose a model on a campaign; test runs are opened last, for the reported errors."""
+    """Diagnose a model on a campaign; test runs are opened last, for the reported errors.
+
+    `failing` is told under which conditions the base fails as soon as that is known, at once.
+    """
     stage("reading")
+    searched = (
+        [search_runs(base, runs, settings.signals, settings.replay)] if runs.of("train") else []
+    )
+    where = list_conditions(searched)
+    failing(where)
     train = prepare_train(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
@@ -56,14 +65,11 @@ def diagnose_campaign(
         base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
     )
     stage("scoring")
-    searched = (
-        [search_runs(base, runs, settings.signals, settings.replay)] if runs.of("train") else []
-    )
-    where = [finding.share() for one in searched for finding in one.explanation.findings]
+    shares = [finding.share() for one in searched for finding in one.explanation.findings]
     ladder = _climb(found, runs, settings, catalogue)
     return Diagnosed(
-        report(found, where, ladder, describe_model(base), catalogue, train.looked_at),
-        list_conditions(searched), found.proposed.source if found.proposed else None,
+        report(found, shares, ladder, describe_model(base), catalogue, train.looked_at),
+        where, found.proposed.source if found.proposed else None,
     )  # fmt: skip
 
 

@@ -1,5 +1,7 @@
 """Which effects a model lacks."""
 
+from typing import Callable
+
 from rovsim.application.pipeline.models import require_physics
 from rovsim.core.progress import staged
 from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, diagnose_campaign
@@ -7,16 +9,23 @@ from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.measurement.runs import Runs
+from rovsim.results.error_conditions import ErrorConditions
 
 
 def diagnose(
-    runs: Runs, base: Model, settings: DiagnosisSettings, catalogue: Catalogue
+    runs: Runs,
+    base: Model,
+    settings: DiagnosisSettings,
+    catalogue: Catalogue,
+    failing: Callable[[ErrorConditions], None] = lambda where: None,
 ) -> Diagnosed:
     """Diagnose a model of physics: on the train runs, its worth on the test runs.
+
+    `failing` is told under which conditions the base fails, while the diagnosis goes on.
 
     Raises:
         BadInput: the model has a trained residual, or no physics.
     """
     require_physics(base, "diagnose")
     with staged("diagnosing", STAGES) as stage:
-        return diagnose_campaign(runs, base, settings, catalogue, stage)
+        return diagnose_campaign(runs, base, settings, catalogue, stage, failing)

@@ -9,6 +9,7 @@ from typing import Sequence
 
 from rovsim import __version__
 from rovsim.core.errors import BadInput, RovsimError, nearest
+from rovsim.core.imports import end_at_once
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")
@@ -21,6 +22,7 @@ COMMANDS = Path(__file__).with_name("commands")
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run one command; exits with 0, or with 2 and one message for input that cannot be used."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    end_at_once()
     try:
         _main(words)
     except RovsimError as error:

@@ -1,7 +1,8 @@
 """A command's results for the eye: figures as files, and all of them on one page."""
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterable, Mapping
+from typing import Iterable, Mapping, Sequence
 
 from rovsim.core.progress import counted
 from rovsim.dynamics.effects.base import Effect
@@ -13,6 +14,15 @@ from rovsim.reporting.report_data import ReportData, describe, select_arguments
 Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once
 
 
+@dataclass(frozen=True)
+class Drawn:
+    """A figure that was wanted, as a picture and as files."""
+
+    wanted: Wanted
+    picture: report.Picture
+    files: Sequence[Path]
+
+
 def present(
     out: Path,
     campaign: str,
@@ -20,18 +30,29 @@ def present(
     wanted: Iterable[Wanted],
     provenance: Mapping[str, object],
     catalogue: Mapping[str, type[Effect]],
+    drawn: Iterable[Drawn] = (),
 ) -> list[Path]:
-    """Draw figures into `out`/figures and write `out`/report.html; returns all that was written."""
-    drawn = [_draw(out, *one, data) for one in counted(list(wanted), "drawing")]
-    pictures = [picture for picture, _ in drawn]
-    report.write(
-        out / "report.html", report.Report(campaign, data, pictures, provenance, catalogue)
-    )
-    return [out / "report.html", *(path for _, paths in drawn for path in paths)]
+    """Draw what is wanted and not yet drawn, write `out`/report.html; returns all files there are.
+
+    The page shows figures in the order in which they are wanted.
+    """
+    known = {one.wanted: one for one in drawn}
+    wanted = list(wanted)
+    known |= {one.wanted: one for one in draw(out, [w for w in wanted if w not in known], data)}
+    shown = [known[one] for one in wanted]
+    page = report.Report(campaign, data, [one.picture for one in shown], provenance, catalogue)
+    report.write(out / "report.html", page)
+    return [out / "report.html", *(path for one in shown for path in one.files)]
 
 
-def _draw(out: Path, figure: str, run: str, data: ReportData) -> tuple[report.Picture, list[Path]]:
+def draw(out: Path, wanted: Iterable[Wanted], data: ReportData) -> list[Drawn]:
+    """Draw figures into `out`/figures."""
+    return [_draw(out, *one, data) for one in counted(list(wanted), "drawing")]
+
+
+def _draw(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
     drawn = kind(figure).draw(**select_arguments(figure, data, run, list(data.replays)))
     paths = save(drawn, out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
-    return report.Picture.read(png, figure, describe(figure, run, data), run), paths
+    picture = report.Picture.read(png, figure, describe(figure, run, data), run)
+    return Drawn((figure, run), picture, paths)

@@ -8,28 +8,30 @@ used to decide; the test runs are opened once, for the errors that are reported.
 effects is then written by `rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 """
 
-from pathlib import Path
+from concurrent.futures import Future
 
 from pydantic import Field
 
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_one_model
-from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
+from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
-from rovsim.application.tracking import track_diagnosis
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import installed
 from rovsim.core.files import write_text
 from rovsim.core.progress import reported
+from rovsim.core.second_process import call, second_process
 from rovsim.diagnosis.equations.proposal import FILE as PROPOSAL
-from rovsim.diagnosis.of_campaign import Diagnosed
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.html import terminal
 from rovsim.reporting.report_data import ReportData
+from rovsim.results.error_conditions import ErrorConditions
 
-FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
+EARLY = [("where", ""), ("where_map", ""), ("excitation", "")]  # while the diagnosis goes on
+# The second process imports these; this one does without them, to begin sooner.
+DRAWING, SHOWING = "rovsim.reporting.html.folder", "rovsim.application.pipeline.shown_diagnosis"
+LOGGING = "mlflow.tracking"
 
 
 class Settings(CampaignSettings):
@@ -41,39 +43,41 @@ class Settings(CampaignSettings):
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
-    """Diagnose one model, write what was found, and say it."""
+    """Diagnose one model, write what was found, say it, show it, and log it."""
     data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     out = choose_folder(settings, f"results/{data.campaign.name}/diagnosis")
-    how = select(settings, DiagnosisSettings)
-    found = diagnose(data.runs, base, how, catalogue)
-    shown = _present(out, data, found, settings, catalogue)
-    if found.effect_file is not None:
-        write_text(out / PROPOSAL, found.effect_file)
-    found.diagnosis.write(out / "diagnosis.json")
-    files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
-    text = terminal.tell_diagnosis(found.diagnosis, catalogue)
-    say(settings, f"{text}\n\n{files}", found.diagnosis.to_json())
-    if installed("tracking"):
-        with reported("logging to MLflow"):
-            track_diagnosis(
-                settings.tracking, data.campaign.name, base.name, found.diagnosis,
-                how.model_dump(mode="json"), [out / "diagnosis.json", *shown],
-            )  # fmt: skip
+    tracking = settings.tracking if installed("tracking") else None
+    with second_process(DRAWING, SHOWING, *([LOGGING] if tracking else [])) as other:
+        early: list[Future] = []
 
+        def draw_early(where: ErrorConditions) -> None:
+            known = ReportData(where=where, quality=data.quality)
+            early.append(other.submit(call, f"{DRAWING}:draw", out, EARLY, known))
 
-def _present(
-    out: Path, data: Measured, found: Diagnosed, settings: Settings, catalogue: Catalogue
-) -> list[Path]:
-    from rovsim.reporting.html.folder import present
+        how = select(settings, DiagnosisSettings)
+        found = diagnose(data.runs, base, how, catalogue, draw_early)
+        if found.effect_file is not None:
+            write_text(out / PROPOSAL, found.effect_file)
+        found.diagnosis.write(out / "diagnosis.json")
+        shown = ReportData(
+            quality=data.quality,
+            ladder=found.diagnosis.ladder,
+            where=found.where,
+            diagnosis=found.diagnosis,
+        )
+        drawn = [one for future in early for one in future.result()]
+        origin = provenance(settings, catalogue, data.campaign)
+        last = other.submit(
+            call, f"{SHOWING}:show_diagnosis",
+            out, data.campaign.name, base.name, shown, drawn, origin, settings.effect_files,
+            how.model_dump(mode="json"), tracking,
+        )  # fmt: skip
 
-    shown = ReportData(
-        quality=data.quality,
-        ladder=found.diagnosis.ladder,
-        where=found.where,
-        diagnosis=found.diagnosis,
-    )
-    force = found.diagnosis.unexplained.disturbance
-    wanted = [(figure, "") for figure in (*FIGURES, *(["disturbance"] if force else []))]
-    origin = provenance(settings, catalogue, data.campaign)
-    return present(out, data.campaign.name, shown, wanted, origin, catalogue)
+        from rovsim.reporting.html.terminal import tell_diagnosis
+
+        files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
+        text = tell_diagnosis(found.diagnosis, catalogue)
+        say(settings, f"{text}\n\n{files}", found.diagnosis.to_json())
+        with reported("drawing and logging"):
+            last.result()

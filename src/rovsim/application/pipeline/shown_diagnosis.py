@@ -1,0 +1,47 @@
+"""A diagnosis as figures, as a page, and as an MLflow run."""
+
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from rovsim.application.settings import TrackingSettings
+from rovsim.application.tracking import track_diagnosis
+from rovsim.dynamics.catalogue import load_catalogue
+from rovsim.reporting.html.folder import Drawn, present
+from rovsim.reporting.report_data import ReportData
+
+FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
+
+
+def show_diagnosis(
+    out: Path,
+    campaign: str,
+    base: str,
+    data: ReportData,
+    drawn: Sequence[Drawn],
+    provenance: Mapping[str, object],
+    effect_files: Sequence[Path],
+    params: Mapping[str, Any],
+    tracking: TrackingSettings | None,
+) -> None:
+    """Draw what is not yet drawn, write the page, and log everything where there is MLflow.
+
+    Args:
+        out: folder that has the `diagnosis.json`.
+        campaign: its name.
+        base: name of the model that was diagnosed.
+        data: the diagnosis, and what else figures need.
+        drawn: figures that are there already.
+        provenance: of the diagnosis.
+        effect_files: of effects that the catalogue has beside the built-in ones.
+        params: settings of the diagnosis, nested plain values.
+        tracking: where to log, None for nowhere.
+    """
+    found = data.diagnosis
+    assert found is not None
+    names = [*FIGURES, *(["disturbance"] if found.unexplained.disturbance else [])]
+    wanted = [(name, "") for name in names]
+    catalogue = load_catalogue(effect_files)
+    files = present(out, campaign, data, wanted, provenance, catalogue, drawn)
+    if tracking is not None:
+        kept = [out / "diagnosis.json", *files]
+        track_diagnosis(tracking, campaign, base, found, params, kept)

@@ -1,0 +1,83 @@
+"""A second process for what needs other libraries, while this one computes."""
+
+import os
+import signal
+import sys
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import get_context, parent_process
+from threading import Thread
+from typing import Any, Callable, Iterator
+
+from rovsim.core.errors import RovsimError
+from rovsim.core.imports import end_at_once, import_large
+from rovsim.core.progress import heard_by
+
+
+@contextmanager
+def second_process(*modules: str) -> Iterator[Executor]:
+    """An executor of one process, which imports `modules` at once and ends with this one.
+
+    Where they are imported here already, or there is no core to spare, it is this process itself.
+
+    Raises:
+        RovsimError: somebody killed the other process.
+    """
+    if usable_cores() < 2 or all(module in sys.modules for module in modules):
+        yield _ThisProcess()
+        return
+    executor = ProcessPoolExecutor(1, get_context("spawn"), initializer=_obey_the_first)
+    try:
+        executor.submit(_import, modules)
+        yield executor
+    except BrokenProcessPool:
+        raise RovsimError(
+            "the process that draws and logs was killed, perhaps for want of memory. What was "
+            "computed is kept; start the command again."
+        ) from None
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def usable_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class _ThisProcess(Executor):
+    """Does at once what it is given; the terminal may show the progress of something else."""
+
+    def submit(self, function: Callable, /, *given: Any, **named: Any) -> Future:
+        done: Future = Future()
+        with heard_by():
+            done.set_result(function(*given, **named))
+        return done
+
+
+def _obey_the_first() -> None:
+    """End when the first process ends, not before, and say nothing on its terminal."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    first = parent_process()
+    assert first is not None
+
+    def follow() -> None:
+        first.join()
+        os._exit(1)
+
+    Thread(target=follow, daemon=True).start()
+    heard_by().__enter__()
+    end_at_once()
+
+
+def _import(modules: tuple[str, ...]) -> None:
+    for module in modules:
+        import_large(module)
+
+
+def call(name: str, *given: Any) -> Any:
+    """Call "module:function", which the first process need not import."""
+    module, function = name.split(":")
+    return getattr(import_large(module), function)(*given)

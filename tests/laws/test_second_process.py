@@ -1,0 +1,82 @@
+"""A second process does the same as this one, and never outlives it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from rovsim.core import second_process as second
+from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.second_process import call, second_process
+
+UNKNOWN = "tabnanny"  # a module of Python that nothing else imports
+FAILS = "rovsim.application.settings:compose", ["no_such_key=1"]
+PARENT = """
+from rovsim.core.second_process import call, second_process
+if __name__ == "__main__":
+    with second_process("tabnanny") as other:
+        print(other.submit(call, "os:getpid").result(), flush=True)
+        other.submit(call, "time:sleep", 20).result()
+"""
+
+
+@pytest.fixture(params=[1, 2])
+def cores(request, monkeypatch):
+    """Without and with a core to spare."""
+    monkeypatch.setattr(second, "usable_cores", lambda: request.param)
+    return request.param
+
+
+def test_it_is_another_process_where_a_core_is_to_spare(cores):
+    with second_process(UNKNOWN) as other:
+        assert (other.submit(call, "os:getpid").result() == os.getpid()) == (cores == 1)
+    assert UNKNOWN not in sys.modules
+
+
+def test_it_is_this_process_where_everything_is_imported(monkeypatch):
+    monkeypatch.setattr(second, "usable_cores", lambda: 2)
+    with second_process("os", "sys") as other:
+        assert other.submit(call, "os:getpid").result() == os.getpid()
+
+
+def test_its_errors_are_those_of_this_process(cores):
+    with pytest.raises(BadInput) as here:
+        call(*FAILS)
+    with pytest.raises(BadInput) as there, second_process(UNKNOWN) as other:
+        other.submit(call, *FAILS).result()
+    assert str(there.value) == str(here.value)
+
+
+def test_one_that_is_killed_is_a_message(monkeypatch):
+    monkeypatch.setattr(second, "usable_cores", lambda: 2)
+    with pytest.raises(RovsimError, match="start the command again"), second_process(UNKNOWN) as o:
+        o.submit(call, "os:_exit", 1).result()
+
+
+def test_it_ends_when_this_process_is_killed(tmp_path):
+    if second.usable_cores() < 2:
+        pytest.skip("one core: there is no second process")
+    script = tmp_path / "parent.py"
+    script.write_text(PARENT)
+    with subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        other = int(parent.stdout.readline())
+        assert other != parent.pid
+        assert _runs(other)
+        parent.send_signal(signal.SIGKILL)
+        until = time.monotonic() + 30
+        while _runs(other) and time.monotonic() < until:
+            time.sleep(0.05)
+    assert not _runs(other)
+
+
+def _runs(process: int) -> bool:
+    """Whether a process is there; one that ended and was not asked about yet is not."""
+    try:
+        return "State:\tZ" not in Path(f"/proc/{process}/status").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
