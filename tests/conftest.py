@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from sketches import draw_few
+
 os.environ.setdefault("ROVSIM_CACHE", str(Path(__file__).parents[1] / ".pytest_cache" / "rovsim"))
 
 # The matrices are small: waiting for its siblings costs a BLAS thread more than it computes. Read
@@ -29,13 +31,5 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture
 def few_figures(monkeypatch):
-    """`compare` and `diagnose` draw one figure of each kind: for tests of their numbers.
-
-    test_cli, test_diagnose and the study draw them all.
-    """
-    commands = "rovsim.apps.cli.commands"
-    monkeypatch.setattr(f"{commands}.compare.ONCE", ("excitation",))
-    monkeypatch.setattr(f"{commands}.compare.PER_RUN", ("velocities",))
-    monkeypatch.setattr(f"{commands}.diagnose.EARLY", [])
-    monkeypatch.setattr("rovsim.application.pipeline.shown_diagnosis.FIGURES", ("ranking",))
-    monkeypatch.setattr("rovsim.core.second_process.usable_cores", lambda: 1)
+    """`compare` and `diagnose` draw one figure of each kind."""
+    draw_few(monkeypatch)

@@ -29,6 +29,7 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands, as_logged
 from rovsim.results.experiment import Experiment
 from rovsim.simulation.synthetic_tank.sent_log import PLACED, read_sent_log
+from sketches import draw_few
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial_next_flight.md"
@@ -65,7 +66,7 @@ def designed(tmp_path_factory):
         for name, few in FEWER.items():
             patch.setattr(f"rovsim.design.search.{name}", few)
         patch.setattr("rovsim.apps.cli.commands.design.design", keep)
-        patch.setattr("rovsim.apps.cli.commands.diagnose.FIGURES", ("ladder",))
+        draw_few(patch)
         patch.setattr("rovsim.apps.cli.commands.diagnose.installed", lambda name: False)
         for line in commands():
             words = shlex.split(line)[1:]
