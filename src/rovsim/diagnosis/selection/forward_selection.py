@@ -227,6 +227,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
         again = workspace.fit(found.hypothesis)
         swap = max(SWAP, SLIGHT * gained)
         current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
+    workspace = workspace.look_again(current)
     current, _ = contest(workspace, current, 1)
     current = change_mode(workspace, current)
     current = prefer_file(workspace, current)

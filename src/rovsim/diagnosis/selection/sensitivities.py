@@ -1,7 +1,8 @@
 """What each candidate would change in the innovations, to first order, from each of its starts.
 
-The observer keeps every model close to the measurement, so these columns hardly depend on which
-other effects the model has: they are made once, and once more beside loops on board.
+The observer keeps every model close to the measurement, so these columns depend little on which
+other effects the model has. But a marker that is not where it should be, a clock that drifts or
+loops on board change them all: then they are made anew beside what was found.
 """
 
 from dataclasses import dataclass, replace
@@ -43,7 +44,8 @@ class CandidateColumns:
 class Sensitivities:
     """`base` innovations (6, n) of each run, and `columns` (c, 6, n), as this filter bank saw them.
 
-    `blocks` say which columns belong to which candidate, `base_model` what they start from.
+    `blocks` say which columns belong to which candidate, `base_model` what the search starts from,
+    `beside` the ids of the effects that the columns were made beside.
     """
 
     base_model: Model
@@ -51,6 +53,7 @@ class Sensitivities:
     base: list[Array]
     columns: list[Array]
     blocks: tuple[CandidateColumns, ...]
+    beside: tuple[str, ...] = ()
 
     @property
     def candidates(self) -> list[Candidate]:
@@ -99,7 +102,8 @@ def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> 
         held = all(np.isfinite(one).all() for one in columns)
         parts.append(columns if held else [np.zeros_like(one) for one in columns])
     stacked = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
-    return replace(known, bank=bank, base=bank.innovations(at.model), columns=stacked)
+    base, beside = bank.innovations(at.model), tuple(term.id for term in at.terms)
+    return replace(known, bank=bank, base=base, columns=stacked, beside=beside)
 
 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:
