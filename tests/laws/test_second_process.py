@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,22 @@ def test_one_that_is_killed_is_a_message(monkeypatch):
         o.submit(call, "os:_exit", 1).result()
 
 
+def test_where_it_was_killed_this_process_goes_on(monkeypatch):
+    monkeypatch.setattr(second, "usable_cores", lambda: 2)
+    with second_process(UNKNOWN) as other:
+        with pytest.raises(BrokenProcessPool):
+            other.submit(call, "os:_exit", 1).result()
+        assert other.submit(call, "os:getpid").result() == os.getpid()
+
+
+def test_an_error_does_not_wait_for_it(monkeypatch):
+    monkeypatch.setattr(second, "usable_cores", lambda: 2)
+    begun = time.monotonic()
+    with pytest.raises(BadInput), second_process(UNKNOWN) as other:
+        _fail_beside(other)
+    assert time.monotonic() - begun < 50
+
+
 def test_it_ends_when_this_process_is_killed(tmp_path):
     if second.usable_cores() < 2:
         pytest.skip("one core: there is no second process")
@@ -72,6 +89,13 @@ def test_it_ends_when_this_process_is_killed(tmp_path):
         while _runs(other) and time.monotonic() < until:
             time.sleep(0.05)
     assert not _runs(other)
+
+
+def _fail_beside(other):
+    """An error while the other process is at work."""
+    other.submit(call, "os:getpid").result()
+    other.submit(call, "time:sleep", 60)
+    call(*FAILS)
 
 
 def _runs(process: int) -> bool:

@@ -12,4 +12,4 @@ if __name__ == "__main__":
             settings=rule.section(DiagnosisSettings),
             catalogue=rule.catalogue,
         )
-        found.diagnosis.write(rule.output())
+        found.write(rule.output())

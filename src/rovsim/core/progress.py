@@ -70,5 +70,5 @@ def _shown(what: str) -> Iterator[Tell]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
         task = bars.add_task(what, total=None)
         yield lambda text, share: bars.update(
-            task, description=text, total=share and 1.0, completed=share or 0.0
+            task, description=text, total=None if share is None else 1.0, completed=share or 0.0
         )

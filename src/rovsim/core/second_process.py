@@ -6,7 +6,7 @@ import sys
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
+from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 from typing import Any, Callable, Iterator
 
@@ -27,15 +27,19 @@ def second_process(*modules: str) -> Iterator[Executor]:
     if usable_cores() < 2 or all(module in sys.modules for module in modules):
         yield _ThisProcess()
         return
-    executor = ProcessPoolExecutor(1, get_context("spawn"), initializer=_obey_the_first)
+    others, executor = set(active_children()), _OtherProcess()
     try:
         executor.submit(_import, modules)
         yield executor
-    except BrokenProcessPool:
-        raise RovsimError(
-            "the process that draws and logs was killed, perhaps for want of memory. What was "
-            "computed is kept; start the command again."
-        ) from None
+    except BaseException as error:
+        for process in set(active_children()) - others:
+            process.terminate()  # nobody waits for what it does
+        if isinstance(error, BrokenProcessPool):
+            raise RovsimError(
+                "a second process was killed, perhaps for want of memory. What was computed is "
+                "kept; start the command again."
+            ) from None
+        raise
     finally:
         executor.shutdown(cancel_futures=True)
 
@@ -45,6 +49,19 @@ def usable_cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+class _OtherProcess(ProcessPoolExecutor):
+    """Hands on what it is given; does it itself where the other process is gone."""
+
+    def __init__(self) -> None:
+        super().__init__(1, get_context("spawn"), initializer=_obey_the_first)
+
+    def submit(self, function: Callable, /, *given: Any, **named: Any) -> Future:
+        try:
+            return super().submit(function, *given, **named)
+        except BrokenProcessPool:
+            return _ThisProcess().submit(function, *given, **named)
 
 
 class _ThisProcess(Executor):
@@ -58,7 +75,7 @@ class _ThisProcess(Executor):
 
 
 def _obey_the_first() -> None:
-    """End when the first process ends, not before, and say nothing on its terminal."""
+    """End when the first process ends, and not before."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     first = parent_process()
     assert first is not None
@@ -68,7 +85,6 @@ def _obey_the_first() -> None:
         os._exit(1)
 
     Thread(target=follow, daemon=True).start()
-    heard_by().__enter__()
     end_at_once()
 
 
@@ -78,6 +94,7 @@ def _import(modules: tuple[str, ...]) -> None:
 
 
 def call(name: str, *given: Any) -> Any:
-    """Call "module:function", which the first process need not import."""
+    """Call "module:function", which the first process need not import; the terminal is its own."""
     module, function = name.split(":")
-    return getattr(import_large(module), function)(*given)
+    with heard_by():
+        return getattr(import_large(module), function)(*given)

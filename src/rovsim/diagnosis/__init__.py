@@ -3,9 +3,11 @@
 observer      the model runs along the train runs, corrected by a filter: what it could not foresee
 selection     which effects explain that: candidates, search, fits, what else they could be
 checks        what is asked of the answer: structure left, what is known, noise floor
+equations     a law for what is left, where one holds
 procedure     these, in order
 advice        what to record next
 result        what is written of it
 of_campaign   a campaign in, all that is reported out; test runs are opened here, once
+settings      how thorough
 apply         a model with the effects that were found
 """

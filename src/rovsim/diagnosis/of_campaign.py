@@ -1,11 +1,14 @@
 """A model and a campaign's runs in, everything that `rovsim diagnose` reports out."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Callable
 
 import numpy as np
 
+from rovsim.core.files import write_text
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
+from rovsim.diagnosis.equations.proposal import FILE
 from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
 from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
 from rovsim.diagnosis.result import report
@@ -38,6 +41,22 @@ class Diagnosed:
     diagnosis: Diagnosis
     where: ErrorConditions
     effect_file: str | None = None
+
+    def write(self, path: Path) -> None:
+        """Write the diagnosis, and beside it the effect that it proposes; an older one goes."""
+        law = law_beside(path)
+        if self.effect_file is None:
+            law.unlink(missing_ok=True)
+        else:
+            write_text(law, self.effect_file)
+        self.diagnosis.write(path)
+
+
+def law_beside(diagnosis: Path) -> Path:
+    """Where the file of the effect lies that a diagnosis proposes."""
+    return diagnosis.with_name(
+        FILE if diagnosis.stem == "diagnosis" else f"{diagnosis.stem}_{FILE}"
+    )
 
 
 def diagnose_campaign(

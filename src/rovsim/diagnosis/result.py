@@ -142,8 +142,8 @@ def describe_structures(found: TrainDiagnosis) -> Unexplained:
     also = [s for s in found.structures[1:] if s.axis != first.axis]
     hint = f"{first.axis.capitalize()}: the remainder shows {first.what}."
     if also:
-        axes = ", ".join(dict.fromkeys(s.axis for s in also))
-        hint += f" Also {axes}: {also[0].what}."
+        each = {s.axis: s.what for s in reversed(also)}  # of each axis its first
+        hint += f" Also {'; '.join(f'{axis}: {each[axis]}' for axis in reversed(each))}."
     return Unexplained(
         fraction=rounded(first.share), significant=True, hint=hint,
         proposal=describe_law(found.proposed) if found.proposed else None,

@@ -4,7 +4,7 @@ import hashlib
 import json
 from pathlib import Path
 
-from rovsim.application.provenance import digest
+from rovsim.application.provenance import digest, digest_files
 from rovsim.core.schema import Section
 from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -39,9 +39,7 @@ def kept_flight(
 
 def _digest(campaign: Campaign, settings: Section, model: Model, code: str) -> str:
     content = hashlib.sha256()
-    for path in campaign.files:
-        if path.is_file():
-            content.update(path.read_bytes())
+    content.update(json.dumps(digest_files(campaign)).encode())
     content.update(settings.model_dump_json().encode())
     content.update(json.dumps(describe_model(model), sort_keys=True).encode())
     content.update(code.encode())

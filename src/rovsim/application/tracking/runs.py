@@ -60,7 +60,11 @@ def track(
         run = client.create_run(
             number, tags=labels | ({"mlflow.parentRunId": parent} if parent else {})
         )
-        _log(client, run.info.run_id, params, metrics_of(scores) | dict(metrics or {}), files)
+        try:
+            _log(client, run.info.run_id, params, metrics_of(scores) | dict(metrics or {}), files)
+        except BaseException:
+            client.set_terminated(run.info.run_id, "FAILED")
+            raise
         client.set_terminated(run.info.run_id)
         return run.info.run_id
 
@@ -181,7 +185,7 @@ def _experiment(client, settings: TrackingSettings, name: str) -> str:
 
 
 def _lock(uri: str) -> Path:
-    """Beside a local database; for a server, one lock a user is enough."""
+    """Beside a local database; for a server, one in each folder that commands run in is enough."""
     path = _local(uri)
     place = path.with_suffix(".lock") if path else Path(".rovsim-tracking.lock")
     place.parent.mkdir(parents=True, exist_ok=True)

@@ -16,10 +16,10 @@ def job(composed: Any) -> None:
     from hydra.core.hydra_config import HydraConfig
 
     hydra = HydraConfig.get()
-    settings = name_run(settings_of(composed), hydra.overrides.task)
-    if settings.out is None:
-        settings = settings.model_copy(update={"out": hydra.runtime.output_dir})
     try:
+        settings = name_run(settings_of(composed), hydra.overrides.task)
+        if settings.out is None:
+            settings = settings.model_copy(update={"out": hydra.runtime.output_dir})
         run_command(settings)
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)

@@ -98,7 +98,7 @@ class Campaign:
         path = kept_diagnosis(folder, self.data.campaign, how, base, self._known)
         if not path.exists():
             with in_a_cell():
-                diagnose(self.data.runs, base, how, self.catalogue).diagnosis.write(path)
+                diagnose(self.data.runs, base, how, self.catalogue).write(path)
         return ShownDiagnosis(Diagnosis.read(path), path, self._known)
 
     def add(

@@ -13,10 +13,8 @@ from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, WorkbenchSettings, select
-from rovsim.core.files import write_text
 from rovsim.core.progress import reported
 from rovsim.design.settings import Question
-from rovsim.diagnosis.equations.proposal import FILE
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in, load_catalogue
 from rovsim.reporting.report_data import PER_RUN
@@ -37,17 +35,8 @@ def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
     base = load_one_model(settings.model, data.vehicle, catalogue)
     how = select(settings, DiagnosisSettings)
     found = diagnose(data.runs, base, how, catalogue)
-    if found.effect_file is not None:
-        write_text(law_beside(path), found.effect_file)
-    found.diagnosis.write(path)
+    found.write(path)
     return found.diagnosis
-
-
-def law_beside(diagnosis: Path) -> Path:
-    """Where the file of the effect lies that a diagnosis proposes."""
-    return diagnosis.with_name(
-        FILE if diagnosis.stem == "diagnosis" else f"{diagnosis.stem}_{FILE}"
-    )
 
 
 def train_into(settings: WorkbenchSettings, path: Path) -> Path:

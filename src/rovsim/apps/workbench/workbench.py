@@ -13,13 +13,13 @@ from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
 from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import WorkbenchSettings, select
-from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_text, write_text
 from rovsim.core.remade import Recent
 from rovsim.design.settings import Question
+from rovsim.diagnosis.of_campaign import law_beside
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
@@ -134,7 +134,7 @@ class Workbench:
     def law_path(self) -> Path:
         """File of the effect that the diagnosis proposes."""
         given = self.settings.diagnosis
-        return tasks.law_beside(Path(given) if given else self.diagnosis_path)
+        return law_beside(Path(given) if given else self.diagnosis_path)
 
     def add(self, model: Model, path: Path) -> None:
         """Take in a model that was saved or trained."""

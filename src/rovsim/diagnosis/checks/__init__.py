@@ -6,5 +6,6 @@ residual_structure   does what is left vary with something? (residual, regressor
 common_scale         does a factor of all forces stay open?
 rest_of_file         what does the rest of a vehicle file that is off leave open? (left_open)
 identifiability      which values are known only together?
+observability        which effects could these runs not show?
 noise_floor          what would a perfect model score?
 """

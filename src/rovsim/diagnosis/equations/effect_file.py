@@ -185,7 +185,7 @@ def _body(terms: Sequence[LawTerm], law: Term) -> Iterator[str]:
     body = {f: f for f in FORCES if f in values}
     world = [v if v in values else "0.0" for v in ("Fn", "Fe", "Fd")]
     if any(v != "0.0" for v in world):
-        yield from _turned(world, "force", "R")
+        yield from _turned(world)
         body |= {
             f: f"{body[f]} + force_{f.lower()}" if f in body else f"force_{f.lower()}"
             for f in FORCES[:3]
@@ -234,11 +234,11 @@ def _surroundings(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
         yield "near = exp(-(north * north + east * east) / (2.0 * p.width * p.width))"
 
 
-def _turned(world: Sequence[str], name: str, R: str) -> Iterator[str]:
-    """A vector of the world seen in the body."""
+def _turned(world: Sequence[str]) -> Iterator[str]:
+    """A force of the world seen in the body."""
     for j, f in enumerate("xyz"):
         parts = [f"at.R[{i}][{j}] * {v}" for i, v in enumerate(world) if v != "0.0"]
-        yield f"{name}_{f} = " + " + ".join(parts)
+        yield f"force_{f} = " + " + ".join(parts)
 
 
 def _carried(flow: Sequence[str], law: Term) -> Iterator[str]:

@@ -1,11 +1,15 @@
 """A model that runs along a measurement, corrected by a filter: what it could not foresee.
 
 observed_run    a run as read, before any filter
+train_runs      runs of a campaign, prepared: those parts of long ones that tell most
 usable_runs     those with something to observe, and whether that is enough
 noise           what no model predicts: noise of the readings, a disturbance with memory
 noise_fit       how large it most likely is
+camera          does the software of the motion capture smooth what it reports?
 random_walk     pushes that wander: how they show, and how likely they are
 drifting_current  does the water wander?
+autoregression  errors of the readings that last
+small_matrices  algebra on 6 x 6 in compiled code
 kalman          the steady filters that suit it, axis by axis
 innovations     many models on one run, in one compiled call
 filter_bank     all runs, each with its filters: innovations, whitened

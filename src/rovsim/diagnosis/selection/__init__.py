@@ -6,7 +6,10 @@ proposals          what each promises, and what chance would seem to gain
 workspace          the runs, the columns, one noise for all; what is fitted already
 gauss_newton       the most likely parameters, and their spread
 forward_selection  add, refit, swap, prune
+loose_file         a special effect beside a vehicle file that may be off everywhere
 rivals             where that ended, and what else the effects could be
+smoothed           beside what the camera does
+gate               stretches that took no part must be replayed no worse
 held_out           what does not help where it was not fitted goes
 joint_fit          much is missing at once: all that could be wrong, then pruned
 nominal_terms      what the vehicle file states, as terms that may be wrong

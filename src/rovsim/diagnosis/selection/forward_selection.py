@@ -113,7 +113,8 @@ def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Mode
     """Whether some axis' error in 2 s windows is noticeably larger with each other model (m,)."""
     rmse = score_windows([found.hypothesis.model, *without], workspace.bank.runs).rmse
     measured = rmse[0] > 0.0
-    ratio = rmse[1:, measured] / rmse[0, measured]
+    # a model that cannot exist is infinitely worse
+    ratio = np.nan_to_num(rmse[1:, measured] / rmse[0, measured], nan=np.inf)
     return np.max(ratio, axis=1, initial=0.0) - 1.0 > workspace.settings.relevant
 
 

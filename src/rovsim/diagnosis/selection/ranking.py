@@ -51,7 +51,7 @@ def rank_selected(
     while left:
         tried = [model + terms[i].effect for i in left]
         after = _score(tried, runs)
-        best = int(np.argmin(after))
+        best = int(np.argmin(np.nan_to_num(after, nan=np.inf)))
         order.append(left.pop(best))
         gains.append(float((now - after[best]) / start))
         model, now = tried[best], after[best]

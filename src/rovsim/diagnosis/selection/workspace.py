@@ -28,8 +28,8 @@ from rovsim.diagnosis.selection.sensitivities import (
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.model import Model
 
-# Of the square of a derivative: if one has turned by more, what was found has changed columns. Chosen
-# on a marker 0.1 m beside CO, which turned its own by 0.2: one drag then passed for another.
+# Of the square of a derivative: if one has turned by more, what was found has changed columns.
+# Chosen on a marker 0.1 m beside CO, which turned its own by 0.2: one drag passed for another.
 CHANGED = 0.1
 # Of a column's own square, in six digits: what free parameters leave less of is theirs.
 EXPLAINED = 1e-6

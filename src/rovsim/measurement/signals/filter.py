@@ -57,7 +57,7 @@ class Butterworth(Section):
                 f"cutoff {self.cutoff:g} Hz at {1 / dt:g} samples/s",
                 where="filter",
                 expected=f"a cutoff below {0.5 / dt:g} Hz",
-                remedy="Lower filter.cutoff or raise resample.rate.",
+                remedy="Lower signals.filter.cutoff or raise signals.resample.rate.",
             )
         period = 1.0 / (self.cutoff * dt)
         pad = round(EXTENSION * period)

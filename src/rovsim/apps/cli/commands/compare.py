@@ -29,22 +29,25 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     """Compare, then write numbers, figures and the report."""
     from rovsim.reporting.html.folder import present
 
-    data = measure(open_campaign(settings.campaign), settings.signals)
+    campaign = open_campaign(settings.campaign)
+    out = choose_folder(settings, f"results/{campaign.name}/compare")
+    data = measure(campaign, settings.signals)
     models = load_models(settings.model, data.vehicle, catalogue)
-    out = choose_folder(settings, f"results/{data.campaign.name}/compare")
     found = compare(data, models, settings)
     assert found.comparison is not None
     assert found.where is not None
     assert found.forces is not None
-    wanted = [(figure, "") for figure in ONCE]
-    wanted += [(figure, run) for run in found.drawn for figure in PER_RUN]
-    origin = provenance(settings, catalogue, data.campaign)
-    present(out, data.campaign.name, found, wanted, origin, catalogue)
     found.where.write(out / "where.json")
     found.forces.write(out / "budget.json")
     found.comparison.write(out / "comparison.json")
     if found.coverage is not None:
         found.coverage.write(out / "bands.json")
+    else:
+        (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
+    wanted = [(figure, "") for figure in ONCE]
+    wanted += [(figure, run) for run in found.drawn for figure in PER_RUN]
+    origin = provenance(settings, catalogue, campaign)
+    present(out, campaign.name, found, wanted, origin, catalogue)
     errors = {step.model: step.windows_2s for step in found.steps}
     text = tell_comparison(errors, found.where, bool(data.runs.of("test")), found.coverage)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"

@@ -35,9 +35,10 @@ class Settings(CampaignSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Plan, write the files, and say what to expect."""
     question = _ask(settings)
-    data = measure(open_campaign(settings.campaign), settings.signals)
+    campaign = open_campaign(settings.campaign)
+    out = choose_folder(settings, f"results/{campaign.name}/design")
+    data = measure(campaign, settings.signals)
     model = load_one_model(settings.model, data.vehicle, catalogue)
-    out = choose_folder(settings, f"results/{data.campaign.name}/design")
     found = design(data, model, question, catalogue)
     write_flight(out, found)
     text = tell_experiment(found.experiment)

@@ -19,10 +19,8 @@ from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import installed
-from rovsim.core.files import write_text
 from rovsim.core.progress import reported
 from rovsim.core.second_process import call, second_process
-from rovsim.diagnosis.equations.proposal import FILE as PROPOSAL
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.report_data import ReportData
@@ -44,9 +42,10 @@ class Settings(CampaignSettings):
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Diagnose one model, write what was found, say it, show it, and log it."""
-    data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
+    campaign = open_campaign(settings.campaign)
+    out = choose_folder(settings, f"results/{campaign.name}/diagnosis")
+    data = measure(campaign, settings.signals, even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
-    out = choose_folder(settings, f"results/{data.campaign.name}/diagnosis")
     tracking = settings.tracking if installed("tracking") else None
     with second_process(DRAWING, SHOWING, *([LOGGING] if tracking else [])) as other:
         early: list[Future] = []
@@ -57,9 +56,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
         how = select(settings, DiagnosisSettings)
         found = diagnose(data.runs, base, how, catalogue, draw_early)
-        if found.effect_file is not None:
-            write_text(out / PROPOSAL, found.effect_file)
-        found.diagnosis.write(out / "diagnosis.json")
+        found.write(out / "diagnosis.json")
         shown = ReportData(
             quality=data.quality,
             ladder=found.diagnosis.ladder,

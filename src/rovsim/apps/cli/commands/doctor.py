@@ -19,6 +19,7 @@ from rovsim.application.conf_search import first_folder
 from rovsim.application.settings import CommandSettings, TrackingSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.extras import PACKAGES, installed
+from rovsim.core.second_process import usable_cores
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.engine.cache import cache_folder
 
@@ -54,8 +55,7 @@ def _environment() -> list[Line]:
 
 
 def _cores() -> list[Line]:
-    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    return [("cores", True, f"{usable} usable of {os.cpu_count()}")]
+    return [("cores", True, f"{usable_cores()} usable of {os.cpu_count()}")]
 
 
 def _compiled() -> list[Line]:

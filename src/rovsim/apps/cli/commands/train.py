@@ -3,8 +3,8 @@
 rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6dof|all out=OUT
 
 Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, and
-an MLflow run where rovsim[tracking] is installed. With -m, comma-separated values are swept:
-residual.k=1,3,5 control=3dof,6dof. Needs the extra rovsim[learn].
+an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof. Needs
+the extras rovsim[learn,tracking].
 """
 
 from rovsim.application.pipeline.models import load_one_model
@@ -33,11 +33,12 @@ class Settings(TrainingSettings, CampaignSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Train, write, score, and log."""
     require("learn", "tracking", by="rovsim train")
-    data = measure(open_campaign(settings.campaign), settings.signals)
-    base = load_one_model(settings.model, data.vehicle, catalogue)
     kind = settings.learner.kind
     name = f"{kind}_{settings.control}"
-    out = choose_folder(settings, f"results/{data.campaign.name}/trained/{name}")
+    campaign = open_campaign(settings.campaign)
+    out = choose_folder(settings, f"results/{campaign.name}/trained/{name}")
+    data = measure(campaign, settings.signals)
+    base = load_one_model(settings.model, data.vehicle, catalogue)
     file, story = out / "model.yaml", provenance(settings, catalogue, data.campaign)
     corrected = train([*data.motions.values()], base, settings, catalogue, file, story)
     scored = score_models([base, corrected], data.motions, settings)
