@@ -6,6 +6,7 @@ import sys
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 from typing import Any, Callable, Iterator
@@ -65,12 +66,11 @@ class _OtherProcess(ProcessPoolExecutor):
 
 
 class _ThisProcess(Executor):
-    """Does at once what it is given; the terminal may show the progress of something else."""
+    """Does at once what it is given."""
 
     def submit(self, function: Callable, /, *given: Any, **named: Any) -> Future:
         done: Future = Future()
-        with heard_by():
-            done.set_result(function(*given, **named))
+        done.set_result(function(*given, **named))
         return done
 
 
@@ -94,7 +94,10 @@ def _import(modules: tuple[str, ...]) -> None:
 
 
 def call(name: str, *given: Any) -> Any:
-    """Call "module:function", which the first process need not import; the terminal is its own."""
+    """Call "module:function", which the first process need not import.
+
+    Nothing is said of its progress: the terminal may show that of something else.
+    """
     module, function = name.split(":")
     with heard_by():
-        return getattr(import_large(module), function)(*given)
+        return getattr(import_module(module), function)(*given)

@@ -92,10 +92,10 @@ class SearchWorkspace:
             return self
         bank, loops = self.bank.redesign(at.model, self.noise), _list_loops(at.model)
         fresh = linearise_beside(bank, at, self.sensitivities)
-        again = replace(self, _beside=self._beside | {loops: fresh}, _white={})
+        again = replace(self, _white={}, _proposed={}, _removed={})
         if loops == _list_loops(self.sensitivities.base_model):
-            again = replace(again, sensitivities=fresh)
-        return replace(again, _proposed={}, _removed={})
+            return replace(again, sensitivities=fresh)
+        return replace(again, _beside=self._beside | {loops: fresh})
 
     def _has_changed_columns(self, current: Fit) -> bool:
         """Whether the derivatives by what was found are others than they were without it.
