@@ -9,6 +9,7 @@ import pytest
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot, Effect, Wrench
+from rovsim.dynamics.effects.user_files import read_effects
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.signals.motion import Motion
@@ -87,3 +88,12 @@ def at_rest() -> np.ndarray:
 def sticks(seed: int = 0, rows: int = 20) -> np.ndarray:
     """Thruster commands (rows, 8), within what a pilot uses."""
     return np.random.default_rng(seed).uniform(-0.5, 0.5, (rows, 8))
+
+
+def write_and_read(form, law, folder):
+    """The file of a law that is proposed as a class, and that with the law's values."""
+    numbers = form.list_numbers(law, [0.1] * len(law.free))
+    path = folder / "proposed_effect.py"
+    path.write_text(form.write("proposed_effect", law, numbers, "A test."), "utf-8")
+    cls = read_effects(path, built_in())["proposed_effect"]
+    return cls, cls(**{n.name: n.value for n in numbers})

@@ -5,19 +5,19 @@ import pytest
 
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Site
-from rovsim.diagnosis.equations.as_effect import drop_term, list_moved, split_law
-from rovsim.diagnosis.equations.effect_file import list_numbers, write_equation, write_file
-from rovsim.diagnosis.equations.library import Columns, LawTerm, _along_body, push_at
-from rovsim.diagnosis.equations.search import propose
-from rovsim.diagnosis.equations.variables import ODD, VARIABLES, tabulate, unit_of
+from rovsim.diagnosis.equations.form import get_law
+from rovsim.diagnosis.equations.products.as_effect import list_moved
+from rovsim.diagnosis.equations.products.library import Columns, LawTerm, _along_body, push_at
+from rovsim.diagnosis.equations.products.products import Products
+from rovsim.diagnosis.equations.products.search import propose
+from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate, unit_of
+from rovsim.diagnosis.equations.products.wording import write_equation
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.law import Law
-from rovsim.dynamics.effects.user_files import read_effects
 from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
-from worlds import model, tank
+from worlds import model, tank, write_and_read
 
 PLACE = np.array([4.0, -2.0, 1.0, 0.8])  # north, east, down m; width m
 SIGNS = np.array([1.0, -1.0, -1.0])  # of a MoCap world whose z is up
@@ -80,11 +80,7 @@ def wrenches(law):
 @pytest.mark.parametrize("terms", LAWS, ids=write_equation)
 def test_the_file_pushes_as_the_law_does(terms, tmp_path):
     law = law_of(terms)
-    numbers = list_numbers(terms, law, [0.1] * len(law.free))
-    path = tmp_path / "proposed_effect.py"
-    path.write_text(write_file("proposed_effect", terms, law, numbers, "A test."), "utf-8")
-    cls = read_effects(path, built_in())["proposed_effect"]
-    written = cls(**{n.name: n.value for n in numbers})
+    cls, written = write_and_read(Products(tuple(terms)), law, tmp_path)
     np.testing.assert_allclose(written_wrenches(written), wrenches(law), rtol=1e-5, atol=1e-9)
     assert not written_wrenches(cls()).any()  # without values it does nothing
 
@@ -125,9 +121,9 @@ def test_units_make_newtons():
 
 def test_a_term_is_dropped_and_the_others_stay():
     terms = LAWS[3]
-    rest = drop_term(Hypothesis(model(), (law_of(terms),)), terms, 1)
-    law = split_law(rest)[1]
-    assert law is not None
+    fewer, rest = Products(tuple(terms)).simplify(Hypothesis(model(), (law_of(terms),)))[1]
+    law = get_law(rest)
+    assert fewer.terms == (terms[0], terms[2])
     assert law.free == ("c1", "c2", "x", "y", "z")
     both = [wrenches(law_of([t], (c,))) for t, c in ((terms[0], 2.0), (terms[2], 0.5))]
     np.testing.assert_allclose(wrenches(law), sum(both), atol=1e-9)

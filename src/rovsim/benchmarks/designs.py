@@ -2,7 +2,7 @@
 
     python -m rovsim.benchmarks.designs development|reporting OUT [CASE…]
 
-A case hides one effect in a rough run of 15 s, asks for a flight of 60 s (which of two effects is
+A case hides one effect in a rough run of 20 s, asks for a flight of 60 s (which of two effects is
 it, or how large is it), and flies that and the usual manoeuvre that would tell most. Then either
 is fitted beside the run. One JSON a case in OUT; those that are there are kept. Ends with a table.
 """
@@ -36,8 +36,9 @@ from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 from rovsim.simulation.synthetic_tank.true_run import LeftTank
 
-# The run before: too short, too rough and too little hidden to be sure of much.
-SECONDS, STRENGTH = 15.0, 0.4
+# The run before: too short, too rough and too little hidden to be sure of much. Frames get lost,
+# and a design needs 10 s of it.
+SECONDS, STRENGTH = 20.0, 0.4
 ROUGH = {"turbulence": {"force": 1.0, "moment": 0.04}}
 PAIRS = (  # the first is hidden
     ("linear_damping", "quadratic_damping"), ("quadratic_damping", "linear_damping"),

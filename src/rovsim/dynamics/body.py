@@ -73,6 +73,25 @@ class Body:
         self.weight += mass * self.gravity
         self.weight_moment += mass * self.gravity * place
 
+    def remember(self, memory: Array, time_constant: float) -> None:
+        """Water that follows the vehicle within a time constant in s, and goes on pushing.
+
+        -c nu_r, with `memory` c (6,) in N s/m and N m s/rad, is linear damping that no wall
+        changes; the engine adds c times what is remembered.
+
+        Raises:
+            BadInput: there is such a memory already.
+        """
+        if self.forgets:
+            raise BadInput(
+                "two fluid memories",
+                where="model",
+                expected="at most one",
+                remedy="Keep one of them.",
+            )
+        self.memory, self.forgets = memory, 1.0 / time_constant
+        self.coupling[0] += np.diag(memory)
+
     @property
     def least_inertia(self) -> float:
         """Smallest eigenvalue of the inertia that moves: positive if such a body can exist."""

@@ -237,9 +237,8 @@ class SideWake(Coefficients):
     def enter(self, body: Body) -> None:
         """Memory of sway; the rest as in `fluid_memory`."""
         if self["coefficient"]:
-            body.memory = np.array([0.0, self["coefficient"], 0.0, 0.0, 0.0, 0.0])
-            body.forgets = 1.0 / self["time_constant"]
-            body.coupling[0] += np.diag(body.memory)
+            memory = np.array([0.0, self["coefficient"], 0.0, 0.0, 0.0, 0.0])
+            body.remember(memory, self["time_constant"])
 
 
 @dataclass(frozen=True)

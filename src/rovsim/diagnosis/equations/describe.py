@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.equations.disturbance import ForceInTime
-from rovsim.diagnosis.equations.proposal import FILE, ID, ProposedLaw, list_quantities, name_target
+from rovsim.diagnosis.equations.proposal import FILE, ID, ProposedLaw
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.results.base import ByAxis
 from rovsim.results.diagnosis import Disturbance, ForceOfRun, Proposal, ProposedTerm, Push, RivalLaw
@@ -80,15 +80,16 @@ def describe_law(law: ProposedLaw) -> Proposal:
         for i, term in law.beside
     ]  # fmt: skip
     return Proposal(
-        axis=law.axis, equation=law.equation, file=FILE, effect=ID, meaning=law.meaning,
+        axis=law.axis, equation=law.form.equation, file=FILE, effect=ID,
+        meaning=law.form.meaning,
         parameters={
             n.name: FittedValue(value=rounded(n.value), std=rounded(n.std), unit=n.unit)
             for n in law.numbers
         },
         error_reduction=rounded(law.error_reduction),
         terms=tuple(
-            ProposedTerm(on=name_target(t), quantities=list_quantities(t), size=rounded(size))
-            for t, size in zip(law.terms, law.sizes, strict=True)
+            ProposedTerm(on=part.on, quantities=part.quantities, size=rounded(size))
+            for part, size in zip(law.form.parts, law.sizes, strict=True)
         ),
         beside=tuple(beside),
         rivals=tuple(RivalLaw(equation=e, deficit=rounded(d)) for e, d in law.rivals),

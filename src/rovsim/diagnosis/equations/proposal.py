@@ -5,31 +5,26 @@ from functools import cached_property
 from typing import Callable, Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.extras import installed
 from rovsim.diagnosis.checks.residual_structure import find_structure
-from rovsim.diagnosis.equations.as_effect import split_law
-from rovsim.diagnosis.equations.effect_file import (
-    Number,
-    describe,
-    list_numbers,
-    write_equation,
-    write_file,
-)
-from rovsim.diagnosis.equations.library import LawTerm, middle_of, push
+from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
 from rovsim.diagnosis.equations.seek import Judged, seek_law
-from rovsim.diagnosis.equations.variables import ON, SWIRL, VARIABLES, WATER, WORLD
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.innovations import accelerate
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.held_out import cross_validate
 from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.results.base import or_nan
+from rovsim.simulation.measured_states import as_true
 
 ID, FILE = "proposed_effect", "proposed_effect.py"
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
@@ -40,14 +35,14 @@ Polish = Callable[[Fit], tuple[Fit, FilterBank]]
 
 @dataclass(frozen=True, eq=False)
 class ProposedLaw:
-    """A law of these terms, fitted with all else to all train runs.
+    """A law of this form, fitted with all else to all train runs.
 
     `error_reduction`: share of the base's error in 2 s windows that it removes on top of all else;
-    `sizes` N or N m, RMS of each term; `axis` on which it acts most; `rivals`: equations with
-    another last term, and by how much less likely each is.
+    `sizes` N or N m, RMS of each term; `axis` on which it acts most; `rivals`: equations that were
+    tried in its place, and by how much less likely each is.
     """
 
-    terms: tuple[LawTerm, ...]
+    form: Form
     fit: Fit
     error_reduction: float
     sizes: tuple[float, ...]
@@ -57,9 +52,7 @@ class ProposedLaw:
     @property
     def law(self) -> Term:
         """The law, as the engine knows it."""
-        found = split_law(self.fit.hypothesis)[1]
-        assert found is not None
-        return found
+        return get_law(self.fit.hypothesis)
 
     @property
     def beside(self) -> list[tuple[int, Term]]:
@@ -78,22 +71,12 @@ class ProposedLaw:
         h = self.fit.hypothesis
         own = h.columns[[t.id for t in h.terms].index(self.law.id)]
         scales = [p.scale for p in self.law.parameters]
-        return list_numbers(self.terms, self.law, list(self.fit.std[own] * scales))
-
-    @property
-    def equation(self) -> str:
-        """In LaTeX."""
-        return write_equation(self.terms)
-
-    @property
-    def meaning(self) -> str:
-        """In a sentence."""
-        return describe(self.terms)
+        return self.form.list_numbers(self.law, list(self.fit.std[own] * scales))
 
     @property
     def source(self) -> str:
         """The effect as a Python file."""
-        return write_file(ID, self.terms, self.law, self.numbers, STORY)
+        return self.form.write(ID, self.law, self.numbers, STORY)
 
 
 def propose_law(
@@ -123,14 +106,14 @@ def propose_law(
     fit, bank = polish(judged.fit)
     if not np.isfinite(fit.likelihood):
         return None
-    sizes, axis = _measure(judged.terms, fit, runs)
+    sizes, axis = _measure(judged.form, fit, runs)
     if any(left.axis == axis for left in find_structure(fit, bank)):
         return None
     bare = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, bare, fit.hypothesis.model], runs).normalised
     start, before, after = (or_nan(e) for e in errors)
-    rivals = tuple((write_equation(r.terms), judged.score - r.score) for r in judged.rivals)
-    return ProposedLaw(judged.terms, fit, (before - after) / start, sizes, axis, rivals)
+    rivals = tuple((r.form.equation, judged.score - r.score) for r in judged.rivals)
+    return ProposedLaw(judged.form, fit, (before - after) / start, sizes, axis, rivals)
 
 
 def _holds(judged: Judged, selection: Selection, catalogued: Model, gate: Gate) -> bool:
@@ -141,42 +124,20 @@ def _holds(judged: Judged, selection: Selection, catalogued: Model, gate: Gate) 
     return gate.favours(judged.fit.hypothesis.model, catalogued, ENOUGH)
 
 
-def _measure(
-    terms: Sequence[LawTerm], fit: Fit, runs: Sequence[ObservedRun]
-) -> tuple[tuple[float, ...], str]:
+def _measure(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> tuple[tuple[float, ...], str]:
     """RMS of each term in N or N m, and the axis where it stands out most from the disturbance."""
-    law, model = split_law(fit.hypothesis)[1], split_law(fit.hypothesis)[0].model
-    assert law is not None
-    middle = middle_of(runs)
-    sign = runs[0].motion.site.axes
-    middle[:3] = [law.effect[n] * s for n, s in zip("xyz", sign, strict=True)]
-    middle[3] = law.effect["width"]
-    known = [LawTerm(t.on, t.factors) for t in terms]
-    c = [law.effect[f"c{k}"] * law.effect[f"size{k}"] for k in range(1, len(terms) + 1)]
-    pushes = np.concatenate([push(known, run, model, middle) for run in runs], axis=1)
-    pushes *= np.array(c)[:, None, None]
-    whole = np.sqrt(np.mean((pushes.sum(axis=0) @ model.body.M_inv.T) ** 2, axis=0))
-    sizes = np.sqrt(np.mean(np.sum(pushes**2, axis=2), axis=1))
-    return tuple(float(s) for s in sizes), AXES[int(np.argmax(whole / fit.noise.level))]
+    bare, law = split_law(fit.hypothesis)[0].model, get_law(fit.hypothesis)
+    each = [np.concatenate([_push(bare, one, run) for run in runs]) for one in form.divide(law)]
+    whole = np.sqrt(np.mean(sum(each) ** 2, axis=0))
+    wrenches = [one @ bare.body.M.T for one in each]
+    sizes = tuple(float(np.sqrt(np.mean(np.sum(w**2, axis=1)))) for w in wrenches)
+    return sizes, AXES[int(np.argmax(whole / fit.noise.level))]
 
 
-def list_quantities(term: LawTerm) -> tuple[str, ...]:
-    """What a term varies with: velocities by their symbols, attitude, place, depth, speed."""
-    found = [_QUANTITY.get(VARIABLES[k].meaning, VARIABLES[k].symbol) for k in term.factors]
-    found += ["place"] if term.on == SWIRL else []
-    plain = [name.replace("|", "").removeprefix("sign(").rstrip(")") for name in found]
-    return tuple(dict.fromkeys(plain))
-
-
-_QUANTITY = {
-    "place along north": "place", "place along east": "place", "one place": "place",
-    "depth": "depth", "speed": "speed", "pitch": "attitude", "roll": "attitude",
-    "uprightness": "attitude",
-}  # fmt: skip
-
-
-def name_target(term: LawTerm) -> str:
-    """What a term acts on: an axis, `force` along the world's axes, or `water`."""
-    if term.on < WORLD:
-        return ON[term.on]
-    return "force" if term.on < WATER else "water"
+def _push(model: Model, effect: Effect, run: ObservedRun) -> Array:
+    """Acceleration (n, 6) that an effect adds to a model where a run was measured."""
+    state = as_true(model, run.motion).state[run.index]
+    known = np.isfinite(state).all(axis=1)
+    index, states = run.index[known], state[None, known]
+    there, without = (accelerate(m, run, index, states)[0] for m in (model + effect, model))
+    return np.asarray(there - without)

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from rovsim.core.errors import BadInput
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter
 from rovsim.dynamics.effects.parameters import Signature
@@ -40,20 +39,10 @@ class FluidMemory(Coefficients):
     starts = tuple({"coefficient": 5.0, "time_constant": T} for T in (0.2, 0.8, 3.0))
 
     def enter(self, body: Body) -> None:
-        """-c nu_r is linear damping that no wall changes; the engine adds c m.
+        """Give the water a memory.
 
         Raises:
             BadInput: the model has such a memory already.
         """
-        if self["coefficient"] == 0.0:
-            return
-        if body.forgets:
-            raise BadInput(
-                "two fluid memories",
-                where="model",
-                expected="at most one",
-                remedy="Keep one of them.",
-            )
-        body.memory = self["coefficient"] * WEIGHTS
-        body.forgets = 1.0 / self["time_constant"]
-        body.coupling[0] += np.diag(body.memory)
+        if self["coefficient"]:
+            body.remember(self["coefficient"] * WEIGHTS, self["time_constant"])

@@ -15,7 +15,7 @@ from scipy.signal import lfilter
 
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.regressors import EARLIER
-from rovsim.diagnosis.equations.variables import (
+from rovsim.diagnosis.equations.products.variables import (
     DEEP,
     DIRECTION,
     EAST,

@@ -14,6 +14,7 @@ from rovsim import AXES
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
 
+FORCES = ("X", "Y", "Z", "K", "M", "N")
 NU = ("u", "v", "w", "p", "q", "r")
 IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # `p` are the parameters there
 ODD = (1, 3, 5)  # axes whose sign a mirror of port and starboard turns

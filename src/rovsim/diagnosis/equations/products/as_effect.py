@@ -7,8 +7,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.run import Site
-from rovsim.diagnosis.equations.library import Columns, LawTerm, drag_of
-from rovsim.diagnosis.equations.variables import DEEP, EAST, NEAR, NORTH, SWIRL
+from rovsim.diagnosis.equations.form import get_law, split_law
+from rovsim.diagnosis.equations.products.library import Columns, LawTerm, drag_of
+from rovsim.diagnosis.equations.products.variables import DEEP, EAST, NEAR, NORTH, SWIRL
 from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.law import FACTORS, Law
@@ -39,14 +40,6 @@ class Surroundings:
             n: Bounds(float(low - MARGIN), float(high + MARGIN))
             for n, low, high in zip("xyz", *edges, strict=True)
         }
-
-
-def split_law(h: Hypothesis) -> tuple[Hypothesis, Term | None]:
-    """A hypothesis without its law, and the law."""
-    for i, term in enumerate(h.terms):
-        if term.id == Law.id:
-            return h.without(i), term
-    return h, None
 
 
 def place_of(law: Term, site: Site) -> Array:
@@ -108,8 +101,7 @@ def _start(model: Model) -> dict[str, float]:
 
 def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:
     """The hypothesis without one term of its law; the others move up."""
-    rest, law = split_law(h)
-    assert law is not None
+    rest, law = split_law(h)[0], get_law(h)
     kept = [k for k in range(len(terms)) if k != gone]
     own = ("c", "size", "on")
     values = {n: v for n, v in law.effect.given().items() if not n.startswith((*own, "factor"))}

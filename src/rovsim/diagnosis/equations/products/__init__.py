@@ -1,0 +1,1 @@
+"""Laws that are sums of products of what acts at the same instant."""

@@ -1,0 +1,101 @@
+"""A law of products as the lines of a kernel in Python."""
+
+from typing import Iterator, Sequence
+
+from rovsim.diagnosis.equations.products.library import LawTerm
+from rovsim.diagnosis.equations.products.variables import (
+    DEEP,
+    DIRECTION,
+    EAST,
+    FORCES,
+    IN_CODE,
+    NEAR,
+    NORTH,
+    SPEED,
+    SWIRL,
+    VARIABLES,
+    WATER,
+    WORLD,
+)
+from rovsim.diagnosis.observer.hypothesis import Term
+
+
+def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Iterator[str]:
+    """Lines of the kernel of a law of these terms, whose coefficients have these names."""
+    used = {k for t in terms for k in t.factors}
+    yield from _velocities(used, terms)
+    yield from _surroundings(used, terms)
+    values: dict[str, list[str]] = {}
+    for name, term in zip(names, terms, strict=True):
+        text = " * ".join([f"p.{name}", *(VARIABLES[k].code for k in term.factors)])
+        for head, extra in _heads_in_code(term.on):
+            values.setdefault(head, []).append(text + extra)
+    for head, parts in values.items():
+        yield f"{head} = " + " + ".join(parts)
+    body = {f: f for f in FORCES if f in values}
+    world = [v if v in values else "0.0" for v in ("Fn", "Fe", "Fd")]
+    if any(v != "0.0" for v in world):
+        yield from _turned(world)
+        body |= {
+            f: f"{body[f]} + force_{f.lower()}" if f in body else f"force_{f.lower()}"
+            for f in FORCES[:3]
+        }
+    flow = [v if v in values else "0.0" for v in ("vn", "ve")]
+    if any(v != "0.0" for v in flow):
+        yield from _carried(flow, law)
+        body |= {
+            f: f"{body[f]} + drag_{f.lower()}" if f in body else f"drag_{f.lower()}"
+            for f in FORCES[:3]
+        }
+    yield "return " + ", ".join(body.get(f, "0.0") for f in FORCES)
+
+
+def _heads_in_code(on: int) -> list[tuple[str, str]]:
+    if on < WORLD:
+        return [(FORCES[on], "")]
+    if on < WATER:
+        return [(("Fn", "Fe", "Fd")[on - WORLD], "")]
+    if on < SWIRL:
+        return [(("vn", "ve")[on - WATER], "")]
+    return [("vn", " * -east"), ("ve", " * north")]
+
+
+def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
+    named = {k % 6 for k in used if k < 18}
+    if used & {SPEED, DIRECTION} or any(t.on >= WATER for t in terms):
+        named |= {0, 1, 2}
+    for i in sorted(named):
+        yield f"{IN_CODE[i]} = at.nu_r[{i}]"
+    if used & {SPEED, DIRECTION}:
+        yield "U = sqrt(u * u + v * v + w * w)"
+    for i in sorted({(k - 18) % 3 for k in used if 18 <= k < 24}):
+        yield f"d{'xyz'[i]} = at.R[2][{i}]  # the world's down, seen in the body"
+
+
+def _surroundings(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
+    turning = any(t.on == SWIRL for t in terms)
+    if used & {NORTH, NEAR} or turning:
+        yield "north = at.position[0] - p.x * at.axes[0]"
+    if used & {EAST, NEAR} or turning:
+        yield "east = at.position[1] - p.y * at.axes[1]"
+    if DEEP in used:
+        yield "deep = at.position[2] - p.z * at.axes[2]"
+    if NEAR in used:
+        yield "near = exp(-(north * north + east * east) / (2.0 * p.width * p.width))"
+
+
+def _turned(world: Sequence[str]) -> Iterator[str]:
+    """A force of the world seen in the body."""
+    for j, f in enumerate("xyz"):
+        parts = [f"at.R[{i}][{j}] * {v}" for i, v in enumerate(world) if v != "0.0"]
+        yield f"force_{f} = " + " + ".join(parts)
+
+
+def _carried(flow: Sequence[str], law: Term) -> Iterator[str]:
+    """What water that moves adds to the drag of the vehicle."""
+    yield "# drag in water that moves, less that in still water, with the model's coefficients"
+    for j, (f, v) in enumerate(zip("xyz", IN_CODE[:3], strict=True)):
+        parts = [f"at.R[{i}][{j}] * {one}" for i, one in enumerate(flow) if one != "0.0"]
+        a, b = (float(f"{law.effect[f'{kind}{j}']:.6g}") for kind in ("linear", "quadratic"))
+        yield f"a = {v} - ({' + '.join(parts)})"
+        yield f"drag_{f} = ({a:g} + {b:g} * abs({v})) * {v} - ({a:g} + {b:g} * abs(a)) * a"

@@ -1,0 +1,97 @@
+"""The form of a law that is a sum of products."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+from rovsim.diagnosis.equations.effect_file import round_start, write_effect
+from rovsim.diagnosis.equations.form import Form, Number, Part
+from rovsim.diagnosis.equations.products.as_effect import drop_term, list_moved
+from rovsim.diagnosis.equations.products.kernel_lines import write_body
+from rovsim.diagnosis.equations.products.library import LawTerm
+from rovsim.diagnosis.equations.products.variables import unit_of
+from rovsim.diagnosis.equations.products.wording import (
+    describe,
+    list_quantities,
+    name_target,
+    name_terms,
+    write_equation,
+)
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.dynamics.effects.base import Effect
+
+PLACES = {  # unit, symbol and scale of a place's numbers
+    "x": ("m", "x_0", 0.5), "y": ("m", "y_0", 0.5), "z": ("m", "z_0", 0.5),
+    "width": ("m", "s", 0.2),
+}  # fmt: skip
+NARROWEST = 0.05  # m
+KERNEL = '''\
+@staticmethod
+def wrench(at, p):
+    """Wrench at CO along the body's axes: ahead, starboard, down."""
+{body}
+'''
+
+
+@dataclass(frozen=True)
+class Products(Form):
+    """Terms of `Law`, each a coefficient times up to three factors."""
+
+    terms: tuple[LawTerm, ...]
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Its terms."""
+        return tuple(Part(name_target(t), list_quantities(t)) for t in self.terms)
+
+    @property
+    def equation(self) -> str:
+        """In LaTeX."""
+        return write_equation(self.terms)
+
+    @property
+    def meaning(self) -> str:
+        """In a sentence."""
+        return describe(self.terms)
+
+    def list_numbers(self, law: Term, std: Sequence[float]) -> list[Number]:
+        """Coefficients with the units of their terms, then the place they speak of."""
+        sure, found = dict(zip(law.free, std, strict=True)), []
+        each = zip(name_terms(self.terms), self.terms, strict=True)
+        for k, (name, term) in enumerate(each, start=1):
+            size = law.effect[f"size{k}"]
+            value = law.effect[f"c{k}"] * size
+            scale = float(f"{max(abs(value), 1e-6):.1g}")
+            unit, symbol = unit_of(term.on, term.factors), f"c_{k}" if len(self.terms) > 1 else "c"
+            found.append(Number(name, unit, symbol, value, sure[f"c{k}"] * size, scale))
+        for name in list_moved(self.terms):
+            unit, symbol, scale = PLACES[name]
+            value, low = law.effect[name], NARROWEST if name == "width" else None
+            found.append(Number(name, unit, symbol, value, sure[name], scale, low, value))
+        return found
+
+    def divide(self, law: Term) -> list[Effect]:
+        """Each term by itself: the others' coefficients are zero."""
+        count = range(1, len(self.terms) + 1)
+        return [law.effect.with_values({f"c{j}": 0.0 for j in count if j != k}) for k in count]
+
+    def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
+        """A kernel of plain arithmetic."""
+        lines = list(write_body(name_terms(self.terms), self.terms, law))
+        code = "\n".join(lines)
+        maths = [f for f in ("exp", "sqrt", "tanh") if f"{f}(" in code]
+        placed = any(n.default is not None for n in numbers)
+        return write_effect(
+            name, self, numbers, story, base="Wrench",
+            imports=f"from math import {', '.join(maths)}\n\n" if maths else "",
+            method=KERNEL.format(body="\n".join(f"    {line}" for line in lines)),
+            start=round_start(numbers) if placed else {},
+        )  # fmt: skip
+
+    def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
+        """Without each of its terms, as long as one is left."""
+        if len(self.terms) == 1:
+            return []
+        return [
+            (Products(self.terms[:k] + self.terms[k + 1 :]), drop_term(h, self.terms, k))
+            for k in range(len(self.terms))
+        ]

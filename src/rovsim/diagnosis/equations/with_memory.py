@@ -1,0 +1,159 @@
+"""Laws with a memory, which no product of what acts at one instant can be.
+
+Each is an effect that no catalogue lists, of a few numbers that are fitted together: the wake that
+an axis leaves, and play of the thrusters. The file of such a law has the effect's own method.
+"""
+
+import inspect
+from abc import abstractmethod
+from dataclasses import dataclass, replace
+from textwrap import dedent
+from typing import ClassVar, Sequence
+
+from rovsim import AXES
+from rovsim.diagnosis.equations.effect_file import round_start, write_effect
+from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_law
+from rovsim.diagnosis.equations.products.variables import FORCES, NU
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.fluid_memory import FluidMemory
+from rovsim.dynamics.effects.thruster_play import ThrusterPlay
+from rovsim.dynamics.effects.wake_by_axis import WakeByAxis
+
+
+class WithMemory(Form):
+    """A law that is an effect of its own."""
+
+    effect: ClassVar[type[Effect]]
+    imitates: ClassVar[tuple[str, ...]] = ()  # effects that it cannot stand beside
+
+    @classmethod
+    @abstractmethod
+    def begin(cls, moving: Sequence[str]) -> list[tuple["WithMemory", Term]]:
+        """The law at all values that a fit starts from, on axes that move and are seen."""
+
+    def list_numbers(self, law: Term, std: Sequence[float]) -> list[Number]:
+        """The free parameters, as the effect declares them."""
+        known = {p.name: p for p in law.effect.parameters}
+        return [
+            Number(
+                n, known[n].unit, self._symbol(n), law.effect[n], s, known[n].scale, known[n].low,
+                None if known[n].default == 0.0 else law.effect[n],
+            )
+            for n, s in zip(law.free, std, strict=True)
+        ]  # fmt: skip
+
+    def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
+        """The method of the effect itself, with the parameters that were fitted."""
+        cls = self.effect
+        (base,) = cls.__bases__
+        method = next(n for n in vars(cls) if callable(vars(cls)[n]))
+        return write_effect(
+            name, self, numbers, story, base=base.__name__, imports=self.imports,
+            method=dedent(inspect.getsource(getattr(cls, method))),
+            start=round_start(numbers),
+        )  # fmt: skip
+
+    imports: ClassVar[str]
+
+    def _symbol(self, name: str) -> str:
+        return next(p.symbol for p in self.effect.parameters if p.name == name)
+
+
+@dataclass(frozen=True)
+class Wake(WithMemory):
+    """Water that some axes have set moving goes on pushing them."""
+
+    axes: tuple[str, ...]
+    effect = WakeByAxis
+    imitates = (FluidMemory.id,)
+    imports = (
+        "import numpy as np\n\nfrom rovsim import AXES\nfrom rovsim.dynamics.body import Body\n"
+    )
+
+    @classmethod
+    def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
+        """All axes that move, at several time constants."""
+        axes = tuple(moving)
+        some = {p.name: p.scale for p in WakeByAxis.parameters if p.name in axes}
+        return [
+            (cls(axes), Term(WakeByAxis(**some | start), (*axes, "time_constant")))
+            for start in WakeByAxis.starts
+        ]
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """One for each axis."""
+        return tuple(Part(axis, (NU[AXES.index(axis)], "memory")) for axis in self.axes)
+
+    @property
+    def equation(self) -> str:
+        """In LaTeX."""
+        each = [AXES.index(axis) for axis in self.axes]
+        pushes = [rf"{FORCES[i]} = -{self._symbol(AXES[i])}\,({NU[i]} - m_{NU[i]})" for i in each]
+        return r",\quad ".join((*pushes, r"T \dot m = \nu_r - m"))
+
+    @property
+    def meaning(self) -> str:
+        """In a sentence."""
+        return f"Water that {' and '.join(self.axes)} set moving, to m, goes on pushing there."
+
+    def divide(self, law: Term) -> list[Effect]:
+        """Each axis by itself."""
+        return [
+            law.effect.with_values({axis: 0.0 for axis in self.axes if axis != own})
+            for own in self.axes
+        ]
+
+    def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
+        """Without each axis, as long as one is left."""
+        rest, law = split_law(h)[0], get_law(h)
+        found: list[tuple[Form, Hypothesis]] = []
+        for gone in self.axes if len(self.axes) > 1 else ():
+            effect = law.effect.with_values({gone: 0.0})
+            free = tuple(n for n in law.free if n != gone)
+            fewer = Wake(tuple(axis for axis in self.axes if axis != gone))
+            found.append((fewer, replace(rest, terms=(*rest.terms, Term(effect, free)))))
+        return found
+
+    def _symbol(self, name: str) -> str:
+        return f"c_{NU[AXES.index(name)]}" if name in AXES else super()._symbol(name)
+
+
+@dataclass(frozen=True)
+class Play(WithMemory):
+    """Thrusters follow only once what is asked of them has moved by a band."""
+
+    effect = ThrusterPlay
+    imports = "import numpy as np\nfrom numpy import ndarray as Array\n\n"
+
+    @classmethod
+    def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
+        """A narrow and a wide band."""
+        return [(cls(), Term(ThrusterPlay(**start), ("band",))) for start in ThrusterPlay.starts]
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All thrusters together."""
+        return (Part("thrusters", ("thrust", "memory")),)
+
+    @property
+    def equation(self) -> str:
+        """In LaTeX."""
+        return ThrusterPlay.equation
+
+    @property
+    def meaning(self) -> str:
+        """In a sentence."""
+        return ThrusterPlay.__doc__ or ""
+
+    def divide(self, law: Term) -> list[Effect]:
+        """It is one."""
+        return [law.effect]
+
+    def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
+        """It cannot be made simpler."""
+        return []
+
+
+FORMS: tuple[type[WithMemory], ...] = (Wake, Play)
