@@ -1,8 +1,8 @@
 """Any law of up to three terms as one effect: its terms are data, so that nothing is compiled anew.
 
 A term is a coefficient, what it acts on, and up to three factors. Both are numbers in the effect's
-parameters: rows of `rovsim.diagnosis.equations.products.variables`. A test holds the kernel against the file
-written of a law.
+parameters: rows of `rovsim.diagnosis.equations.products.variables`. A test holds the kernel against
+the file written of a law.
 """
 
 from math import exp, sqrt, tanh
