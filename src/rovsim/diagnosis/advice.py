@@ -2,7 +2,6 @@
 
 from typing import Sequence
 
-from rovsim import AXES
 from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 
@@ -50,7 +49,7 @@ def advise(
     if found.usable.still:
         axes = ", ".join(found.usable.still)
         parts.append(f"Move {axes} in a train run: nothing can be said about what acts there.")
-    if found.structures and found.structures[0].axis in AXES:
+    if found.structures:
         first = found.structures[0]
         parts.append(
             f"Record some time without commands, then move slowly in {first.axis} alone. If the "

@@ -44,9 +44,10 @@ from rovsim.diagnosis.selection.ranking import (
     Ranked,
     Selected,
     name_drift,
+    name_smoothing,
+    name_terms,
     rank_alone,
     rank_selected,
-    rank_smoothing,
 )
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.rivals import Rival, Selection
@@ -62,17 +63,14 @@ from rovsim.results.fitted import Correlation
 
 Stages = Callable[[str], None]
 
-REFUSED = Structure(
-    "all axes", "what only effects explain that make replays of held-out stretches worse", 1.0, 1.0
-)
-
 
 @dataclass(frozen=True, eq=False)
 class TrainDiagnosis:
     """What was found on the train runs.
 
     `usable` runs; `fit` of the base and all selected effects, None where there was too little to
-    judge, and the `correlation` of its values; `scale` of all forces, where it is unknown;
+    judge, and the `correlation` of its values; `structures` that are left, and whether the gate
+    `refused` effects that explain something; `scale` of all forces, where it is unknown;
     `not_observable` effects that the runs could not show; `proposed`: a law for what is left, where
     one holds; `disturbance`: the force in time, where none does.
     """
@@ -85,6 +83,7 @@ class TrainDiagnosis:
     ranking: Sequence[Ranked] = ()
     rivals: Sequence[Rival] = ()
     structures: Sequence[Structure] = ()
+    refused: bool = False
     scale: CommonScale | None = None
     not_observable: Sequence[str] = ()
     proposed: ProposedLaw | None = None
@@ -100,7 +99,7 @@ class TrainDiagnosis:
         """One of the four of the contract."""
         if not self.enough:
             return "insufficient_data"
-        if self.structures:
+        if self.structures or self.refused:
             return "unexplained"
         if self.selected:
             return "missing_effects"
@@ -159,21 +158,22 @@ def _diagnose(
     proposed = _propose(found, base, gate, usable) if found.lasting else None
     rivals = found.selection.named_rivals
     wider, scale = include_rest(found.fit, usable.runs)
-    selected = rank_selected(base, wider, rivals, usable.runs)
+    named = name_terms(wider, rivals)
     if smoothing:
-        selected = [rank_smoothing(base, smoothing, usable.runs), *selected]
+        named.append(name_smoothing(smoothing))
     if found.fit.noise.drift:
         drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
         if drift.sure:
-            selected = [*selected, name_drift(drift)]
+            named.append(name_drift(drift))
     return TrainDiagnosis(
         base, usable, found.fit,
-        correlate(wider.covariance, name_parameters(wider.hypothesis)), selected,
+        correlate(wider.covariance, name_parameters(wider.hypothesis)),
+        rank_selected(base, named, usable.runs),
         ranking=rank_alone(workspace, nothing, found.fit),
-        rivals=rivals, structures=found.structures, scale=scale,
+        rivals=rivals, structures=found.structures, refused=found.refused, scale=scale,
         not_observable=list_not_observable(found.selection, catalogue, base.vehicle),
         proposed=proposed,
-        disturbance=_trace(found) if found.structures and proposed is None else None,
+        disturbance=None if proposed else _trace(found),
     )  # fmt: skip
 
 
@@ -200,18 +200,27 @@ def _observe(
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """An answer: its final values, how likely it is, and all that it leaves unexplained."""
+    """An answer: its final values, how likely it is, and all that it leaves unexplained.
+
+    `refused`: the gate refused effects, and nothing but these explains what they explained.
+    """
 
     selection: Selection
     fit: Fit
     bank: FilterBank
     score: float
     structures: Sequence[Structure]
+    refused: bool = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether it leaves nothing."""
+        return not (self.structures or self.refused)
 
     @property
     def lasting(self) -> bool:
         """Whether more is left than single pushes: then names may stand for what has none."""
-        return not all(one.moment for one in self.structures)
+        return self.refused or not all(one.moment for one in self.structures)
 
 
 def _settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> _Settled:
@@ -223,8 +232,8 @@ def _settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: 
     every = search_unnoticed(selection, seed)
     if every.found is noticed.found:
         return found
-    complete = _settle(every, usable, gate)
-    return found if complete.structures else complete
+    more = _settle(every, usable, gate)
+    return more if more.complete else found
 
 
 def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
@@ -234,9 +243,7 @@ def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
     fewer = gate.keep_earning(selection) if settled.lasting else selection
     if fewer.found is not selection.found:
         settled = _settle_values(fewer, usable)
-    if not whole and not settled.structures:
-        settled = replace(settled, structures=[REFUSED])
-    return settled
+    return replace(settled, refused=not whole and settled.complete)
 
 
 def _settle_values(selection: Selection, usable: UsableRuns) -> _Settled:
@@ -268,7 +275,9 @@ def _propose(found: _Settled, base: Model, gate: Gate, usable: UsableRuns) -> Pr
 
 
 def _trace(found: _Settled) -> ForceInTime | None:
-    """The force in time that is left."""
+    """The force in time that is left; None where nothing is seen of it."""
+    if not found.structures:
+        return None
     return trace_force(found.fit, found.bank, found.structures)
 
 

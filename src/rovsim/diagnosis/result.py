@@ -10,6 +10,7 @@ from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.checks.left_open import name_parameters
+from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.equations.describe import (
     describe_force,
     describe_law,
@@ -35,6 +36,10 @@ from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import Correlation, FittedEffect, FittedNoise, Possibility, Posterior
 from rovsim.results.ladder import Ladder
 
+REFUSED = (
+    "What is left could only be explained by effects that make replays of held-out stretches worse."
+)
+TOO_LITTLE = "There is too little data to say what is left."
 LISTED = 10  # effects of the ranking
 
 
@@ -136,19 +141,26 @@ def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
 
 def describe_structures(found: TrainDiagnosis) -> Unexplained:
     """What no effect of the catalogue explains."""
-    if not found.structures:
+    if not found.enough:
+        return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE)
+    if found.verdict != "unexplained":
         return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
-    first = found.structures[0]
-    also = [s for s in found.structures[1:] if s.axis != first.axis]
-    hint = f"{first.axis.capitalize()}: the remainder shows {first.what}."
-    if also:
-        each = {s.axis: s.what for s in reversed(also)}  # of each axis its first
-        hint += f" Also {'; '.join(f'{axis}: {each[axis]}' for axis in reversed(each))}."
+    share = found.structures[0].share if found.structures else None
     return Unexplained(
-        fraction=rounded(first.share), significant=True, hint=hint,
+        fraction=rounded(share), significant=True,
+        hint=_hint(found.structures) if found.structures else REFUSED,
         proposal=describe_law(found.proposed) if found.proposed else None,
         disturbance=describe_force(found.disturbance) if found.disturbance else None,
     )  # fmt: skip
+
+
+def _hint(structures: Sequence[Structure]) -> str:
+    first = structures[0]
+    also = {s.axis: s.what for s in reversed(structures) if s.axis != first.axis}  # the first each
+    hint = f"{first.axis.capitalize()}: the remainder shows {first.what}."
+    if also:
+        hint += f" Also {'; '.join(f'{axis}: {also[axis]}' for axis in reversed(also))}."
+    return hint
 
 
 def _describe_posterior(found: TrainDiagnosis) -> Posterior | None:

@@ -123,7 +123,8 @@ def contest(
 ) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close.
 
-    Names that promise less than half of what the term explains are not refitted.
+    Names that promise less than half of what the term explains are not refitted, unless for that
+    they ask so much less that they seem likelier.
 
     `swap`: by how much more, in twice the log likelihood.
     """
@@ -132,7 +133,7 @@ def contest(
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_challengers(workspace, term, rest, trials):
             deficit, trial = rest.loss - workspace.price * term.choices - p.gain, None
-            if _explains(workspace, p) > PROMISING * rest.loss:
+            if deficit < 0.0 or _explains(workspace, p) > PROMISING * rest.loss:
                 trial = workspace.fit(rest.hypothesis.with_term(p.term))
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -swap and not (

@@ -20,13 +20,19 @@ from rovsim.dynamics.model import Model
 
 
 @dataclass(frozen=True, eq=False)
-class Selected:
-    """A selected effect, the share of the base's error that it removes, how sure its name is."""
+class Named:
+    """An effect that was found, how sure its values are by name, and how sure its name is."""
 
     term: Term
     std: dict[str, float]
-    error_reduction: float
     probability: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Selected(Named):
+    """The same, and the share of the base's error that it removes."""
+
+    error_reduction: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,47 +45,44 @@ class Ranked:
 
 
 def rank_selected(
-    base: Model, found: Fit, rivals: Sequence[Rival], runs: Sequence[ObservedRun]
+    base: Model, named: Sequence[Named], runs: Sequence[ObservedRun]
 ) -> list[Selected]:
-    """Selected effects, the one that removes most error first, then the next on top of it.
-
-    Reductions are of the error of `base`, to which what the camera does may have been added.
-    """
-    terms, model = found.hypothesis.terms, found.hypothesis.base
-    left, order, gains = list(range(len(terms))), [], []
-    start, now = _score([base, model], runs)
+    """Effects that were found, the one that removes most error first, then the next beside it."""
+    left, found, model = list(named), [], base
+    start = now = _score([base], runs)[0]
     while left:
-        tried = [model + terms[i].effect for i in left]
+        tried = [model + one.term.effect for one in left]
         after = _score(tried, runs)
         best = int(np.argmin(np.nan_to_num(after, nan=np.inf)))
-        order.append(left.pop(best))
-        gains.append(float((now - after[best]) / start))
+        own = left.pop(best)
+        found.append(
+            Selected(own.term, own.std, own.probability, float((now - after[best]) / start))
+        )
         model, now = tried[best], after[best]
+    return found
+
+
+def name_terms(found: Fit, rivals: Sequence[Rival]) -> list[Named]:
+    """The effects of a fit."""
     return [
-        Selected(terms[i], find_std(found, i), gain, _share_of_odds(found, i, rivals))
-        for i, gain in zip(order, gains, strict=True)
+        Named(term, find_std(found, i), _share_of_odds(found, i, rivals))
+        for i, term in enumerate(found.hypothesis.terms)
     ]
 
 
-def rank_smoothing(base: Model, smoothing: Smoothing, runs: Sequence[ObservedRun]) -> Selected:
-    """What the camera does, as a selected effect; white noise was tried in its place."""
-    effect = PoseFilter(cutoff=smoothing.cutoff)
-    before, after = _score([base, base + effect], runs)
-    return Selected(
-        Term(effect, ("cutoff",)), {"cutoff": smoothing.std}, float((before - after) / before),
-        _odds(smoothing.gain),
-    )  # fmt: skip
+def name_smoothing(smoothing: Smoothing) -> Named:
+    """What the camera does, as an effect; white noise was tried in its place."""
+    term = Term(PoseFilter(cutoff=smoothing.cutoff), ("cutoff",))
+    return Named(term, {"cutoff": smoothing.std}, _odds(smoothing.gain))
 
 
-def name_drift(drift: DriftFit) -> Selected:
-    """A current that wanders, as a selected effect; forces that wander were tried in its place.
+def name_drift(drift: DriftFit) -> Named:
+    """A current that wanders, as an effect; forces that wander were tried in its place.
 
     Nobody can foresee it, so it removes no error.
     """
-    effect = CurrentDrift(rate=drift.rate.value)
-    return Selected(
-        Term(effect, ("rate",)), {"rate": drift.rate.std}, 0.0, _odds(drift.surplus)
-    )  # fmt: skip
+    term = Term(CurrentDrift(rate=drift.rate.value), ("rate",))
+    return Named(term, {"rate": drift.rate.std}, _odds(drift.surplus))
 
 
 def _odds(surplus: float) -> float:
