@@ -107,14 +107,10 @@ class Wake(WithMemory):
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
         """Without each axis, as long as one is left."""
-        rest, law = split_law(h)[0], get_law(h)
-        found: list[tuple[Form, Hypothesis]] = []
-        for gone in self.axes if len(self.axes) > 1 else ():
-            effect = law.effect.with_values({gone: 0.0})
-            free = tuple(n for n in law.free if n != gone)
-            fewer = Wake(tuple(axis for axis in self.axes if axis != gone))
-            found.append((fewer, replace(rest, terms=(*rest.terms, Term(effect, free)))))
-        return found
+        return [
+            (Wake(_all_but(gone, self.axes)), drop_number(h, gone))
+            for gone in (self.axes if len(self.axes) > 1 else ())
+        ]
 
     def _symbol(self, name: str) -> str:
         return f"c_{NU[AXES.index(name)]}" if name in AXES else super()._symbol(name)
@@ -124,13 +120,15 @@ class Wake(WithMemory):
 class Play(WithMemory):
     """Thrusters follow only once what is asked of them has moved by a band."""
 
+    names: tuple[str, ...] = tuple(p.name for p in ThrusterPlay.parameters)
     effect = ThrusterPlay
     imports = "import numpy as np\nfrom numpy import ndarray as Array\n\n"
 
     @classmethod
     def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
-        """A narrow and a wide band."""
-        return [(cls(), Term(ThrusterPlay(**start), ("band",))) for start in ThrusterPlay.starts]
+        """A narrow and a wide band, and one that grows with the force."""
+        form = cls()
+        return [(form, Term(ThrusterPlay(**start), form.names)) for start in ThrusterPlay.starts]
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -140,7 +138,9 @@ class Play(WithMemory):
     @property
     def equation(self) -> str:
         """In LaTeX."""
-        return ThrusterPlay.equation
+        force, F = "F_\\text{static}", {"band": "b", "share": r"s\,|F_\text{static}|"}
+        w = " + ".join(F[name] for name in self.names)
+        return rf"F \leftarrow \min(\max(F,\ {force} - w),\ {force} + w),\quad w = {w}"
 
     @property
     def meaning(self) -> str:
@@ -152,8 +152,22 @@ class Play(WithMemory):
         return [law.effect]
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
-        """It cannot be made simpler."""
-        return []
+        """With a band that grows, or with one that does not."""
+        return [
+            (Play(_all_but(gone, self.names)), drop_number(h, gone))
+            for gone in (self.names if len(self.names) > 1 else ())
+        ]
+
+
+def drop_number(h: Hypothesis, gone: str) -> Hypothesis:
+    """A hypothesis whose law is without one of its numbers, which then is zero."""
+    rest, law = split_law(h)[0], get_law(h)
+    fewer = Term(law.effect.with_values({gone: 0.0}), _all_but(gone, law.free))
+    return replace(rest, terms=(*rest.terms, fewer))
+
+
+def _all_but(gone: str, names: Sequence[str]) -> tuple[str, ...]:
+    return tuple(name for name in names if name != gone)
 
 
 FORMS: tuple[type[WithMemory], ...] = (Wake, Play)

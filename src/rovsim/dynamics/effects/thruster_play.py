@@ -11,17 +11,25 @@ class ThrusterPlay(Response):
 
     id = "thruster_play"
     listed = False
-    equation = r"F \leftarrow \min(\max(F,\ F_\text{static} - w),\ F_\text{static} + w)"
-    neglects = "a band that grows with the force"
+    equation = (
+        r"F \leftarrow \min(\max(F,\ F_\text{static} - w),\ F_\text{static} + w),"
+        r"\quad w = b + s\,|F_\text{static}|"
+    )
+    neglects = "that spinning up and down differ"
     source = "play operator (Krasnosel'skii & Pokrovskii 1989)"
-    parameters = (Parameter("band", "N", "w", low=0.0, scale=1.0),)
-    starts = ({"band": 0.5}, {"band": 2.0})
+    parameters = (
+        Parameter("band", "N", "b", low=0.0, scale=1.0),
+        Parameter("share", "1", "s", low=0.0, high=1.0, scale=0.1),
+    )
+    starts = ({"band": 0.5}, {"band": 2.0}, {"share": 0.1})
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
         """The play operator, step by step."""
-        F, w = force[0] if state is None else state, self["band"]
+        F = force[0] if state is None else state
+        known = self.given()
+        band = known.get("band", 0.0) + known.get("share", 0.0) * np.abs(force)
         found = np.empty_like(force)
         for k in range(len(force)):
-            F = np.clip(F, force[k] - w, force[k] + w)
+            F = np.clip(F, force[k] - band[k], force[k] + band[k])
             found[k] = F
         return found, F
