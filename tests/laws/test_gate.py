@@ -48,8 +48,10 @@ def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
     possible, impossible = (
         Selection(Workspace(), Found(h), (), True) for h in (Hypothesis(base), nowhere)
     )
-    assert gate.prefers(possible, impossible)
-    assert not gate.prefers(impossible, possible)
+    models = [one.found.hypothesis.model for one in (possible, impossible)]
+    assert gate.prefers(*models) is True
+    assert gate.prefers(*reversed(models)) is False
+    assert gate.prefers(models[0], models[0]) is None
     passed, whole = gate.judge(impossible)
     assert passed.found.hypothesis.terms == ()
     assert not whole

@@ -150,9 +150,7 @@ def _diagnose(
     if found.lasting:
         seen = seen_through(base, smoothing)
         joint = _settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
-        # neither is complete, so that what a likelihood takes for noise is physics
-        better = gate.prefers(found.selection, joint.selection)
-        found = found if better or (better is None and found.score >= joint.score) else joint
+        found = _choose(found, joint, gate)
     if found.lasting and len(found.fit.hypothesis.x):
         found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
     proposed = _propose(found, base, gate, usable) if found.lasting else None
@@ -250,6 +248,28 @@ def _settle_values(selection: Selection, usable: UsableRuns) -> _Settled:
     found, bank = _polish(selection, usable.runs)
     score = selection.workspace.score(found)
     return _Settled(selection, found, bank, score, find_structure(found, bank))
+
+
+def _choose(one: _Settled, other: _Settled, gate: Gate) -> _Settled:
+    """Of two answers that are not complete the one that surely replays better, else the likelier.
+
+    What a likelihood takes for noise is physics here. So each replays stretches that took no part,
+    at the values that replay the others best, for these are what it ends with.
+    """
+    if gate.runs:
+        each = (_replay_best(own.selection) for own in (one, other))
+        better = gate.prefers(*each)
+        if better is not None:
+            return one if better else other
+    return one if one.score >= other.score else other
+
+
+def _replay_best(selection: Selection) -> Model:
+    """At the values that replay the stretches best that were chosen by."""
+    found = selection.found
+    if len(found.hypothesis.x):
+        found = _fit_to_replays(found, selection.workspace.bank)
+    return found.hypothesis.model
 
 
 def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:

@@ -86,12 +86,14 @@ class Gate:
         apart = self._errors([more, less]) if self.runs else (one, one)
         return _ratio(one, other) < 1.0 - share and _ratio(apart[0], apart[1]) <= 1.0
 
-    def prefers(self, one: Selection, other: Selection) -> bool | None:
-        """Whether the first replays better; None where nothing was kept apart."""
+    def prefers(self, one: Model, other: Model) -> bool | None:
+        """Whether the first replays better; None if nothing was kept apart, or by chance."""
         if not self.runs:
             return None
-        errors = self._errors([own.found.hypothesis.model for own in (one, other)])
-        return not np.isfinite(errors[1]).all() or _ratio(errors[0], errors[1]) <= 1.0
+        own, others = self._errors([one, other])
+        if np.isfinite(own).all() and _costs(others, own, 0.0):
+            return True
+        return False if np.isfinite(others).all() and _costs(own, others, 0.0) else None
 
     def keep_earning(self, selection: Selection) -> Selection:
         """Where physics is left that no name explains: only what makes a difference there.
