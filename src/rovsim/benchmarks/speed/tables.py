@@ -16,7 +16,12 @@ PLOTS = {
 
 
 def write_page(path: Path, bench: Bench) -> None:
-    """Put the results between the marks of a page, and the plots into images/ beside it."""
+    """Put the results between the marks of a page, and the plots into images/ beside it.
+
+    A page that is not there, as outside of a checkout, is not made.
+    """
+    if not path.is_file():
+        return
     for name, draw in (("bench_sizes", draw_sizes), ("bench_accuracy", draw_accuracy)):
         for file in save(draw(bench), path.parent / "images", name):
             if file.suffix == ".pdf":

@@ -2,9 +2,9 @@
 
 rovsim bench [out=results] [bench.calls=100000] [bench.seconds=60] [bench.sweep_seconds=2]
 
-Writes results/bench.json, and its table and plots into the page bench.page. The data are residual
-features of the default campaign, flown for bench.duration s a run. Needs the extra
-rovsim[benchmark].
+Writes results/bench.json, and its table and plots into the page bench.page, if it is there. The
+data are residual features of the default campaign, flown for bench.duration s a run. Needs the
+extra rovsim[benchmark].
 """
 
 from pathlib import Path
