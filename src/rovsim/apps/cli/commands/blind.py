@@ -47,7 +47,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     )
     results.write(out / "summary.json")
     text = write_markdown(results)
-    if asked.seeds == "reporting" and asked.simulator == "tank":
-        page = Path(asked.page)
+    page = Path(asked.page)
+    if asked.seeds == "reporting" and asked.simulator == "tank" and page.is_file():
         replace_tables(page, write_markdown(results, write_pictures(page, results)))
     say(settings, f"{text}\n{out / 'summary.json'}", results.to_json())
