@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Callable
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Callable
 
 from rovsim.core.errors import BadInput, nearest
+
+if TYPE_CHECKING:  # a third of a second, which the workbench's first screen need not wait for
+    from matplotlib.figure import Figure
 
 SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "quality")
 
@@ -23,7 +24,7 @@ class Kind:
     """A registered figure: `draw(...)`, the report's section and the caption."""
 
     name: str
-    draw: Callable[..., Figure]
+    draw: "Callable[..., Figure]"
     section: str
     caption: str
 

@@ -7,8 +7,6 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any, Iterable
 
-from matplotlib.colors import to_hex, to_rgb
-
 Dash = str | tuple[float, tuple[float, ...]]
 Style = dict[str, Any]  # keyword arguments of a Matplotlib artist
 
@@ -96,6 +94,8 @@ def _member(name: str) -> int:
 
 
 def _variant(look: Look, member: int) -> Look:
+    from matplotlib.colors import to_hex, to_rgb
+
     shade, dash, hatch = _MEMBERS[member % len(_MEMBERS)]
     target = 1.0 if shade > 0 else 0.0
     mixed = [c + (target - c) * abs(shade) for c in to_rgb(look.color)]
