@@ -13,6 +13,7 @@ from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.sensing import MarkerOffset
+from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.model_file import EffectEntry
 
 PLACE, DRAG = {"x": 0.15}, {"heave": 90.0}  # m, N s2/m2
@@ -57,3 +58,10 @@ def test_columns_that_have_not_changed_are_kept(searching):
     workspace, found = searching
     drag = Hypothesis(found.hypothesis.base, (Term(QuadraticDamping(), ("surge",)),))
     assert workspace.look_again(workspace.fit(drag)) is workspace
+
+
+def test_an_effect_that_is_tried_and_not_fitted_changes_no_columns(searching):
+    """Thrusters in another order: it has no number that could be fitted."""
+    workspace, found = searching
+    order = Hypothesis(found.hypothesis.base, (Term(ThrusterOrder(), ()),))
+    assert workspace.look_again(workspace.fit(order)) is workspace

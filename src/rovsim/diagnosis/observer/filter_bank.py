@@ -13,6 +13,7 @@ from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, li
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.innovations import estimate_errors, observe
 from rovsim.diagnosis.observer.kalman import AxisMotion
+from rovsim.diagnosis.observer.least_squares import as_rows
 from rovsim.diagnosis.observer.noise import (
     DriftingCurrent,
     Noise,
@@ -100,8 +101,7 @@ class FilterBank:
 
     def flatten(self, rows: Sequence[Array], noise: Noise) -> Array:
         """Rows (q, 6, n_run) of each run, whitened, all axes after one another: (q, 6 n)."""
-        found = self.whiten(rows, noise)
-        return found.reshape(len(found), -1)
+        return as_rows(self.whiten(rows, noise))
 
     def tune(self, noise: Noise) -> list[Tuning]:
         """Filters of each run that suit another noise."""

@@ -11,6 +11,11 @@ MOST = 12  # columns of one effect: more is not an effect but a fit of everythin
 RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
 
 
+def as_rows(x: Array) -> Array:
+    """Columns x (q, ...) one after the other (q, n); of none as well."""
+    return x.reshape(len(x), int(np.prod(x.shape[1:])))
+
+
 def inner_products(rows: Array) -> Array:
     """Inner products (q, q) of rows (q, n)."""
     return rows @ rows.T

@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.evidence import Evidence, Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
@@ -77,12 +77,8 @@ def judge(seen: Linearised, bank: FilterBank, noise: Noise) -> Fit:
         unsure = np.full((len(seen.at.x), len(seen.at.x)), np.inf)
         return Fit(seen, noise, -np.inf, unsure)
     own, likelihood = bank.fit_noise(seen.e, noise)
-    rows = _flatten(bank.whiten(seen.J, own))
+    rows = as_rows(bank.whiten(seen.J, own))
     return Fit(seen, own, likelihood, solve(inner_products(rows), np.eye(len(rows))))
-
-
-def _flatten(white: Array) -> Array:
-    return white.reshape(len(white), int(np.prod(white.shape[1:])))
 
 
 def descend(
@@ -177,7 +173,7 @@ class _Problem:
     def expand(self, seen: Linearised) -> _Bowl:
         """The sum of squares to second order about a hypothesis."""
         x = seen.at.x
-        rows = _flatten(self.evidence.whiten(seen.J, self.noise))
+        rows = as_rows(self.evidence.whiten(seen.J, self.noise))
         target = self.evidence.whiten(seen.e, self.noise).ravel()
         H = inner_products(rows) + np.eye(len(rows)) / self.reach**2
         g = rows @ target + (x - self.start) / self.reach**2

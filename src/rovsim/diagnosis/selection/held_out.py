@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.forward_selection import find_relevant
@@ -54,7 +54,7 @@ def _sum_held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> floa
 
 
 def _multiply(rows: Array) -> Array:
-    return inner_products(rows.reshape(len(rows), -1))
+    return inner_products(as_rows(rows))
 
 
 def _solve_step(M: Array) -> Array:

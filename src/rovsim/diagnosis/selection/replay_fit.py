@@ -17,7 +17,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import Windows
@@ -110,7 +110,7 @@ def _sandwich(e: Array, J: Array, window: Array) -> Array:
     There may be fewer windows than parameters, which then would all seem to go together; and never
     surer than if every error were one for itself.
     """
-    bread = solve(inner_products(J.reshape(len(J), -1)), np.eye(len(J)))
+    bread = solve(inner_products(as_rows(J)), np.eye(len(J)))
     scores = np.einsum("kin,in->kn", J, e)
     each = bread @ np.array([np.bincount(window, row) for row in scores])
     alone = np.diag(bread) * np.sum(e**2) / max(e.size - len(J), 1)
