@@ -55,6 +55,16 @@ def add_effects(
     return add_uncertainty(model, names, base, diagnosis, source, there), names
 
 
+def is_base_of(diagnosis: Diagnosis, source: Path, to: str, catalogue: Catalogue) -> bool:
+    """Whether that model is the one that was diagnosed.
+
+    Raises:
+        BadInput: no such model.
+    """
+    vehicle = build_model(diagnosis.base, source, catalogue).vehicle
+    return describe_model(load_model(to, vehicle, catalogue)) == diagnosis.base
+
+
 def add_uncertainty(
     model: Model, names: Sequence[str], base: Model, diagnosis: Diagnosis, source: Path,
     catalogue: Catalogue,

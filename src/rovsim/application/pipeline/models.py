@@ -71,8 +71,10 @@ def add_effects(
     catalogue: Catalogue,
     out: Path,
     story: Mapping[str, object],
-) -> list[str]:
-    """Write `base` with effects that a diagnosis fitted as a model file; returns their ids.
+) -> tuple[list[str], bool]:
+    """Write `base` with effects that a diagnosis fitted as a model file.
+
+    Returns their ids, and whether `base` is the model that was diagnosed.
 
     Args:
         diagnosis: its file.
@@ -89,4 +91,4 @@ def add_effects(
     wanted = list(effects) if effects else None
     model, names = apply.add_effects(found, diagnosis, base, wanted, catalogue)
     write_model(model, out, provenance={"base": base, "effects": names, **story})
-    return names
+    return names, apply.is_base_of(found, diagnosis, base, catalogue)

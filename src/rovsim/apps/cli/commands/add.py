@@ -17,6 +17,11 @@ from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
 
+OTHER = (
+    "The diagnosis is not of {base}: its values were found beside the effects of another model. "
+    "Name that one with to=FILE to keep them."
+)
+
 
 class Settings(CommandSettings):
     """What `rovsim add` takes."""
@@ -38,10 +43,13 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
-    names = add_effects(
+    names, diagnosed = add_effects(
         Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
     )
     text = f"{base} + {' + '.join(names)}"
     if not names:
         text = f"{base} as it is, for the diagnosis selected no effect"
-    say(settings, f"{model}: {text}", {"model": model, "effects": names})
+    if not diagnosed:
+        text += f".\n{OTHER.format(base=base)}"
+    content = {"model": model, "effects": names, "diagnosed": diagnosed}
+    say(settings, f"{model}: {text}", content)
