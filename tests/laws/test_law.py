@@ -12,6 +12,7 @@ from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate, unit_of
 from rovsim.diagnosis.equations.products.wording import write_equation
+from rovsim.diagnosis.equations.seek import choose_kinds, stay
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.engine.types import EXAMPLE
@@ -138,3 +139,20 @@ def test_the_regression_finds_the_terms_that_made_the_data():
     terms = tuple(LawTerm(0, (k, k)) for k in range(8))
     columns = Columns(terms, np.ones(8), tuple(part.T @ part for part in rows))
     assert set(propose(columns, 2)[:2]) == {terms[2], terms[6]}
+
+
+def test_what_is_known_of_a_place_stays_and_the_rest_is_sought():
+    middle, own = np.array([1.0, 2.0, 3.0, 0.6]), np.array([5.0, 0.0, 0.0, 0.5])
+    kept, known = stay(middle, ("x",), own)  # a term of the way north alone
+    np.testing.assert_array_equal(kept, [5.0, 2.0, 3.0, 0.6])
+    assert known == (5.0, None)
+    assert stay(middle, ("z",), own)[1] == (None, None)
+
+
+def test_of_one_kind_the_first_place_is_tried():
+    here, there, other = (
+        LawTerm(6, (29,), (0.0, 0.0)),
+        LawTerm(6, (29,), (1.0, 0.0)),
+        LawTerm(1, (7,)),
+    )
+    assert choose_kinds([there, other, here]) == [there, other]

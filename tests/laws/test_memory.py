@@ -62,11 +62,13 @@ def test_the_measured_memory_is_the_integrated_one_and_windows_start_from_it():
     found = replay(world, run, OPEN, ReplaySettings())
     for prediction in found.horizons.values():
         known = np.isfinite(prediction.eta[:, 0])
+        assert known.any()
         np.testing.assert_allclose(prediction.eta[known], run.eta[known], atol=1e-5)
     gap = run.usable.copy()
     gap[250:260] = False
     m = measured_memory(world, run, run.time)
-    bridged = measured_memory(world, replace(run, usable=gap), run.time)
+    unseen = np.where(gap[:, None], run.state_nu, np.nan)
+    bridged = measured_memory(world, replace(run, usable=gap, state_nu=unseen), run.time)
     assert 0 < np.abs(m - bridged).max() < 0.02
     fine = replace(run, time=run.time[::3], eta=run.eta[::3], state_nu=run.state_nu[::3],
                    usable=run.usable[::3])  # fmt: skip
@@ -85,6 +87,17 @@ def test_training_sees_the_remembered_water():
 
 
 def test_two_memories_are_refused_and_none_remembers_nothing():
-    with pytest.raises(BadInput, match="two fluid memories"):
-        _ = model(WAKE, WAKE).body
+    twice = model(WAKE, WAKE)
+    assert not twice.possible
+    with pytest.raises(BadInput, match="2 effects with a fluid memory"):
+        _ = twice.constants
     assert measured_memory(model(FluidMemory()), moved(model()), np.zeros(1)).size == 0
+
+
+def test_what_is_left_out_of_a_comparison_is_remembered():
+    """A stretch that is kept apart begins in water that the rest of the run has set moving."""
+    world = model(WAKE)
+    run = moved(world)
+    late = replace(run, usable=run.usable & (run.time > 3.0))
+    whole, part = (measured_memory(world, one, run.time) for one in (run, late))
+    np.testing.assert_array_equal(part, whole)

@@ -15,6 +15,7 @@ test runs       opened once, for the errors that are reported
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Callable, Sequence
 
 from threadpoolctl import threadpool_limits
@@ -27,7 +28,7 @@ from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
-from rovsim.diagnosis.equations.proposal import ProposedLaw, propose_law
+from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
 from rovsim.diagnosis.observer.camera import find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
@@ -41,6 +42,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
 from rovsim.diagnosis.selection.held_out import drop_idle
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
+    Named,
     Ranked,
     Selected,
     name_drift,
@@ -153,12 +155,11 @@ def _diagnose(
         found = _choose(found, joint, gate)
     if found.lasting and len(found.fit.hypothesis.x):
         found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
-    proposed = _propose(found, base, gate, usable) if found.lasting else None
+    camera = [name_smoothing(smoothing)] if smoothing else []
+    proposed = _propose(found, base, gate, usable, camera) if found.lasting else None
     rivals = found.selection.named_rivals
     wider, scale = include_rest(found.fit, usable.runs)
-    named = name_terms(wider, rivals)
-    if smoothing:
-        named.append(name_smoothing(smoothing))
+    named = [*camera, *name_terms(wider, rivals)]
     if found.fit.noise.drift:
         drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
         if drift.sure:
@@ -186,7 +187,8 @@ def _observe(
     first = FilterBank.design(runs, base, FIRST_NOISE)
     noise, _ = first.fit_noise(first.innovations(base), FIRST_NOISE)
     close = first.redesign(base, noise)
-    candidates = list_candidates(runs, catalogue, base.vehicle)
+    listed = list_candidates(runs, catalogue, base.vehicle)
+    candidates = [one for one in listed if (base + one.start).possible]
     while True:
         sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
         noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
@@ -220,6 +222,14 @@ class _Settled:
         """Whether more is left than single pushes: then names may stand for what has none."""
         return self.refused or not all(one.moment for one in self.structures)
 
+    @cached_property
+    def replayed(self) -> Model:
+        """At the values that replay the stretches best that it was chosen by."""
+        found = self.selection.found
+        if len(found.hypothesis.x):
+            found = _fit_to_replays(found, self.selection.workspace.bank)
+        return found.hypothesis.model
+
 
 def _settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> _Settled:
     """Names that a user would notice; where they leave something, the others too if they do not."""
@@ -251,25 +261,15 @@ def _settle_values(selection: Selection, usable: UsableRuns) -> _Settled:
 
 
 def _choose(one: _Settled, other: _Settled, gate: Gate) -> _Settled:
-    """Of two answers that are not complete the one that surely replays better, else the likelier.
+    """Of two answers the one that surely replays better; else what is complete, or the likelier.
 
-    What a likelihood takes for noise is physics here. So each replays stretches that took no part,
-    at the values that replay the others best, for these are what it ends with.
+    Where an answer is not complete, what its likelihood takes for noise is physics. So each replays
+    stretches that took no part, at the values that replay the others best, as it would end.
     """
-    if gate.runs:
-        each = (_replay_best(own.selection) for own in (one, other))
-        better = gate.prefers(*each)
-        if better is not None:
-            return one if better else other
-    return one if one.score >= other.score else other
-
-
-def _replay_best(selection: Selection) -> Model:
-    """At the values that replay the stretches best that were chosen by."""
-    found = selection.found
-    if len(found.hypothesis.x):
-        found = _fit_to_replays(found, selection.workspace.bank)
-    return found.hypothesis.model
+    better = gate.prefers(one.replayed, other.replayed) if gate.runs else None
+    if better is not None:
+        return one if better else other
+    return one if not other.complete and one.score >= other.score else other
 
 
 def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
@@ -284,14 +284,17 @@ def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
     return again
 
 
-def _propose(found: _Settled, base: Model, gate: Gate, usable: UsableRuns) -> ProposedLaw | None:
+def _propose(
+    found: _Settled, base: Model, gate: Gate, usable: UsableRuns, camera: Sequence[Named]
+) -> ProposedLaw | None:
     """An equation for what is left, where one holds."""
 
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
         return _polish(replace(found.selection, found=with_law), usable.runs)
 
-    catalogued = found.fit.hypothesis.model
-    return propose_law(found.selection, catalogued, base, gate, usable.runs, polish)
+    whole = found.fit.hypothesis.model
+    best = Catalogued(whole, found.replayed if gate.runs else whole)
+    return propose_law(found.selection, best, base, gate, usable.runs, polish, camera)
 
 
 def _trace(found: _Settled) -> ForceInTime | None:

@@ -34,12 +34,12 @@ class Body:
     `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m; `coupling`
     (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column), never
     changed by walls; `memory` (6,) force per remembered velocity; `forgets` 1/s, 0 = no memory;
-    `waterplane` (3,) stiffness N/m, N m/rad in heave, roll, pitch; `products` (t,) coefficients of
-    products of velocities, `factors` (t, 4) axis of the force and up to three velocities: i, 6 + i
-    for its size, -1 for none; `surfaces` (s, 15) position, normal, chord (3 each), half density
-    times area, lift slope, drag, stall, thruster whose jet it meets (-1: none), square of the jet's
-    speed per newton; `lifting` (s,) factor on the lift of each; `free` (6,) axes that move;
-    `places` (n + s, 3) m of thrusters, then surfaces.
+    `memories`: so many effects gave one; `waterplane` (3,) stiffness N/m, N m/rad in heave, roll,
+    pitch; `products` (t,) coefficients of products of velocities, `factors` (t, 4) axis of the
+    force and up to three velocities: i, 6 + i for its size, -1 for none; `surfaces` (s, 15)
+    position, normal, chord (3 each), half density times area, lift slope, drag, stall, thruster
+    whose jet it meets (-1: none), square of the jet's speed per newton; `lifting` (s,) factor on
+    the lift of each; `free` (6,) axes that move; `places` (n + s, 3) m of thrusters, then surfaces.
     """
 
     gravity: float
@@ -59,6 +59,7 @@ class Body:
     coupling: Array = field(default_factory=lambda: np.zeros((2, 6, 6)))
     memory: Array = field(default_factory=lambda: np.zeros(6))
     forgets: float = 0.0
+    memories: int = 0
     waterplane: Array = field(default_factory=lambda: np.zeros(3))
     products: Array = field(default_factory=lambda: np.zeros(0))
     factors: Array = field(default_factory=lambda: np.zeros((0, 4), np.int64))
@@ -77,20 +78,16 @@ class Body:
         """Water that follows the vehicle within a time constant in s, and goes on pushing.
 
         -c nu_r, with `memory` c (6,) in N s/m and N m s/rad, is linear damping that no wall
-        changes; the engine adds c times what is remembered.
-
-        Raises:
-            BadInput: there is such a memory already.
+        changes; the engine adds c times what is remembered. A body has at most one.
         """
-        if self.forgets:
-            raise BadInput(
-                "two fluid memories",
-                where="model",
-                expected="at most one",
-                remedy="Keep one of them.",
-            )
+        self.memories += 1
         self.memory, self.forgets = memory, 1.0 / time_constant
         self.coupling[0] += np.diag(memory)
+
+    @property
+    def possible(self) -> bool:
+        """Whether there can be such a body, and the engine can hold it."""
+        return self.least_inertia > 0.0 and self.memories <= 1
 
     @property
     def least_inertia(self) -> float:
@@ -106,8 +103,15 @@ class Body:
         """Total inertia (6, 6).
 
         Raises:
-            BadInput: it is not positive definite, so no such body exists.
+            BadInput: it is not positive definite, so no such body exists; or it has two memories.
         """
+        if self.memories > 1:
+            raise BadInput(
+                f"{self.memories} effects with a fluid memory",
+                where="model",
+                expected="at most one",
+                remedy="Keep one of them.",
+            )
         M, lowest = self.M_RB + self.M_A, self.least_inertia
         if lowest > 0:
             return M

@@ -78,7 +78,7 @@ class Model:
     @cached_property
     def possible(self) -> bool:
         """Whether such a body can exist."""
-        return self.body.least_inertia > 0.0
+        return self.body.possible
 
     @cached_property
     def constants(self) -> Constants:

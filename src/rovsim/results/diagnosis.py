@@ -22,7 +22,7 @@ class ProposedTerm(Section):
 
 
 class RivalLaw(Section):
-    """The same law with another last term; `deficit` in -2 log likelihood, prices paid."""
+    """A law tried in its place; `deficit` in -2 log likelihood, prices paid."""
 
     equation: str
     deficit: float | None

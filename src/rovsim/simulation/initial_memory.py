@@ -17,9 +17,11 @@ STEP = 0.01  # s; the velocity is taken as straight between two samples, for whi
 def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
     """Remembered velocity (k, 6) at times (k,) of a true motion; empty without a memory.
 
-    Gaps are bridged by interpolation: the water does not forget what nobody saw.
+    Gaps are bridged by interpolation: the water does not forget what nobody saw. Samples count too
+    that were seen and are left out of a comparison.
     """
-    body, known = model.body, np.flatnonzero(motion.usable)
+    body = model.body
+    known = np.flatnonzero(motion.usable | np.isfinite(motion.state_nu).all(axis=1))
     if body.forgets == 0.0:
         return NO_MEMORY
     if len(known) == 0:

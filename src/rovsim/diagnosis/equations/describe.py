@@ -67,18 +67,10 @@ def _round_all(values: Array) -> Array:
 
 def describe_law(law: ProposedLaw) -> Proposal:
     """A law that is proposed."""
-    h, scales = law.fit.hypothesis, law.fit.std
     beside = [
-        FittedEffect(
-            effect=term.id,
-            parameters=describe_values(
-                term,
-                {p.name: float(scales[k] * p.scale)
-                 for p, k in zip(term.parameters, h.columns[i], strict=True)},
-            ),
-        )
-        for i, term in law.beside
-    ]  # fmt: skip
+        FittedEffect(effect=one.term.id, parameters=describe_values(one.term, one.std))
+        for one in law.beside
+    ]
     return Proposal(
         axis=law.axis, equation=law.form.equation, file=FILE, effect=ID,
         meaning=law.form.meaning,

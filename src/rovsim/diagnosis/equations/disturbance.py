@@ -40,7 +40,8 @@ class Push:
 class ForceInTime:
     """What pushes and follows no law.
 
-    `runs` and their `time` (n,) s, `place` (n, 3) MoCap m and `force` (n, 6) N, N m along the body;
+    `runs` and their `time` (n,) s on the clock of the motion capture, `place` (n, 3) MoCap m and
+    `force` (n, 6) N, N m along the body;
     `axes` on which it is more than noise; `rms` (6,); `band` Hz that holds most of its power on the
     strongest of these; `pushes`, the strongest first.
     """
@@ -106,10 +107,15 @@ def _gather(
     places = [run.motion.state[run.index, :3] * run.motion.site.axes for run in runs]
     strongest = max(index, key=lambda i: rms[i] / _usual(residuals[AXES[i]], runs))
     return ForceInTime(
-        tuple(run.motion.run.id for run in runs), tuple(run.time for run in runs), tuple(places),
+        tuple(run.motion.run.id for run in runs), tuple(map(_tell_time, runs)), tuple(places),
         tuple(forces), axes, rms, _find_band([f[:, strongest] for f in forces], runs[0].period),
         tuple(_find_pushes(runs, forces, places, index, rms)),
     )  # fmt: skip
+
+
+def _tell_time(run: ObservedRun) -> Array:
+    """Time (n,) of the readings on the clock of the motion capture, s."""
+    return np.asarray(run.edges[0] + run.time)
 
 
 def _usual(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
@@ -121,8 +127,8 @@ def _usual(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
 
 def _find_band(forces: Sequence[Array], period: float) -> tuple[float, float]:
     """Lowest and highest frequency, Hz, of most of the power."""
-    length = min(round(SEGMENT / period), *(len(f) for f in forces))
-    spectra = [welch(f, 1.0 / period, nperseg=length) for f in forces]
+    length = min(round(SEGMENT / period), max(len(f) for f in forces))
+    spectra = [welch(f, 1.0 / period, nperseg=length) for f in forces if len(f) >= length]
     share = np.cumsum(sum(power for _, power in spectra))
     low, high = np.searchsorted(share / max(share[-1], 1e-300), BAND)
     return float(spectra[0][0][low]), float(spectra[0][0][min(high, len(share) - 1)])
@@ -139,7 +145,7 @@ def _find_pushes(
             size = np.abs(force[:, i]) / max(rms[i], 1e-12)
             peaks, _ = find_peaks(size, height=STRONG, distance=max(1, round(APART / run.period)))
             found += [
-                (float(size[k]), Push(run.motion.run.id, float(run.edges[0] + run.time[k]), AXES[i],
+                (float(size[k]), Push(run.motion.run.id, float(_tell_time(run)[k]), AXES[i],
                                       float(force[k, i]), place[k]))
                 for k in peaks
             ]  # fmt: skip

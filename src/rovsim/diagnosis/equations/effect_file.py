@@ -39,6 +39,7 @@ def round_start(numbers: Sequence[Number]) -> dict[str, float]:
 
 def _parameter(n: Number) -> str:
     more = "" if n.low is None else f", low={n.low:g}"
+    more += "" if n.high is None else f", high={n.high:g}"
     more += "" if n.default is None else f", default={n.default:.6g}"
     return f'        Parameter("{n.name}", "{n.unit}", r"{n.symbol}"{more}, scale={n.scale:g}),'
 

@@ -6,6 +6,7 @@ reads what it found, they are alike.
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from math import isfinite
 from typing import Sequence
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
@@ -31,7 +32,13 @@ class Number:
     std: float
     scale: float
     low: float | None = None
+    high: float | None = None
     default: float | None = None
+
+
+def stated(value: float) -> float | None:
+    """A bound, if it is one."""
+    return value if isfinite(value) else None
 
 
 class Form(ABC):
@@ -63,6 +70,10 @@ class Form(ABC):
     @abstractmethod
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """Python source of the law as an effect with that id; `story`: where it comes from."""
+
+    def follow(self, h: Hypothesis) -> Hypothesis:
+        """The hypothesis with the law suited to what it stands beside."""
+        return h
 
     @abstractmethod
     def simplify(self, h: Hypothesis) -> list[tuple["Form", Hypothesis]]:

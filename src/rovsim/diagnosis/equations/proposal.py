@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Callable, Sequence
+from typing import Callable, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -20,6 +20,7 @@ from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.held_out import cross_validate
+from rovsim.diagnosis.selection.ranking import Named, name_terms
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
@@ -30,6 +31,14 @@ ID, FILE = "proposed_effect", "proposed_effect.py"
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
 ENOUGH = 0.05  # of the error of replays: less is not worth an equation
 
+
+class Catalogued(NamedTuple):
+    """The best that the catalogue can do, of the `whole` runs, and of what it was `chosen` by."""
+
+    whole: Model
+    chosen: Model
+
+
 Polish = Callable[[Fit], tuple[Fit, FilterBank]]
 
 
@@ -39,7 +48,8 @@ class ProposedLaw:
 
     `error_reduction`: share of the base's error in 2 s windows that it removes on top of all else;
     `sizes` N or N m, RMS of each term; `axis` on which it acts most; `rivals`: equations that were
-    tried in its place, and by how much less likely each is.
+    tried in its place, and by how much less likely each is; `beside`: effects of the catalogue that
+    act with it.
     """
 
     form: Form
@@ -48,17 +58,12 @@ class ProposedLaw:
     sizes: tuple[float, ...]
     axis: str
     rivals: tuple[tuple[str, float], ...]
+    beside: tuple[Named, ...]
 
     @property
     def law(self) -> Term:
         """The law, as the engine knows it."""
         return get_law(self.fit.hypothesis)
-
-    @property
-    def beside(self) -> list[tuple[int, Term]]:
-        """Effects of the catalogue beside it, and their places in the hypothesis."""
-        each = enumerate(self.fit.hypothesis.terms)
-        return [(i, term) for i, term in each if term.id != self.law.id]
 
     @property
     def model(self) -> Model:
@@ -80,8 +85,8 @@ class ProposedLaw:
 
 
 def propose_law(
-    selection: Selection, catalogued: Model, base: Model, gate: Gate,
-    runs: Sequence[ObservedRun], polish: Polish,
+    selection: Selection, best: Catalogued, base: Model, gate: Gate,
+    runs: Sequence[ObservedRun], polish: Polish, camera: Sequence[Named],
 ) -> ProposedLaw | None:  # fmt: skip
     """An equation for what is left; None where none holds.
 
@@ -92,16 +97,17 @@ def propose_law(
 
     Args:
         selection: what the search selected.
-        catalogued: the best model of catalogued effects.
+        best: models of catalogued effects that a law must better.
         base: the model that is diagnosed.
         gate: stretches that were kept apart.
         runs: all train runs.
         polish: fits once more to all runs.
+        camera: what the camera does, as an effect, where it does something.
     """
     if not installed("equations"):
         return None
-    judged = seek_law(selection.workspace, selection.found)
-    if judged is None or not _holds(judged, selection, catalogued, gate):
+    judged = seek_law(selection)
+    if judged is None or not _holds(judged, selection, best, gate):
         return None
     fit, bank = polish(judged.fit)
     if not np.isfinite(fit.likelihood):
@@ -112,16 +118,17 @@ def propose_law(
     bare = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, bare, fit.hypothesis.model], runs).normalised
     start, before, after = (or_nan(e) for e in errors)
-    rivals = tuple((r.form.equation, judged.score - r.score) for r in judged.rivals)
-    return ProposedLaw(judged.form, fit, (before - after) / start, sizes, axis, rivals)
+    beside = (*camera, *(one for one in name_terms(fit, ()) if one.term.effect.listed))
+    share = (before - after) / start
+    return ProposedLaw(judged.form, fit, share, sizes, axis, judged.rivals, beside)
 
 
-def _holds(judged: Judged, selection: Selection, catalogued: Model, gate: Gate) -> bool:
-    workspace = selection.workspace
+def _holds(judged: Judged, selection: Selection, best: Catalogued, gate: Gate) -> bool:
     rest: Hypothesis = split_law(judged.fit.hypothesis)[0]
-    if cross_validate(judged.fit, workspace.fit(rest), workspace.bank) <= 0.0:
+    if cross_validate(judged.fit, selection.fit(rest), selection.workspace.bank) <= 0.0:
         return False
-    return gate.favours(judged.fit.hypothesis.model, catalogued, ENOUGH)
+    law = judged.fit.hypothesis.model
+    return gate.improves(law, best.whole, ENOUGH) and gate.keeps(law, best.chosen)
 
 
 def _measure(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> tuple[tuple[float, ...], str]:

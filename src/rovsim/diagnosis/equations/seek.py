@@ -1,7 +1,7 @@
 """From what is left to an equation, or to none."""
 
 from dataclasses import dataclass, replace
-from typing import Sequence
+from typing import Iterable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -17,6 +17,7 @@ from rovsim.diagnosis.equations.products.as_effect import (
 )
 from rovsim.diagnosis.equations.products.library import (
     Columns,
+    Known,
     LawTerm,
     list_terms,
     middle_of,
@@ -30,6 +31,7 @@ from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.law import TERMS
 
@@ -42,29 +44,41 @@ FALSE_ALARM = 0.002  # of all terms together, as of every kind of structure
 class Judged:
     """A law on top of a hypothesis, fitted; `score` with the price of each of its numbers paid.
 
-    `rivals`: laws that were tried in its place.
+    `rivals`: equations of laws that were tried in its place, and by how much less likely each is.
     """
 
     form: Form
     fit: Fit
     score: float
-    rivals: tuple["Judged", ...] = ()
+    rivals: tuple[tuple[str, float], ...] = ()
 
     @property
     def law(self) -> Term:
         """The law with its fitted values."""
         return get_law(self.fit.hypothesis)
 
+    def beats(self, others: Iterable["Judged"]) -> "Judged":
+        """The same, with others as its rivals."""
+        ranked = sorted(others, key=lambda one: one.score)  # of the same equation the likeliest
+        deficits = {one.form.equation: self.score - one.score for one in ranked}
+        deficits.pop(self.form.equation, None)  # from another place it came here
+        return replace(self, rivals=(*self.rivals, *deficits.items()))
+
 
 @dataclass(frozen=True, eq=False)
 class LawSearch:
-    """Laws on top of hypotheses, about what a workspace knows.
+    """Laws on top of hypotheses, about what was selected.
 
     `candidates`: so many terms there are to choose from, which sets the price of a number.
     """
 
-    workspace: SearchWorkspace
+    selection: Selection
     candidates: int
+
+    @property
+    def workspace(self) -> SearchWorkspace:
+        """That of what was selected."""
+        return self.selection.workspace
 
     @property
     def price(self) -> float:
@@ -78,7 +92,7 @@ class LawSearch:
 
     def judge(self, form: Form, h: Hypothesis) -> Judged:
         """A law, fitted with all else."""
-        fitted = self.workspace.fit(h)
+        fitted = self.selection.fit(form.follow(h))
         more = (self.price - self.workspace.price) * get_law(fitted.hypothesis).choices
         return Judged(form, fitted, self.workspace.score(fitted) - more)
 
@@ -91,26 +105,27 @@ class LawSearch:
     def grow(self, start: Hypothesis) -> Judged | None:
         """Products of one to three terms, each refitted with all else before the next is added."""
         runs = self.workspace.bank.runs
-        around, middle, place = Surroundings.of(runs), middle_of(runs), None
+        around, middle = Surroundings.of(runs), middle_of(runs)
         terms: tuple[LawTerm, ...] = ()
-        fit, best = self.workspace.fit(start), None
+        fit, best = self.selection.fit(start), None
         score = self.workspace.score(fit)
         while len(terms) < TERMS and np.isfinite(fit.likelihood):
-            if best and list_moved(terms):
-                middle = place_of(best.law, around.site)
-                place = float(middle[0]), float(middle[1])
-            left = [t for t in list_terms(runs, place) if t not in terms]
+            known: Known = (None, None)
+            if best is not None:
+                middle, known = stay(middle, list_moved(terms), place_of(best.law, around.site))
+            taken = [t.kind for t in terms]
+            left = [t for t in list_terms(runs, known) if t.kind not in taken]
             columns = weigh(self.workspace, fit, left, middle)
             if len(columns.terms) < TERMS:
                 break
             tried = {}
-            for more in propose(columns, TERMS - len(terms))[:TRIED]:
-                h = add_term(fit.hypothesis, terms, more, columns, middle, around, start.model)
+            for more in choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]:
+                h = add_term(fit.hypothesis, terms, more, columns, middle, around)
                 tried[more] = self.judge(Products((*terms, more)), h)
             more = max(tried, key=lambda one: tried[one].score)
             if not self.is_worth(tried[more], fit, score):
                 break
-            best = replace(tried.pop(more), rivals=tuple(tried.values()))
+            best = tried.pop(more).beats(tried.values())
             terms, fit, score = (*terms, more), best.fit, best.score
         return best
 
@@ -124,7 +139,7 @@ class LawSearch:
         )
         for kind in (k for k in FORMS if k.effect.through in means):
             beside = tuple(term for term in start.terms if term.id not in kind.imitates)
-            bare = self.workspace.fit(replace(start, terms=beside))
+            bare = self.selection.fit(replace(start, terms=beside))
             tried = [
                 self.judge(form, replace(bare.hypothesis, terms=(*bare.hypothesis.terms, law)))
                 for form, law in kind.begin(moving)
@@ -138,24 +153,41 @@ class LawSearch:
         """Without effects of the catalogue that the law has made idle, and terms it can spare."""
         current = grown
         while True:
-            h = current.fit.hypothesis
-            fewer = [(current.form, h.without(i)) for i, t in enumerate(h.terms) if t.effect.listed]
-            tried = [self.judge(*one) for one in (*fewer, *current.form.simplify(h))]
+            h, form = current.fit.hypothesis, current.form
+            fewer = [(form, h.without(i)) for i, t in enumerate(h.terms) if t.effect.listed]
+            tried = [self.judge(*one) for one in (*fewer, *form.simplify(h))]
             best = max(tried, key=lambda one: one.score, default=None)
             if best is None or best.score < current.score:
                 return current
-            current = replace(best, rivals=current.rivals)
+            # rivals of a term that went are rivals of nothing
+            current = replace(best, rivals=current.rivals if best.form is form else ())
 
 
-def seek_law(workspace: SearchWorkspace, found: Fit) -> Judged | None:
-    """The likeliest law beside what was found, or in place of it; None where all may be chance.
+def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, Known]:
+    """A place (4,), where it is known the law's own, and what of it is known north and east."""
+    own = np.array([name in moved for name in ("x", "y", "z", "width")])
+    n, e = (float(p) if known else None for p, known in zip(place[:2], own[:2], strict=True))
+    return np.where(own, place, middle), (n, e)
 
-    None either where axes are read now and then: their filters have another clock.
+
+def choose_kinds(terms: Sequence[LawTerm]) -> list[LawTerm]:
+    """The first of each kind: a fit moves it from where it begins to where it acts."""
+    found: dict[tuple, LawTerm] = {}
+    for term in terms:
+        found.setdefault(term.kind, term)
+    return list(found.values())
+
+
+def seek_law(selection: Selection) -> Judged | None:
+    """The likeliest law beside what was selected, or in place of it; None where all may be chance.
+
+    None either where an axis in which the vehicle can move is read now and then, or never: filters
+    have another clock there.
     """
-    runs = workspace.bank.runs
+    runs, found = selection.workspace.bank.runs, selection.found
     if not all((run.shown | ~run.free.astype(bool)).all() for run in runs):
         return None
-    search = LawSearch(workspace, len(list_terms(runs)))
+    search = LawSearch(selection, len(list_terms(runs)))
     if not search.candidates:
         return None
     starts = [found.hypothesis]
@@ -164,11 +196,9 @@ def seek_law(workspace: SearchWorkspace, found: Fit) -> Judged | None:
     grown = [one for start in starts if (one := search.grow(start)) is not None]
     grown += [one for start in starts for one in search.remember(start)]
     finished = sorted((search.finish(one) for one in grown), key=lambda one: -one.score)
-    if not finished or finished[0].score <= workspace.score(found):
+    if not finished or finished[0].score <= selection.workspace.score(found):
         return None
-    best, *others = finished
-    other = [one for one in others if one.form != best.form][:1]
-    return replace(best, rivals=(*best.rivals, *other))
+    return finished[0].beats(finished[1:])
 
 
 def weigh(

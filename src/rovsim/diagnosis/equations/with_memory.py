@@ -12,7 +12,7 @@ from typing import ClassVar, Sequence
 
 from rovsim import AXES
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
-from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_law
+from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_law, stated
 from rovsim.diagnosis.equations.products.variables import FORCES, NU
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.base import Effect
@@ -21,11 +21,15 @@ from rovsim.dynamics.effects.thruster_play import ThrusterPlay
 from rovsim.dynamics.effects.wake_by_axis import WakeByAxis
 
 
+@dataclass(frozen=True)
 class WithMemory(Form):
-    """A law that is an effect of its own."""
+    """A law that is an effect of its own; `names` of the parameters that it may do without."""
+
+    names: tuple[str, ...]
 
     effect: ClassVar[type[Effect]]
     imitates: ClassVar[tuple[str, ...]] = ()  # effects that it cannot stand beside
+    imports: ClassVar[str]
 
     @classmethod
     @abstractmethod
@@ -34,37 +38,37 @@ class WithMemory(Form):
 
     def list_numbers(self, law: Term, std: Sequence[float]) -> list[Number]:
         """The free parameters, as the effect declares them."""
-        known = {p.name: p for p in law.effect.parameters}
         return [
             Number(
-                n, known[n].unit, self._symbol(n), law.effect[n], s, known[n].scale, known[n].low,
-                None if known[n].default == 0.0 else law.effect[n],
+                p.name, p.unit, self._symbol(p.name), law.effect[p.name], s, p.scale,
+                stated(p.low), stated(p.high), law.effect[p.name] if p.default else None,
             )
-            for n, s in zip(law.free, std, strict=True)
+            for p, s in zip(law.parameters, std, strict=True)
         ]  # fmt: skip
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """The method of the effect itself, with the parameters that were fitted."""
-        cls = self.effect
-        (base,) = cls.__bases__
-        method = next(n for n in vars(cls) if callable(vars(cls)[n]))
+        (base,) = self.effect.__bases__
+        method = next(one for one in vars(self.effect).values() if callable(one))
         return write_effect(
             name, self, numbers, story, base=base.__name__, imports=self.imports,
-            method=dedent(inspect.getsource(getattr(cls, method))),
-            start=round_start(numbers),
+            method=dedent(inspect.getsource(method)), start=round_start(numbers),
         )  # fmt: skip
 
-    imports: ClassVar[str]
+    def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
+        """Without each of its names, as long as one is left."""
+        return [
+            (type(self)(_all_but(gone, self.names)), drop_number(h, gone))
+            for gone in (self.names if len(self.names) > 1 else ())
+        ]
 
     def _symbol(self, name: str) -> str:
         return next(p.symbol for p in self.effect.parameters if p.name == name)
 
 
-@dataclass(frozen=True)
 class Wake(WithMemory):
     """Water that some axes have set moving goes on pushing them."""
 
-    axes: tuple[str, ...]
     effect = WakeByAxis
     imitates = (FluidMemory.id,)
     imports = (
@@ -84,50 +88,41 @@ class Wake(WithMemory):
     @property
     def parts(self) -> tuple[Part, ...]:
         """One for each axis."""
-        return tuple(Part(axis, (NU[AXES.index(axis)], "memory")) for axis in self.axes)
+        return tuple(Part(axis, (NU[AXES.index(axis)], "memory")) for axis in self.names)
 
     @property
     def equation(self) -> str:
         """In LaTeX."""
-        each = [AXES.index(axis) for axis in self.axes]
+        each = [AXES.index(axis) for axis in self.names]
         pushes = [rf"{FORCES[i]} = -{self._symbol(AXES[i])}\,({NU[i]} - m_{NU[i]})" for i in each]
         return r",\quad ".join((*pushes, r"T \dot m = \nu_r - m"))
 
     @property
     def meaning(self) -> str:
         """In a sentence."""
-        return f"Water that {' and '.join(self.axes)} set moving, to m, goes on pushing there."
+        return f"Water that {' and '.join(self.names)} set moving, to m, goes on pushing there."
 
     def divide(self, law: Term) -> list[Effect]:
         """Each axis by itself."""
         return [
-            law.effect.with_values({axis: 0.0 for axis in self.axes if axis != own})
-            for own in self.axes
-        ]
-
-    def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
-        """Without each axis, as long as one is left."""
-        return [
-            (Wake(_all_but(gone, self.axes)), drop_number(h, gone))
-            for gone in (self.axes if len(self.axes) > 1 else ())
+            law.effect.with_values(dict.fromkeys(_all_but(own, self.names), 0.0))
+            for own in self.names
         ]
 
     def _symbol(self, name: str) -> str:
         return f"c_{NU[AXES.index(name)]}" if name in AXES else super()._symbol(name)
 
 
-@dataclass(frozen=True)
 class Play(WithMemory):
     """Thrusters follow only once what is asked of them has moved by a band."""
 
-    names: tuple[str, ...] = tuple(p.name for p in ThrusterPlay.parameters)
     effect = ThrusterPlay
     imports = "import numpy as np\nfrom numpy import ndarray as Array\n\n"
 
     @classmethod
     def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
         """A narrow and a wide band, and one that grows with the force."""
-        form = cls()
+        form = cls(tuple(p.name for p in ThrusterPlay.parameters))
         return [(form, Term(ThrusterPlay(**start), form.names)) for start in ThrusterPlay.starts]
 
     @property
@@ -138,8 +133,8 @@ class Play(WithMemory):
     @property
     def equation(self) -> str:
         """In LaTeX."""
-        force, F = "F_\\text{static}", {"band": "b", "share": r"s\,|F_\text{static}|"}
-        w = " + ".join(F[name] for name in self.names)
+        force, width = r"F_\text{static}", {"band": "b", "share": r"s\,|F_\text{static}|"}
+        w = " + ".join(width[name] for name in self.names)
         return rf"F \leftarrow \min(\max(F,\ {force} - w),\ {force} + w),\quad w = {w}"
 
     @property
@@ -150,13 +145,6 @@ class Play(WithMemory):
     def divide(self, law: Term) -> list[Effect]:
         """It is one."""
         return [law.effect]
-
-    def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
-        """With a band that grows, or with one that does not."""
-        return [
-            (Play(_all_but(gone, self.names)), drop_number(h, gone))
-            for gone in (self.names if len(self.names) > 1 else ())
-        ]
 
 
 def drop_number(h: Hypothesis, gone: str) -> Hypothesis:

@@ -76,24 +76,30 @@ class Gate:
             found = selection.fit(base)
         return replace(selection, found=found), found is selection.found
 
-    def favours(self, more: Model, less: Model, share: float) -> bool:
-        """Whether one model errs less by that share on all runs, and not more where kept apart.
-
-        How sure that is, is asked elsewhere: what acts in one place shows in few windows, perhaps
-        in none of those that were kept apart.
-        """
+    def improves(self, more: Model, less: Model, share: float) -> bool:
+        """Whether one model errs less than the other by that share on all runs."""
         one, other = replace(self, runs=self.whole)._errors([more, less])
-        apart = self._errors([more, less]) if self.runs else (one, one)
-        return _ratio(one, other) < 1.0 - share and _ratio(apart[0], apart[1]) <= 1.0
+        return _ratio(one, other) < 1.0 - share
+
+    def keeps(self, more: Model, less: Model) -> bool:
+        """Whether one model errs no more than the other on stretches that were kept apart.
+
+        How sure that is, is asked elsewhere: what acts in one place shows in few of their windows,
+        perhaps in none.
+        """
+        if not self.runs:
+            return True
+        one, other = self._errors([more, less])
+        return _ratio(one, other) <= 1.0
 
     def prefers(self, one: Model, other: Model) -> bool | None:
         """Whether the first replays better; None if nothing was kept apart, or by chance."""
         if not self.runs:
             return None
         own, others = self._errors([one, other])
-        if np.isfinite(own).all() and _costs(others, own, 0.0):
+        if _compare(others, own) > 0.0:
             return True
-        return False if np.isfinite(others).all() and _costs(own, others, 0.0) else None
+        return False if _compare(own, others) > 0.0 else None
 
     def keep_earning(self, selection: Selection) -> Selection:
         """Where physics is left that no name explains: only what makes a difference there.

@@ -13,7 +13,7 @@ from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Diagnosis, Disturbance, ForceOfRun
+from rovsim.results.diagnosis import Diagnosis, Disturbance, ForceOfRun, Push
 
 SECTION = "verdict"
 CAPTION = (
@@ -21,6 +21,7 @@ CAPTION = (
     "from above, and in time; a circle marks the strongest moments."
 )
 COLORS = "cividis"  # as bright in grey as in colour
+BETWEEN = 0.2  # s: lines of a force are as far apart
 UNITS = ("N",) * 3 + ("N m",) * 3
 
 
@@ -54,7 +55,7 @@ def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Dist
     x, y, _ = np.array(run.place_m).T
     axes.plot(x, y, color="#BBBBBB", linewidth=0.6, zorder=1)
     axes.scatter(x, y, c=np.array(run.force)[:, i], cmap=COLORS, norm=scale, s=8, zorder=2)
-    strong = [p for p in force.strongest if p.run == run.run]
+    strong = _list_strong(run, force)
     axes.plot(
         [p.place_m[0] for p in strong], [p.place_m[1] for p in strong], "o", fillstyle="none",
         color=FAMILIES["nominal"].color, markersize=8, zorder=3,
@@ -64,10 +65,16 @@ def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Dist
     axes.set_ylabel(f"{short(run.run)}\ny (m)")
 
 
+def _list_strong(run: ForceOfRun, force: Disturbance) -> list[Push]:
+    """Its strongest moments; of a long run there may be several parts."""
+    first, last = run.time_s[0] - BETWEEN, run.time_s[-1] + BETWEEN
+    return [p for p in force.strongest if p.run == run.run and first <= p.time_s <= last]
+
+
 def _draw_time(axes: Any, run: ForceOfRun, i: int, most: float, force: Disturbance) -> None:
     values = np.array(run.force)[:, i]
     axes.plot(run.time_s, values, **FAMILIES["measured"].line())
-    strong = [p for p in force.strongest if p.run == run.run and p.axis == AXES[i]]
+    strong = [p for p in _list_strong(run, force) if p.axis == AXES[i]]
     axes.plot(
         [p.time_s for p in strong], [p.force for p in strong], "o", fillstyle="none",
         color=FAMILIES["nominal"].color, markersize=8,

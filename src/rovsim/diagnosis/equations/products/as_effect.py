@@ -13,7 +13,6 @@ from rovsim.diagnosis.equations.products.variables import DEEP, EAST, NEAR, NORT
 from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.law import FACTORS, Law
-from rovsim.dynamics.model import Model
 
 MARGIN = 0.5  # m outside of where the vehicle was: a centre may lie a little apart
 
@@ -51,7 +50,7 @@ def place_of(law: Term, site: Site) -> Array:
 
 def add_term(
     h: Hypothesis, known: Sequence[LawTerm], more: LawTerm, columns: Columns, middle: Array,
-    around: Surroundings, model: Model,
+    around: Surroundings,
 ) -> Hypothesis:  # fmt: skip
     """The hypothesis with one more term in its law, at what the regression gives it.
 
@@ -62,11 +61,10 @@ def add_term(
         columns: inner products of the terms with what is left.
         middle: place (3,) NED m and width m about which terms are taken.
         around: where the runs went.
-        model: whose drag water that moves meets.
     """
     rest, law = split_law(h)
     terms = (*known, more)
-    values = dict(law.effect.given()) if law else _start(model)
+    values = dict(law.effect.given()) if law else {}
     k, i = len(terms), columns.terms.index(more)
     power = columns.products[1 + i, 1 + i]
     coefficient = columns.products[0, 1 + i] / power if power > 0.0 else 0.0
@@ -93,10 +91,14 @@ def add_term(
     return replace(rest, terms=(*rest.terms, own))
 
 
-def _start(model: Model) -> dict[str, float]:
-    linear, quadratic = drag_of(model)
+def follow_drag(h: Hypothesis) -> Hypothesis:
+    """The hypothesis with the drag, which water that moves meets, of what the law stands beside."""
+    rest, law = split_law(h)[0], get_law(h)
+    linear, quadratic = drag_of(rest.model)
     values = {f"linear{i}": float(v) for i, v in enumerate(linear)}
-    return values | {f"quadratic{i}": float(v) for i, v in enumerate(quadratic)}
+    values |= {f"quadratic{i}": float(v) for i, v in enumerate(quadratic)}
+    follows = replace(law, effect=law.effect.with_values(values))
+    return replace(rest, terms=(*rest.terms, follows))
 
 
 def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:

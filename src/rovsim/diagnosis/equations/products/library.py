@@ -51,20 +51,23 @@ class LawTerm:
     place: tuple[float, float] | None = None
 
     @property
-    def local(self) -> bool:
-        """Whether it fades away from one place."""
-        return NEAR in self.factors
+    def kind(self) -> tuple[int, tuple[int, ...]]:
+        """The same for terms that differ by their place alone."""
+        return self.on, self.factors
 
 
-def list_terms(
-    runs: Sequence[ObservedRun], place: tuple[float, float] | None = None
-) -> list[LawTerm]:
-    """All candidate terms that these runs could show; near one place alone, if it is known."""
+Known = tuple[float | None, float | None]  # m north and east of a law's place, where it has one
+
+
+def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list[LawTerm]:
+    """All candidate terms that these runs could show; at places that suit what is known of one."""
     moving = np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))
     found = [term for i in moving for term in _along_body(int(i), moving)]
-    if not all(run.axes.all() for run in runs):
+    if not all((run.axes | ~run.free.astype(bool)).all() for run in runs):
         return found
-    places = list_places(runs) if place is None else [place]
+    n, e = known
+    wanted = [(a if n is None else n, b if e is None else e) for a, b in list_places(runs)]
+    places = list(dict.fromkeys(wanted))
     return [*found, *_along_world(), *(t for one in places for t in _at(one))]
 
 

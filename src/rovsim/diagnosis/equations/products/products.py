@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Sequence
 
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
-from rovsim.diagnosis.equations.form import Form, Number, Part
-from rovsim.diagnosis.equations.products.as_effect import drop_term, list_moved
+from rovsim.diagnosis.equations.form import Form, Number, Part, stated
+from rovsim.diagnosis.equations.products.as_effect import drop_term, follow_drag, list_moved
 from rovsim.diagnosis.equations.products.kernel_lines import write_body
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.variables import unit_of
@@ -23,7 +23,6 @@ PLACES = {  # unit, symbol and scale of a place's numbers
     "x": ("m", "x_0", 0.5), "y": ("m", "y_0", 0.5), "z": ("m", "z_0", 0.5),
     "width": ("m", "s", 0.2),
 }  # fmt: skip
-NARROWEST = 0.05  # m
 KERNEL = '''\
 @staticmethod
 def wrench(at, p):
@@ -63,10 +62,11 @@ class Products(Form):
             scale = float(f"{max(abs(value), 1e-6):.1g}")
             unit, symbol = unit_of(term.on, term.factors), f"c_{k}" if len(self.terms) > 1 else "c"
             found.append(Number(name, unit, symbol, value, sure[f"c{k}"] * size, scale))
+        known = {p.name: p for p in law.parameters}
         for name in list_moved(self.terms):
             unit, symbol, scale = PLACES[name]
-            value, low = law.effect[name], NARROWEST if name == "width" else None
-            found.append(Number(name, unit, symbol, value, sure[name], scale, low, value))
+            value, low, high = law.effect[name], stated(known[name].low), stated(known[name].high)
+            found.append(Number(name, unit, symbol, value, sure[name], scale, low, high, value))
         return found
 
     def divide(self, law: Term) -> list[Effect]:
@@ -86,6 +86,10 @@ class Products(Form):
             method=KERNEL.format(body="\n".join(f"    {line}" for line in lines)),
             start=round_start(numbers) if placed else {},
         )  # fmt: skip
+
+    def follow(self, h: Hypothesis) -> Hypothesis:
+        """Water that moves drags with the coefficients of the model that it moves beside."""
+        return follow_drag(h)
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
         """Without each of its terms, as long as one is left."""
