@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rovsim.diagnosis.equations.disturbance import smooth_stretch
-from rovsim.diagnosis.observer.kalman import POSE, AxisMotion, AxisNoise, design_filter
+from rovsim.diagnosis.observer.axis_kernels import POSE
+from rovsim.diagnosis.observer.kalman import AxisMotion, AxisNoise, design_filter
 
 PERIOD, NOISE, COUNT = 0.05, AxisNoise(0.1, 1.0, 1e-3), 4000
 

@@ -10,18 +10,16 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import solve_discrete_are
 from scipy.signal import lfilter
 
-from rovsim.diagnosis.observer.kalman import (
+from rovsim.diagnosis.observer.axis_kernels import (
     LEAST_DRIVING,
     POSE,
     SOLVABLE,
-    AxisMotion,
-    AxisNoise,
     characteristic,
-    design_filter,
     filter_kept,
     negative_log_likelihood,
     sum_of_squares,
 )
+from rovsim.diagnosis.observer.kalman import AxisMotion, AxisNoise, design_filter
 from rovsim.diagnosis.observer.noise import Noise, Tuning
 from rovsim.diagnosis.observer.noise_fit import fit_noise
 

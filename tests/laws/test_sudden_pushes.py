@@ -7,7 +7,8 @@ from scipy.signal import lfilter
 
 from rovsim.diagnosis.checks.residual import AxisResidual
 from rovsim.diagnosis.checks.sudden_pushes import find_kicks
-from rovsim.diagnosis.observer.kalman import POSE, AxisMotion, AxisNoise, design_filter
+from rovsim.diagnosis.observer.axis_kernels import POSE
+from rovsim.diagnosis.observer.kalman import AxisMotion, AxisNoise, design_filter
 
 PERIOD, COUNT, KICK = 0.05, 1200, 600
 NOISE = AxisNoise(level=0.02, memory=1.0, reading=1e-3)

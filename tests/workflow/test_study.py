@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from rovsim.application.provenance import find_modules
 from small_study import ROOT, SMALL, copy_of
 
 
@@ -131,6 +132,37 @@ def test_what_rules_depend_on_is_there():
     assert len(named) > 20
     for name in named:
         assert find_spec(f"rovsim.{name}"), name
+
+
+# What a script may import without its rule asking for it: how it is run; settings, whose values are
+# a rule's own parameters; what an edit of an effect would re-run, for reading knows no effects.
+UNASKED = {
+    "rovsim.application.snakemake_job", "rovsim.application.sections",
+    "rovsim.application.settings", "rovsim.application.pipeline.recordings",
+}  # fmt: skip
+UNASKED_BY = {
+    "read": {"rovsim.measurement.signals.chain"}
+}  # of whose settings outliers alone count
+RULE = re.compile(
+    r"code=study\.(own_)?code\(([^)]*)\).*?script:\s*\"\.\./scripts/(\w+)\.py\"", re.DOTALL
+)
+
+
+def test_rules_depend_on_what_their_scripts_import():
+    workflow = ROOT / "workflow"
+    rules = "".join(path.read_text() for path in (workflow / "rules").glob("*.smk"))
+    found = RULE.findall(rules)
+    assert len(found) > 15
+    for own, names, script in found:
+        named = [f"rovsim.{name}" for name in re.findall(r'"([a-z_.]+)"', names)]
+        known = find_modules(*named)
+        text = (workflow / "scripts" / f"{script}.py").read_text()
+        imported = set(re.findall(r"^from (rovsim[\w.]*) import", text, re.MULTILINE))
+        for module in imported - UNASKED - UNASKED_BY.get(script, set()):
+            inside = (
+                any(module.startswith(f"{name}.") for name in named) if own else module in known
+            )
+            assert inside, f"{script}: {module}"
 
 
 @pytest.mark.slow

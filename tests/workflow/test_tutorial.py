@@ -46,5 +46,7 @@ def test_the_tutorial_ends_with_the_error_fallen(tmp_path, monkeypatch, capsys):
 
 
 def test_its_pictures_are_there():
-    for name in re.findall(r"\]\((images/[^)]+)\)", TUTORIAL.read_text(encoding="utf-8")):
+    pictures = re.findall(r"\]\((images/[^)]+)\)", TUTORIAL.read_text(encoding="utf-8"))
+    assert len(pictures) > 3
+    for name in pictures:
         assert (TUTORIAL.parent / name).is_file(), name

@@ -9,7 +9,7 @@ rule split:
     benchmark:
         f"{F}/benchmarks/split.tsv"
     params:
-        code=study.code("evaluation.held_out.folds"),
+        code=study.code("evaluation.held_out.folds", "measurement.signals.chain"),
     script:
         "../scripts/split.py"
 

@@ -65,6 +65,7 @@ for figure in folds.once:
                 f"reporting.figures.{figure}",
                 "reporting.figures.style",
                 "reporting.report_data",
+                "application.pipeline.drawing",
             ),
         script:
             "../scripts/figure_of_study.py"
@@ -97,6 +98,7 @@ for figure in PER_RUN:
                 f"reporting.figures.{figure}",
                 "reporting.figures.style",
                 "reporting.report_data",
+                "application.pipeline.drawing",
             ),
         script:
             "../scripts/figure_of_run.py"
@@ -118,7 +120,7 @@ rule tables:
     benchmark:
         f"{R}/benchmarks/tables.tsv"
     params:
-        code=study.code("reporting.tables"),
+        code=study.code("reporting.tables", "application.pipeline.presentation"),
     script:
         "../scripts/tables.py"
 
@@ -147,7 +149,11 @@ rule report:
         campaign=study.name,
         runs=study.runs(),
         provenance=study.provenance(),
-        code=study.code("reporting.html", "reporting.report_data"),
+        code=study.code(
+            "reporting.html",
+            "reporting.report_data",
+            "application.pipeline.presentation",
+        ),
     script:
         "../scripts/report.py"
 

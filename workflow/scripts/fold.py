@@ -3,7 +3,7 @@
 from rovsim.application.pipeline.held_out import score_held_out
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
-from rovsim.application.study import BASELINES
+from rovsim.dynamics.model import BASELINES
 
 if __name__ == "__main__":
     with job(snakemake) as rule:

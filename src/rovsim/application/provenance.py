@@ -21,7 +21,7 @@ MODEL = "rovsim.dynamics.model"
 OF_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
 LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning")
 UNRELATED = ("command", "tracking", "timing", "blind", "bench", "output", "port", "open")
-PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch")
+PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
 
 
 def digest(*names: str, effects: Sequence[Path] = ()) -> str:
@@ -30,6 +30,12 @@ def digest(*names: str, effects: Sequence[Path] = ()) -> str:
     A package stands for all its modules: what is found by looking has no import to follow. So do
     files of `effects` from elsewhere, for modules that know models.
     """
+    wanted = find_modules(*names)
+    return _digest([*map(_file, sorted(wanted)), *(effects if MODEL in wanted else ())])
+
+
+def find_modules(*names: str) -> set[str]:
+    """These modules of rovsim and all they import, however deep, as `digest` takes them."""
     graph = _graph()
     wanted: set[str] = set()
     for name in names:
@@ -38,7 +44,7 @@ def digest(*names: str, effects: Sequence[Path] = ()) -> str:
         wanted |= graph.find_upstream_modules(name)
     for package in _discovered(wanted):
         wanted |= graph.find_descendants(package)
-    return _digest([*map(_file, sorted(wanted)), *(effects if MODEL in wanted else ())])
+    return wanted
 
 
 def own_digest(package: str, effects: Sequence[Path] = ()) -> str:

@@ -13,6 +13,7 @@ from rovsim.application.settings import Settings, compose, select
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
+from rovsim.dynamics.model import BASELINES
 from rovsim.learning.learner import LearnerSettings, learner, learner_settings
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
@@ -21,7 +22,6 @@ from rovsim.results.ladder import EFFECTS
 from rovsim.simulation.synthetic_tank.description import SEALED, describe
 
 HELD: dict[Path, FileLock] = {}  # until the process ends
-BASELINES = ("zero_acceleration", "nominal")
 PHYSICS = ("refitted", EFFECTS)
 DRAWN = ("nominal", EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
 

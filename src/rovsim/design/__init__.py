@@ -1,13 +1,16 @@
 """The next flight: commands that best tell rivals apart, or make a value surer.
 
-settings        what may be asked, and limits that a flight keeps to
-knowledge       what the train runs already tell: fitted hypotheses, and the noise
-sticks          movements of the sticks as a few numbers; the usual manoeuvres
-pilot           sticks flown on the model, which keeps the vehicle upright and near: commands
-flight          commands to predicted paths, and whether they stay within the limits
-record          a predicted path as the observer would see it
-worth           what a flight would tell beside the train runs
-search          the sticks that tell most
-instructions    the same in words
-plan            all of it, in order
+settings      what may be asked, and limits that a flight keeps to
+surroundings  where, when and with what it would be recorded
+knowledge     what the train runs already tell: fitted hypotheses, and the noise
+sticks        movements of the sticks as a few numbers; the usual manoeuvres
+authority     from a wrench that is wanted to what a log of commands would hold
+pilot         sticks flown on the model, which keeps the vehicle upright and near: commands
+flight        commands to predicted paths, and whether they stay within the limits
+record        a predicted path as the observer would see it
+worth         what a flight would tell beside the train runs
+search        the sticks that tell most
+plan          all of it, in order
+instructions  the same in words
+report        the same as `experiment.json`
 """

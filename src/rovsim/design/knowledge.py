@@ -9,7 +9,6 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.design.settings import Question
-from rovsim.diagnosis.checks.left_open import name_parameters
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.kalman import AxisMotion
@@ -41,7 +40,7 @@ class Known:
     @property
     def names(self) -> list[str]:
         """The free parameters, as `effect.parameter`."""
-        return name_parameters(self.hypothesis)
+        return self.hypothesis.parameter_names
 
     @cached_property
     def as_it_is(self) -> Hypothesis:
@@ -133,7 +132,7 @@ def learn(
         raise _nothing_asked(model)
     if not question.between:
         found, bank = _fit(start, runs)
-        wanted = [n for n in name_parameters(start) if not question.know or n in question.know]
+        wanted = [n for n in start.parameter_names if not question.know or n in question.know]
         one = _know(found, bank, wanted)
         return Knowledge(tuple(runs), (), (one,), found.noise, bank.motions)
     return _learn_rivals(start, runs, question, candidates)
@@ -219,7 +218,7 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
 
 def _know(found: Fit, bank: FilterBank, wanted: Sequence[str], price: float = 0.0) -> Known:
     rows = bank.flatten(found.seen.J, found.noise)
-    names = name_parameters(found.hypothesis)
+    names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = price * sum(term.choices for term in found.hypothesis.terms)
     return Known(found.hypothesis, inner_products(rows), chosen, found.likelihood - paid)
@@ -239,7 +238,7 @@ def _learn_rivals(
     price = max(price, 2.0 * float(np.log(len(candidates))))
     rivals = []
     for name, (found, bank) in zip(question.between, fits, strict=True):
-        names = name_parameters(found.hypothesis)
+        names = found.hypothesis.parameter_names
         wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
         rivals.append(_know(found, bank, wanted, price))
     best, bank = max(fits, key=lambda one: one[0].likelihood)

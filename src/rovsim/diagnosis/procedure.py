@@ -22,7 +22,6 @@ from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import find_doubtful
-from rovsim.diagnosis.checks.left_open import name_parameters
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
@@ -166,7 +165,7 @@ def _diagnose(
             named.append(name_drift(drift))
     return TrainDiagnosis(
         base, usable, found.fit,
-        correlate(wider.covariance, name_parameters(wider.hypothesis)),
+        correlate(wider.covariance, wider.hypothesis.parameter_names),
         rank_selected(base, named, usable.runs),
         ranking=rank_alone(workspace, nothing, found.fit),
         rivals=rivals, structures=found.structures, refused=found.refused, scale=scale,

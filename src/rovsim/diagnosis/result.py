@@ -9,7 +9,6 @@ from scipy.sparse.csgraph import connected_components
 from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
-from rovsim.diagnosis.checks.left_open import name_parameters
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.equations.describe import (
     describe_force,
@@ -175,7 +174,7 @@ def _describe_posterior(found: TrainDiagnosis) -> Posterior | None:
             Possibility(
                 probability=float(f"{own / (1.0 + sum(odds)):.6g}"),
                 effects=_list_effects(fit),
-                correlation=correlate(fit.covariance, name_parameters(fit.hypothesis)),
+                correlation=correlate(fit.covariance, fit.hypothesis.parameter_names),
             )
             for own, (_, fit) in zip(odds, near, strict=True)
         ),

@@ -135,3 +135,4 @@ def zero_acceleration(vehicle: Vehicle) -> Model:
 
 
 BUILT_IN = {"nominal": nominal, "zero_acceleration": zero_acceleration}
+BASELINES = ("zero_acceleration", "nominal")  # what every comparison of a study begins with

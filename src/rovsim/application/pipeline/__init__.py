@@ -7,6 +7,8 @@ bands             how surely models predict, and what of the test runs lies insi
 error_conditions  under which conditions a model fails
 forces            who pushes how much
 diagnosis         which effects a model lacks
+shown_diagnosis   the same with figures, tracked, while the command goes on
+design            the flight that would tell most
 kept              diagnoses that are found again where nothing changed
 refit             the nominal model's own parameters, fitted
 training          a learned residual on top of a model; how long its predictions take

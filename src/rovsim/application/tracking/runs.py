@@ -18,7 +18,6 @@ from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
 RANKED_BY = "windows_2s"
 # MLflow's page of an experiment: the one for models, not for prompts.
 SHOWN = {"mlflow.experimentKind": "custom_model_development"}
-HORIZONS = (OPEN_LOOP, "0.5", "2", "5")
 PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes for each call
     "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",
     "MLFLOW_HTTP_REQUEST_TIMEOUT": "60",
@@ -81,7 +80,7 @@ def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
     """Metrics by split, horizon, quantity and axis: the mean over runs of comparison.json."""
     found: dict[str, list[float]] = {}
     for run in scores.values():
-        for horizon in HORIZONS:
+        for horizon in (OPEN_LOOP, *run.windows):
             metrics = run.at(horizon)
             for key, value in _flat(metrics) if metrics else ():
                 if value is not None:

@@ -5,7 +5,7 @@ well under 200 ms; Streamlit would run the page again), FastAPI and uvicorn, whi
 anyway, and ECharts, Vue and fonts in its own package, so that nothing is fetched from elsewhere.
 
     app           the page: header, navigation, progress of long work
-    state         what all pages share: the open campaign, long work
+    session       what each browser tab looks at: its campaign, and work
     workbench     the open campaign, and what was computed of it; knows nothing of a browser
     draft         a model being put together from effects
     work          long work in a process of its own; jobs begins it, tasks does it

@@ -171,9 +171,3 @@ def _value_axis(k: int, panel: Panel) -> Options:
         "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -52]},
         "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}},
     }  # fmt: skip
-
-
-def extent(*curves: Array) -> tuple[float, float]:
-    """Lowest and highest known value."""
-    known = np.concatenate([c[np.isfinite(c)] for c in curves] or [np.zeros(1)])
-    return (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)

@@ -1,11 +1,15 @@
 """What is asked of an answer.
 
-residual_structure   does what is left vary with something? (residual, regressors,
-                     spectral_lines, sudden_pushes), where the log says what thrusters did
-                     (unknown_thrust)
-common_scale         does a factor of all forces stay open?
-rest_of_file         what does the rest of a vehicle file that is off leave open? (left_open)
-identifiability      which values are known only together?
-observability        which effects could these runs not show?
-noise_floor          what would a perfect model score?
+residual            what is left on one axis, and how a push there would show in it
+unknown_thrust      where the log does not say what the thrusters did
+regressors          does it vary with state, place or time?
+spectral_lines      does it come back?
+sudden_pushes       does it come at once?
+residual_structure  all of these together
+common_scale        does a factor of all forces stay open?
+left_open           what would not be known if further parameters were free
+rest_of_file        what does the rest of a vehicle file that is off leave open?
+identifiability     which values are known only together?
+observability       which effects could these runs not show?
+noise_floor         what would a perfect model score?
 """

@@ -14,7 +14,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.checks.left_open import leave_open, name_parameters
+from rovsim.diagnosis.checks.left_open import leave_open
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
@@ -48,7 +48,7 @@ def include_scale(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonS
     """
     if not _may_share(found.hypothesis, runs):
         return found, None
-    if GAIN_NAME in name_parameters(found.hypothesis):
+    if GAIN_NAME in found.hypothesis.parameter_names:
         return found, describe_fitted_scale(found)
     variance, along = _free_gain(found, runs)
     both = found.covariance + variance * np.outer(along, along)
@@ -58,7 +58,7 @@ def include_scale(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonS
 
 def describe_fitted_scale(found: Fit) -> CommonScale | None:
     """The scale of a fit in which the gain of all thrusters is free; None where it is known."""
-    gain = name_parameters(found.hypothesis).index(GAIN_NAME)
+    gain = found.hypothesis.parameter_names.index(GAIN_NAME)
     variance = float(found.covariance[gain, gain])
     return describe_scale(found, variance, found.covariance[gain] / variance)
 
@@ -74,7 +74,7 @@ def _free_gain(found: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
 
 def describe_scale(found: Fit, variance: float, along: Array) -> CommonScale | None:
     """The scale where it is unknown: `variance` of the gain, and how parameters (k,) follow it."""
-    names, std = name_parameters(found.hypothesis), SCALE * np.sqrt(variance)
+    names, std = found.hypothesis.parameter_names, SCALE * np.sqrt(variance)
     share = variance * along**2 / np.maximum(np.diag(found.covariance), 1e-300)
     moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
     return CommonScale(float(std), tuple(moved)) if std > UNKNOWN and moved else None

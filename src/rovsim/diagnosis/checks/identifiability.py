@@ -15,7 +15,7 @@ DOUBT = 0.01  # chance of values as far from absence
 def group_joint_parameters(found: Fit) -> list[list[str]]:
     """Groups of parameters, as `effect.parameter`, the largest group first."""
     h, std = found.hypothesis, np.maximum(found.std, 1e-12)
-    names = [f"{term.id}.{p.name}" for term in h.terms for p in term.parameters]
+    names = h.parameter_names
     unsure = np.flatnonzero(np.abs(h.x - h.absence) < UNSURE * std)
     correlation = found.covariance / np.outer(std, std)
     alike = np.abs(correlation[np.ix_(unsure, unsure)]) > ALIKE

@@ -36,7 +36,7 @@ def leave_open(found: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> Le
     seen = bank.linearise(freed)
     if not seen.finite:
         return None
-    names, fitted = name_parameters(freed), name_parameters(found.hypothesis)
+    names, fitted = freed.parameter_names, found.hypothesis.parameter_names
     s = [names.index(name) for name in fitted]
     n = [k for k, name in enumerate(names) if name not in fitted]
     J, e = bank.whiten(seen.J, found.noise), bank.whiten(seen.e, found.noise)
@@ -44,8 +44,3 @@ def leave_open(found: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> Le
     H, slope = inner_products(rows), rows @ e.ravel()
     along = -solve(H[np.ix_(s, s)], H[np.ix_(s, n)])
     return LeftOpen(along, H[np.ix_(n, n)] + H[n][:, s] @ along, -slope[n] - along.T @ slope[s])
-
-
-def name_parameters(h: Hypothesis) -> list[str]:
-    """The free parameters, as `effect.parameter`."""
-    return [f"{term.id}.{p.name}" for term in h.terms for p in term.parameters]

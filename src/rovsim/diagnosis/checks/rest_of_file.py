@@ -19,7 +19,7 @@ from rovsim.diagnosis.checks.common_scale import (
     describe_scale,
     include_scale,
 )
-from rovsim.diagnosis.checks.left_open import leave_open, name_parameters
+from rovsim.diagnosis.checks.left_open import leave_open
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
@@ -42,7 +42,7 @@ def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSc
     """
     h = found.hypothesis
     freed = _free_rest(h)
-    further = [name for name in name_parameters(freed) if name not in name_parameters(h)]
+    further = [name for name in freed.parameter_names if name not in h.parameter_names]
     opened = leave_open(found, freed, runs) if is_off(h) and further else None
     if opened is None:
         return include_scale(found, runs)
@@ -60,7 +60,7 @@ def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSc
 
 def _free_rest(h: Hypothesis) -> Hypothesis:
     """With all free that the file states; of the thrusters one gain."""
-    fitted = set(name_parameters(h))
+    fitted = set(h.parameter_names)
     for effect in (built_in()[name] for name in STATED):
         left = tuple(k for k in _list_stated(effect) if f"{effect.id}.{k}" not in fitted)
         if left:
@@ -76,12 +76,11 @@ def _list_stated(effect: type[Effect]) -> Sequence[str]:
 
 def _list_spreads(h: Hypothesis, freed: Hypothesis) -> np.ndarray:
     """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
-    fitted = set(name_parameters(h))
+    known = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
     return np.array(
         [
-            spread_of_file(h.base, type(term.effect), p)
-            for term in freed.terms
-            for p in term.parameters
-            if f"{term.id}.{p.name}" not in fitted
+            spread_of_file(h.base, *one)
+            for name, one in zip(freed.parameter_names, known, strict=True)
+            if name not in h.parameter_names
         ]
     )

@@ -1,1 +1,11 @@
-"""An equation for what no effect of the catalogue explains, or the force in time where none is."""
+"""An equation for what no effect of the catalogue explains, or the force in time where none is.
+
+form         what a law is, whatever it is made of
+products     laws that are sums of products of what acts at the same instant
+with_memory  laws that remember: a wake by axis, play of the thrusters
+effect_file  a law as a file that can be read and edited
+seek         the likeliest law
+proposal     whether it holds, and what it is worth
+disturbance  the force in time, where none does
+describe     either of them as `diagnosis.json` says it
+"""

@@ -9,7 +9,7 @@ camera          does the software of the motion capture smooth what it reports?
 random_walk     pushes that wander: how they show, and how likely they are
 drifting_current  does the water wander?
 autoregression  errors of the readings that last
-small_matrices  algebra on 6 x 6 in compiled code
+axis_kernels    filters of one axis and their likelihoods, compiled
 kalman          the steady filters that suit it, axis by axis
 innovations     many models on one run, in one compiled call
 filter_bank     all runs, each with its filters: innovations, whitened

@@ -113,6 +113,11 @@ class Hypothesis:
         return np.concatenate([np.empty(0), *(term.x for term in self.terms)])
 
     @property
+    def parameter_names(self) -> list[str]:
+        """The free parameters, as `effect.parameter`."""
+        return [f"{term.id}.{p.name}" for term in self.terms for p in term.parameters]
+
+    @property
     def absence(self) -> Array:
         """Their values (k,), scaled, at which they change nothing."""
         return np.array([p.default / p.scale for term in self.terms for p in term.parameters])

@@ -19,13 +19,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.autoregression import Autoregression
-from rovsim.diagnosis.observer.kalman import (
-    AxisFilter,
-    AxisMotion,
-    AxisNoise,
-    design_filter,
-    filter_kept,
-)
+from rovsim.diagnosis.observer.axis_kernels import filter_kept
+from rovsim.diagnosis.observer.kalman import AxisFilter, AxisMotion, AxisNoise, design_filter
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
 from rovsim.simulation.noise_draws import NoiseDraws

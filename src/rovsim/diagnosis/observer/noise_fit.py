@@ -8,12 +8,8 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
-from rovsim.diagnosis.observer.kalman import (
-    AxisFilter,
-    AxisMotion,
-    AxisNoise,
-    negative_log_likelihood,
-)
+from rovsim.diagnosis.observer.axis_kernels import negative_log_likelihood
+from rovsim.diagnosis.observer.kalman import AxisFilter, AxisMotion, AxisNoise
 from rovsim.diagnosis.observer.noise import Noise, Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 

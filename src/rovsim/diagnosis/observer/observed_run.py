@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.remade import Recent
 from rovsim.core.rotations import normalized
-from rovsim.diagnosis.observer.kalman import BIN_MEAN, POSE, SUM
+from rovsim.diagnosis.observer.axis_kernels import BIN_MEAN, POSE, SUM
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView

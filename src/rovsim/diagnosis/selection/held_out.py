@@ -17,7 +17,7 @@ FOLDS = 6
 
 
 def drop_idle(selection: Selection) -> Selection:
-    """Without effects that do not help on held-out number_blocks, or that no user would see."""
+    """Without effects that do not help on held-out blocks, or that no user would see."""
     workspace, found = selection.workspace, selection.found
     while found.hypothesis.terms:
         fewer = [found.hypothesis.without(i) for i in range(len(found.hypothesis.terms))]

@@ -1,11 +1,15 @@
 """What is in files that nobody has described yet.
 
-gather      the files and bags that were named, also by their folder
-sniff       which format a file has, by what stands in it
-look        its motions and what looks like commands, by the readers of `recording`
-headings    csv files whose columns have other names or units: a copy with ours
-grid        rough velocities on an even clock, to compare recordings with
-timing      rates, jitter, gaps
+gather     the files and bags that were named, also by their folder
+sniff      which format a file has, by what stands in it
+contents   what it holds: motions, and what looks like commands
+look       that, by the readers of `recording`
+bags       in ROS 2 bags
+logs       in ArduPilot logs
+csv_files  in csv files
+headings   csv files whose columns have other names or units: a copy with ours
+grid       rough velocities on an even clock, to compare recordings with
+timing     rates, jitter, gaps
 """
 
 from rovsim.measurement.survey.contents import Contents, Drive, Track

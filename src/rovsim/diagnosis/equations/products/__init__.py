@@ -1,1 +1,10 @@
-"""Laws that are sums of products of what acts at the same instant."""
+"""Laws that are sums of products of what acts at the same instant.
+
+variables     of what terms may be made, and on what they act
+library       all terms, and how each would show
+search        which comes next
+as_effect     a law as an effect of a hypothesis
+wording       a law in LaTeX and in words
+kernel_lines  a law as lines of Python
+products      the form of such laws
+"""
