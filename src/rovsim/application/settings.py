@@ -147,9 +147,10 @@ def compose(overrides: Sequence[str]) -> Settings:
 
     from rovsim.application.conf_search import first_folder
 
+    words = [_allow_unlisted(word) for word in overrides]
     try:
         with initialize_config_dir(first_folder(), version_base="1.3"):
-            return settings_of(hydra_compose("config", overrides=list(overrides)))
+            return settings_of(hydra_compose("config", overrides=words))
     except RovsimError:
         raise
     except Exception as error:  # Hydra's own, and what odd words make it stumble over
@@ -159,6 +160,14 @@ def compose(overrides: Sequence[str]) -> Settings:
             expected="key=value with keys of conf/config.yaml and options of its groups",
             remedy=_nearest_override(overrides),
         ) from None
+
+
+def _allow_unlisted(word: str) -> str:
+    """An override of the tank that Hydra takes though no file of `conf/tank` lists its key.
+
+    A tank lists what is special about it; what else there is, `TankSettings` checks.
+    """
+    return f"++{word}" if word.startswith("tank.") else word
 
 
 def _nearest_override(overrides: Sequence[str]) -> str:

@@ -1,0 +1,49 @@
+"""conf/config.yaml, the sections that read it, and the page that explains it say the same."""
+
+from pathlib import Path
+
+import pytest
+
+from rovsim.application.settings import Settings, compose
+from rovsim.core.errors import BadInput
+from rovsim.core.schema import Section
+from rovsim.simulation.synthetic_tank.settings import TankSettings
+
+PAGE = Path(__file__).parents[2] / "docs" / "configuration.md"
+
+
+def with_defaults():
+    """Sections that can be made of nothing: their defaults stand in the code as well."""
+    for name, field in Settings.model_fields.items():
+        kind = field.annotation
+        if isinstance(kind, type) and issubclass(kind, Section) and name != "tank":
+            if not any(own.is_required() for own in kind.model_fields.values()):
+                yield name, kind
+
+
+SECTIONS = dict(with_defaults())
+
+
+def test_there_are_sections_with_defaults():
+    assert {"search", "replay", "design", "study", "blind"} <= set(SECTIONS)
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_defaults_are_the_same_in_conf_and_in_the_code(name):
+    assert getattr(compose([]), name) == SECTIONS[name]()
+
+
+def test_a_tank_takes_keys_that_no_file_lists():
+    assert compose(["tank=tiny", "tank.camera.rate=50"]).tank.camera.rate == 50.0
+    with pytest.raises(BadInput, match="Did you mean 'rate'"):
+        compose(["tank.camera.rat=50"])
+
+
+def test_the_page_names_every_key_of_the_tank():
+    text = PAGE.read_text(encoding="utf-8")
+    for name, field in TankSettings.model_fields.items():
+        kind = field.annotation
+        below = kind.model_fields if isinstance(kind, type) and issubclass(kind, Section) else ()
+        assert f"`tank.{name}" in text, name
+        for own in below:
+            assert f"`tank.{name}.{own}`" in text or f"`.{own}`" in text, f"{name}.{own}"
