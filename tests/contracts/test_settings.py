@@ -16,9 +16,10 @@ def with_defaults():
     """Sections that can be made of nothing: their defaults stand in the code as well."""
     for name, field in Settings.model_fields.items():
         kind = field.annotation
-        if isinstance(kind, type) and issubclass(kind, Section) and name != "tank":
-            if not any(own.is_required() for own in kind.model_fields.values()):
-                yield name, kind
+        if name == "tank" or not isinstance(kind, type) or not issubclass(kind, Section):
+            continue
+        if not any(own.is_required() for own in kind.model_fields.values()):
+            yield name, kind
 
 
 SECTIONS = dict(with_defaults())
