@@ -43,7 +43,7 @@ study: setup
 # Needs the recordings (docs/thesis.md); puts its tables into that page.
 thesis: setup
 	$(BIN)/snakemake --cores $(CORES) --config overrides="+experiment=kth_tank_2025"
-	$(BIN)/python -m rovsim.reporting.html.leave_one_run_out results/kth_tank_2025 docs/thesis.md
+	$(BIN)/python -m rovsim.reporting.pages.leave_one_run_out results/kth_tank_2025 docs/thesis.md
 
 test: setup
 	$(BIN)/python -m pytest -n $(CORES) --dist worksteal

@@ -7,7 +7,7 @@ from rovsim.benchmarks.speed.accuracy import _left
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import Effort, Stopwatch, _neighbours, _processes
 from rovsim.benchmarks.speed.tables import write_markdown, write_page
-from rovsim.reporting.html.marked import BEGIN, END
+from rovsim.reporting.pages.marked import BEGIN, END
 from rovsim.results.timing import Bench
 
 FEW = Effort(calls=5, warmup=1, seconds=0.05)

@@ -27,7 +27,7 @@ from rovsim.dynamics.effects.dry_friction import DryFriction
 from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.dynamics.model_file import EffectEntry, build_effect
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.reporting.html.marked import BEGIN, END, replace_tables
+from rovsim.reporting.pages.marked import BEGIN, END, replace_tables
 from rovsim.results.blind_benchmark import BlindSummary
 from rovsim.results.diagnosis import Answer, Diagnosis, DiagnosisErrors, Proposal
 from synthetic_study import diagnosis as written_diagnosis

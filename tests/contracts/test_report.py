@@ -15,13 +15,15 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.formula import mathml
-from rovsim.reporting.html import leave_one_run_out, published_errors, report, terminal
-from rovsim.reporting.html.marked import BEGIN, END
-from rovsim.reporting.html.speed import timing_sentences
-from rovsim.reporting.html.verdict import explain, part_sentences
+from rovsim.reporting.html import report
+from rovsim.reporting.pages import against_published, leave_one_run_out
+from rovsim.reporting.pages.marked import BEGIN, END
 from rovsim.reporting.report_data import ReportData, describe
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import explain_model, several, significant, title
+from rovsim.reporting.words import published_errors, terminal
+from rovsim.reporting.words.speed import timing_sentences
+from rovsim.reporting.words.verdict import explain, part_sentences
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import DiagnosisErrors, LookedAt, Unexplained
 from rovsim.results.error_conditions import ErrorConditions
@@ -223,7 +225,7 @@ def test_published_numbers_have_a_section_and_a_page(content, tmp_path):
 
 def test_theirs_and_ours_are_set_against_one_simulator(content):
     found = content["published_errors"]
-    text = "\n".join(published_errors.write_markdown(found)).split("### On one baseline")[1]
+    text = "\n".join(against_published.write_markdown(found)).split("### On one baseline")[1]
     rows = {line.split(" | ")[0].strip("| "): line for line in text.split("###")[0].splitlines()}
     assert rows["published zero_shot"] == "| published zero_shot | 1.00 | 1.00 | 1.00 |"
     ratios = [
@@ -232,7 +234,7 @@ def test_theirs_and_ours_are_set_against_one_simulator(content):
     ]  # fmt: skip
     assert rows["gp_6dof"].split(" | ")[2] == significant(geometric_mean(ratios))
     ours = {name: one for name, one in found.models.items() if "zero_shot" not in name}
-    alone = published_errors.write_markdown(found.model_copy(update={"models": ours}))
+    alone = against_published.write_markdown(found.model_copy(update={"models": ours}))
     assert "baseline" not in "\n".join(alone)
 
 

@@ -11,7 +11,7 @@ import pytest
 from rovsim import __version__
 from rovsim.apps.cli.main import main
 from rovsim.dynamics.catalogue import built_in
-from rovsim.reporting.html.terminal import tell_comparison, tell_diagnosis
+from rovsim.reporting.words.terminal import tell_comparison, tell_diagnosis
 from synthetic_study import study
 
 ROOT = Path(__file__).parents[2]

@@ -38,7 +38,7 @@ from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.forward_selection import search, search_unnoticed
 from rovsim.diagnosis.selection.gate import Gate, keep_apart
 from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
-from rovsim.diagnosis.selection.held_out import drop_idle
+from rovsim.diagnosis.selection.idle_effects import drop_idle
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
     Named,

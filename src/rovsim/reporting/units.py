@@ -2,4 +2,6 @@
 
 VELOCITY = ("u", "v", "w", "p", "q", "r")  # Fossen's letters
 VELOCITY_UNITS = ("m/s",) * 3 + ("rad/s",) * 3
+FORCE = ("X", "Y", "Z", "K", "M", "N")
+FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
 ACCELERATION_UNITS = ("m/s²",) * 3 + ("rad/s²",) * 3

@@ -78,6 +78,11 @@ def fit(error: float) -> float:
     return 100.0 * (1.0 - error)
 
 
+def known(value: float | None) -> str:
+    """A number as `significant` writes it, and a dash for what is not known."""
+    return "–" if value is None else significant(value)
+
+
 def significant(value: float, digits: int = 3) -> str:
     """Return `value` to so many significant figures, without an exponent where it is readable."""
     if not math.isfinite(value):

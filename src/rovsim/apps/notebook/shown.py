@@ -16,10 +16,10 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
-from rovsim.reporting.html.verdict import explain
 from rovsim.reporting.report_data import ONCE, PER_RUN, ReportData, select_arguments
 from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import title
+from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis

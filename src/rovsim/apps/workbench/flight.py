@@ -25,7 +25,7 @@ from rovsim.core.errors import RovsimError
 from rovsim.core.schema import checked
 from rovsim.design.settings import Question
 from rovsim.dynamics.model_file import describe_effect
-from rovsim.reporting.html.experiment import size_of_odds, tell_limits, tell_share
+from rovsim.reporting.words.experiment import size_of_odds, tell_limits, tell_share
 from rovsim.results.experiment import Experiment
 
 TITLE, QUESTION = "Flight", "Which flight would tell most?"

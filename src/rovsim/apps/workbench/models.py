@@ -34,9 +34,9 @@ from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.figures.palette import FAMILIES
-from rovsim.reporting.html.verdict import interval
 from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import significant
+from rovsim.reporting.words.verdict import interval
 from rovsim.results.comparison import OPEN_LOOP, Metrics
 from rovsim.results.fitted import FittedValue
 

@@ -16,13 +16,12 @@ from rovsim.core.rotations import to_euler
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.palette import Look
-from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
+from rovsim.reporting.units import ACCELERATION_UNITS, FORCE_UNITS, VELOCITY_UNITS
 from rovsim.simulation.bands import Band
 from rovsim.simulation.prediction import Prediction
 
 Span = tuple[float | None, float | None]  # s, part of a run; None: from its start, to its end
 POSE_UNITS = ("m",) * 3 + ("rad",) * 3
-WRENCH_UNITS = ("N",) * 3 + ("N m",) * 3
 QUANTITIES = {
     "nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS),
     "eta": ("position and attitude", POSE_UNITS),
@@ -93,9 +92,7 @@ def panels(
         )
         if thrust is not None:
             push = {"commanded": thrust[:, k]}
-            found.append(
-                Panel(f"{axis}: thrust by the commands", WRENCH_UNITS[k], push, short=True)
-            )
+            found.append(Panel(f"{axis}: thrust by the commands", FORCE_UNITS[k], push, short=True))
     return found
 
 

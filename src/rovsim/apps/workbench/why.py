@@ -25,7 +25,7 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.reporting.html.verdict import Missing, explain, interval, percent
+from rovsim.reporting.words.verdict import Missing, explain, interval, percent
 from rovsim.results.diagnosis import Diagnosis, DiagnosisErrors
 
 TITLE, QUESTION = "Why", "Which physics is missing?"

@@ -5,7 +5,7 @@ from typing import Mapping, Sequence
 from rovsim.benchmarks.blind.case import SEEDS
 from rovsim.benchmarks.blind.pictures import RANKS, RELIABILITY
 from rovsim.core.schema import Section
-from rovsim.reporting.html import marked
+from rovsim.reporting.pages import marked
 from rovsim.results.blind_benchmark import (
     BlindSummary,
     Calibration,

@@ -5,7 +5,7 @@ from typing import Mapping, Sequence
 
 from rovsim.benchmarks.speed.plots import draw_accuracy, draw_sizes
 from rovsim.reporting.figures.style import save
-from rovsim.reporting.html.marked import replace_tables, table
+from rovsim.reporting.pages.marked import replace_tables, table
 from rovsim.reporting.wording import significant
 from rovsim.results.timing import Accuracy, Bench, Latency
 

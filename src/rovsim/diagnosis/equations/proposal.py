@@ -19,7 +19,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.held_out import cross_validate
+from rovsim.diagnosis.selection.idle_effects import cross_validate
 from rovsim.diagnosis.selection.ranking import Named, name_terms
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.base import Effect

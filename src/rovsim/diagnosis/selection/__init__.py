@@ -10,7 +10,7 @@ loose_file         a special effect beside a vehicle file that may be off everyw
 rivals             where that ended, and what else the effects could be
 smoothed           beside what the camera does
 gate               stretches that took no part must be replayed no worse
-held_out           what does not help where it was not fitted goes
+idle_effects       what does not help where it was not fitted goes
 joint_fit          much is missing at once: all that could be wrong, then pruned
 nominal_terms      what the vehicle file states, as terms that may be wrong
 nominal_refit      the same, fitted alone: a step of the ladder to compare with

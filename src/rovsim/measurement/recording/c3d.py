@@ -12,11 +12,17 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.foreign import read_by
-from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader, orthonormal
+from rovsim.measurement.recording.readers import (
+    Export,
+    choose_body,
+    finite_rows,
+    mocap_reader,
+    orthonormal,
+)
 
 BLOCK, KEY = 512, 0x50
 INTEL, SUN = 84, 86  # processor types; 85 is DEC, with floats of its own
@@ -60,7 +66,7 @@ def read_c3d(path: Path, mocap: Mocap) -> Export:
     with read_by("C3D", path, "a whole C3D file", RE_EXPORT):
         content = _open(path)
         names = _bodies(content)
-        body = _body(content, names, mocap.body)
+        body = names.index(choose_body(names, mocap.body, content.path))
         rate = content.number("ROTATION:RATE")
         if not (np.isfinite(rate) and rate > 0):
             raise _refused(path, f"ROTATION:RATE is {rate:g}", "the capture rate in Hz")
@@ -131,19 +137,6 @@ def _bodies(content: Content) -> list[str]:
     if used < 1:
         raise _refused(content.path, "no rigid bodies", "at least one in ROTATION:USED")
     return [labels[k] if k < len(labels) else f"body {k + 1}" for k in range(used)]
-
-
-def _body(content: Content, names: list[str], name: str) -> int:
-    if name in names:
-        return names.index(name)
-    if not name and len(names) == 1:
-        return 0
-    raise BadInput(
-        f"no rigid body '{name}'; the file has {', '.join(names)}",
-        where=content.path,
-        expected="the body named by 'mocap.body' in campaign.yaml",
-        remedy=nearest(name, names),
-    )
 
 
 def _rotations(content: Content, used: int) -> tuple[Array, int]:

@@ -9,12 +9,13 @@ import numpy as np
 import scipy
 from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 from rovsim.core.rotations import conjugate, multiply, rotate
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.readers import (
     Export,
+    choose_body,
     finite_rows,
     mocap_reader,
     unit_quaternions,
@@ -151,16 +152,8 @@ def _bodies(
 
 
 def _body(path: Path, layout: Layout, name: str) -> tuple[list[int], list[int]]:
-    bodies = layout.bodies
-    chosen = name or (next(iter(bodies)) if len(bodies) == 1 else "")
-    if chosen not in bodies:
-        raise BadInput(
-            f"no rigid body '{name}'; the file has {', '.join(bodies) or 'none'}",
-            where=path,
-            expected="the body named by 'mocap.body' in campaign.yaml",
-            remedy=nearest(name, bodies),
-        )
-    turns, places = bodies[chosen]
+    chosen = choose_body(tuple(layout.bodies), name, path)
+    turns, places = layout.bodies[chosen]
     if len(places) != 3 or len(turns) not in (3, 4):
         raise BadInput(
             f"{len(turns)} columns of rotation and {len(places)} of position for '{chosen}'",

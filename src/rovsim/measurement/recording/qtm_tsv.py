@@ -6,11 +6,17 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.readers import Export, finite_rows, mocap_reader, orthonormal
+from rovsim.measurement.recording.readers import (
+    Export,
+    choose_body,
+    finite_rows,
+    mocap_reader,
+    orthonormal,
+)
 from rovsim.measurement.recording.table import Lines, numbers, split_lines, times, without_cut_line
 
 POSITION = ["X", "Y", "Z"]
@@ -38,7 +44,9 @@ def read_qtm(path: Path, mocap: Mocap) -> Export:
     text = read_text(path)
     lines = text.split("\n")
     layout = _layout(path, lines)
-    body = _body(path, layout, mocap.body)
+    body = layout.bodies[
+        choose_body(tuple(layout.bodies), mocap.body, f"{path}, line {layout.line + 1}")
+    ]
     rows = split_lines(path, lines, layout.line, layout.names, "\t", ended=text.endswith("\n"))
     places = [body[name] for name in [*POSITION, *ROTATION]]
     table, cut = without_cut_line(_without_events(rows), places)
@@ -123,17 +131,6 @@ def _no_columns(path: Path, line: int, missing: list[str], body: str) -> BadInpu
         where=f"{path}, line {line + 1}",
         expected="X, Y, Z and Rot[0] to Rot[8] for every body",
         remedy=RE_EXPORT,
-    )
-
-
-def _body(path: Path, layout: Layout, name: str) -> dict[str, int]:
-    if name in layout.bodies:
-        return layout.bodies[name]
-    raise BadInput(
-        f"no rigid body '{name}'; the file has {', '.join(layout.bodies) or 'none'}",
-        where=f"{path}, line {layout.line + 1}",
-        expected="the body named by 'mocap.body' in campaign.yaml",
-        remedy=nearest(name, layout.bodies),
     )
 
 

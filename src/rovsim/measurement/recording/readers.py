@@ -4,7 +4,7 @@ import pkgutil
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import Callable, Mapping, TypeVar
+from typing import Callable, Mapping, Sequence, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -25,6 +25,24 @@ KIND: dict[str, CommandKind] = {
     "demand": "demand",
     "wrench": "wrench",
 }
+
+
+def choose_body(names: Sequence[str], wanted: str, where: Path | str) -> str:
+    """The body of a file that holds several: the one that is wanted, or the only one.
+
+    Raises:
+        BadInput: it has none of that name, or several and none was named.
+    """
+    if wanted in names:
+        return wanted
+    if not wanted and len(names) == 1:
+        return names[0]
+    raise BadInput(
+        f"no rigid body '{wanted}'; the file has {', '.join(names) or 'none'}",
+        where=where,
+        expected="the body named by 'mocap.body' in campaign.yaml",
+        remedy=nearest(wanted, names),
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.panels import plot_all, six_panels
 from rovsim.reporting.figures.series import excerpt
 from rovsim.reporting.figures.style import styled
+from rovsim.reporting.units import FORCE, FORCE_UNITS
 from rovsim.reporting.wording import significant
 
 SECTION = "where"
@@ -19,8 +20,6 @@ CAPTION = (
     "(M a_res, black). Where a part looks like the missing force, turned over or not, the model "
     "has too much or too little of it. Smaller parts are left out."
 )
-UNITS = ("N",) * 3 + ("N m",) * 3
-LETTERS = ("X", "Y", "Z", "K", "M", "N")
 SHOWN = 7  # parts drawn
 LENGTH = 20.0  # s: forces change faster than velocities
 SMOOTH = 0.5  # s: the missing force is twice differentiated noise before
@@ -44,7 +43,7 @@ def draw(*, time: Array, parts: Mapping[str, Array], missing: Array) -> Figure:
     curves = {n: np.where(known[:, None], v, np.nan) for n, v in curves.items()}
     at = excerpt(time, np.where(known[:, None], parts.get("thrusters", missing), np.nan), LENGTH)
     style = {"missing": Look("#000000", "-", width=1.5), **_looks(names)}
-    figure, axes = six_panels(LETTERS, UNITS)
+    figure, axes = six_panels(FORCE, FORCE_UNITS)
     drawn = {n: v[at] for n, v in curves.items()}
     remarks = plot_all(axes, time[at], _common(drawn), style)
     for k, axis in enumerate(axes):

@@ -11,6 +11,7 @@ from rovsim import AXES
 from rovsim.reporting.figures.legends import note, nothing
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
+from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import short
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis, Disturbance, ForceOfRun, Push
@@ -22,7 +23,6 @@ CAPTION = (
 )
 COLORS = "cividis"  # as bright in grey as in colour
 BETWEEN = 0.2  # s: lines of a force are as far apart
-UNITS = ("N",) * 3 + ("N m",) * 3
 
 
 @styled()
@@ -44,7 +44,10 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
         _draw_time(time, run, i, most, force)
     panels[-1][1].set_xlabel("time (s)")
     figure.colorbar(
-        ScalarMappable(scale, COLORS), ax=panels[:, 0], label=f"{axis} ({UNITS[i]})", shrink=0.7
+        ScalarMappable(scale, COLORS),
+        ax=panels[:, 0],
+        label=f"{axis} ({FORCE_UNITS[i]})",
+        shrink=0.7,
     )
     low, high = force.band_hz
     note(figure, [f"Train runs; four fifths of its power between {low:.2g} and {high:.2g} Hz."])
@@ -80,4 +83,4 @@ def _draw_time(axes: Any, run: ForceOfRun, i: int, most: float, force: Disturban
         color=FAMILIES["nominal"].color, markersize=8,
     )  # fmt: skip
     axes.set_ylim(-1.1 * most, 1.1 * most)
-    axes.set_ylabel(f"{AXES[i]} ({UNITS[i]})")
+    axes.set_ylabel(f"{AXES[i]} ({FORCE_UNITS[i]})")

@@ -15,9 +15,6 @@ from rovsim.core.mappings import leaves
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, kind
 from rovsim.reporting.formula import mathml
-from rovsim.reporting.html.published_errors import tell_pitfalls, tell_standings
-from rovsim.reporting.html.sentences import summarize
-from rovsim.reporting.html.verdict import explain
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import (
     Table,
@@ -26,6 +23,9 @@ from rovsim.reporting.tables import (
     tabulate_published_errors,
 )
 from rovsim.reporting.wording import explain_model, several, significant, title
+from rovsim.reporting.words.published_errors import tell_pitfalls, tell_standings
+from rovsim.reporting.words.sentences import summarize
+from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.published_errors import PublishedErrors

@@ -24,7 +24,7 @@ from rovsim.benchmarks.blind.summary import summarize
 from rovsim.benchmarks.blind.tables import write_markdown
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.html.marked import replace_tables
+from rovsim.reporting.pages.marked import replace_tables
 from rovsim.results.blind_benchmark import BlindSummary
 
 

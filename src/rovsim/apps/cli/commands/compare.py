@@ -15,8 +15,8 @@ from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.html.terminal import tell_comparison
 from rovsim.reporting.report_data import PER_RUN
+from rovsim.reporting.words.terminal import tell_comparison
 
 ONCE = ("where", "where_map", "error_by_axis", "error_growth", "excitation")
 

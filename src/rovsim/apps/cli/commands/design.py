@@ -19,7 +19,7 @@ from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.schema import checked
 from rovsim.design.settings import DesignSettings, Question
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.html.experiment import tell_experiment
+from rovsim.reporting.words.experiment import tell_experiment
 
 
 class Settings(CampaignSettings):

@@ -71,7 +71,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             how.model_dump(mode="json"), tracking,
         )  # fmt: skip
 
-        from rovsim.reporting.html.terminal import tell_diagnosis
+        from rovsim.reporting.words.terminal import tell_diagnosis
 
         files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
         text = tell_diagnosis(found.diagnosis, catalogue)

@@ -20,7 +20,7 @@ from rovsim.core.extras import require
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import ARRAYS
-from rovsim.reporting.html.terminal import tell_comparison
+from rovsim.reporting.words.terminal import tell_comparison
 from rovsim.results.error_conditions import ErrorConditions
 
 

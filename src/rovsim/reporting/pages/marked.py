@@ -1,4 +1,4 @@
-"""Pages of docs/ with results in them: tables between two marks, the words around them by hand."""
+"""A page with results in it: tables between two marks, replaced when there are newer ones."""
 
 from pathlib import Path
 from typing import Iterable, Sequence

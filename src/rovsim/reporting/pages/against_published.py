@@ -1,51 +1,13 @@
-"""`published_errors.json`, `pitfalls.json` in words and tables: for the report, docs/thesis.md."""
+"""`published_errors.json` as tables of a page."""
 
-from typing import Mapping
-
-from rovsim.evaluation.held_out.pitfalls import PITFALLS
 from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED, stand
-from rovsim.reporting.html.marked import table
+from rovsim.reporting.pages.marked import table
 from rovsim.reporting.tables import QUANTITIES
-from rovsim.reporting.wording import significant, title
-from rovsim.results.ladder import EFFECTS
-from rovsim.results.pitfalls import Cost, Pitfalls
-from rovsim.results.published_errors import ModelStanding, PublishedErrors
+from rovsim.reporting.wording import known, significant
+from rovsim.reporting.words.published_errors import tell_standings
+from rovsim.results.published_errors import PublishedErrors
 
 SIMULATOR = f"{PUBLISHED}zero_shot"  # theirs without a residual: what any gain is measured from
-
-
-def tell_standings(published_errors: PublishedErrors) -> list[str]:
-    """One sentence for each residual on top of effects: how many cells, how far, which not."""
-    models = published_errors.models
-    return [_sentence(n, found) for n, found in models.items() if n.startswith(f"{EFFECTS}+")]
-
-
-def _sentence(name: str, found: ModelStanding) -> str:
-    missed = ", ".join(
-        f"{c.run} {c.axis} {QUANTITIES[c.metric][0]} ({_number(c.ratio)})" for c in found.not_below
-    )
-    return (
-        f"{title(name)}: {found.below} of {found.cells} cells below the mark, geometric mean of "
-        f"the ratios {_number(found.geometric_mean)}. "
-        + (f"Not below: {missed}." if missed else "")
-    ).strip()
-
-
-def tell_pitfalls(pitfalls: Pitfalls) -> list[str]:
-    """One sentence for each mistake: what was done, and what it cost on each run."""
-    return [
-        f"{name[0].upper()}{name[1:]}: {done}. {measure[0].upper()}{measure[1:]}: {costs}."
-        for name, (done, measure) in PITFALLS.items()
-        if (costs := _costs(pitfalls.runs, name))
-    ]
-
-
-def _costs(runs: Mapping[str, Mapping[str, Cost]], name: str) -> str:
-    return ", ".join(
-        f"{_number(found[name].right)} becomes {_number(found[name].wrong)} ({run})"
-        for run, found in runs.items()
-        if name in found
-    )
 
 
 def write_markdown(published_errors: PublishedErrors) -> list[str]:
@@ -61,8 +23,8 @@ def _standings(published_errors: PublishedErrors) -> str:
     head = ["model", "below the mark", "geometric mean of the ratios",
             *(QUANTITIES[metric][0] for metric in METRICS)]  # fmt: skip
     rows = [
-        [name, f"{found.below} of {found.cells}", _number(found.geometric_mean),
-         *(_number(found.by_metric[m].geometric_mean) for m in METRICS)]
+        [name, f"{found.below} of {found.cells}", known(found.geometric_mean),
+         *(known(found.by_metric[m].geometric_mean) for m in METRICS)]
         for name, found in published_errors.models.items()
     ]  # fmt: skip
     return table(head, rows)
@@ -73,7 +35,7 @@ def _on_one_baseline(published_errors: PublishedErrors) -> list[str]:
     if SIMULATOR not in published_errors.models:
         return []
     rows = [
-        [name, *(_number(_against_simulator(published_errors, name, metric)) for metric in METRICS)]
+        [name, *(known(_against_simulator(published_errors, name, metric)) for metric in METRICS)]
         for name in published_errors.models
     ]
     return [
@@ -98,7 +60,7 @@ def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
     rows = [
         [cell.run, cell.axis if cell.demanded else f"({cell.axis})",
          significant(cell.mark), f"{cell.best.model}, {cell.best.variant}",
-         *(_number(cell.ratios.get(name)) for name in ours)]
+         *(known(cell.ratios.get(name)) for name in ours)]
         for cell in published_errors.cells if cell.metric == metric
     ]  # fmt: skip
     extra = "" if metric in COUNTED else ", not counted above"
@@ -108,7 +70,3 @@ def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
         f"The mark in {units_text}, whose it is, and our errors divided by it{extra}.",
         table(["run", "axis", "mark", "smallest published", *ours], rows),
     ]
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else significant(value)

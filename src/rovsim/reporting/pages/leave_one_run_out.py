@@ -1,6 +1,6 @@
 """The tables of docs/thesis.md, from the results of a study that held each run out once.
 
-python -m rovsim.reporting.html.leave_one_run_out results/kth_tank_2025 docs/thesis.md
+python -m rovsim.reporting.pages.leave_one_run_out results/kth_tank_2025 docs/thesis.md
 """
 
 import argparse
@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Iterator, Mapping, Sequence
 
 from rovsim.core.errors import RovsimError
-from rovsim.reporting.html.marked import replace_tables, table
-from rovsim.reporting.html.published_errors import tell_pitfalls, write_markdown
-from rovsim.reporting.html.speed import timing_sentences
-from rovsim.reporting.html.verdict import differs_from_zero, interval
+from rovsim.reporting.pages.against_published import write_markdown
+from rovsim.reporting.pages.marked import replace_tables, table
+from rovsim.reporting.words.published_errors import tell_pitfalls
+from rovsim.reporting.words.speed import timing_sentences
+from rovsim.reporting.words.verdict import differs_from_zero, interval
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedValue
 from rovsim.results.pitfalls import Pitfalls

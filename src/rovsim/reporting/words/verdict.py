@@ -7,6 +7,7 @@ from typing import Mapping, Sequence
 
 from rovsim import AXES
 from rovsim.dynamics.effects.base import Effect, Wander
+from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import listed, significant
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
@@ -194,15 +195,14 @@ def _disturbance_sentences(found: Diagnosis) -> list[str]:
     if force is None:
         return []
     low, high = force.band_hz
-    sizes = [f"{a} {significant(or_nan(force.rms[a]), 2)} {_unit(a)}" for a in force.axes]
+    sizes = [
+        f"{a} {significant(or_nan(force.rms[a]), 2)} {FORCE_UNITS[AXES.index(a)]}"
+        for a in force.axes
+    ]
     said = f"No law was found for it: a disturbance of {listed(sizes)} (RMS)."
     said += f" Most of its power lies between {low:.2g} and {high:.2g} Hz."
     times = [f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MOST_PUSHES]]
     return [said + (f" It was strongest at {listed(times)}." if times else "")]
-
-
-def _unit(axis: str) -> str:
-    return "N" if axis in AXES[:3] else "N m"
 
 
 def still_sentences(axes: Sequence[str]) -> list[str]:

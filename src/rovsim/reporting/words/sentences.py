@@ -9,10 +9,10 @@ from pandas import DataFrame, Series
 from rovsim import AXES
 from rovsim.reporting.figures.palette import RESIDUALS, family
 from rovsim.reporting.figures.pooled import pool, relate
-from rovsim.reporting.html.speed import timing_sentences
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import listed, significant, title
+from rovsim.reporting.words.speed import timing_sentences
 from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 from rovsim.results.quality import Quality

@@ -4,9 +4,9 @@ import textwrap
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.html.sentences import band_sentences
-from rovsim.reporting.html.verdict import NO_TEST, Missing, explain
 from rovsim.reporting.wording import fit, several, significant, title
+from rovsim.reporting.words.sentences import band_sentences
+from rovsim.reporting.words.verdict import NO_TEST, Missing, explain
 from rovsim.results.bands import Bands
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis

@@ -1,0 +1,9 @@
+"""What numbers say, in plain language: one statement for terminal, report, workbench and notebook.
+
+verdict           what a diagnosis found
+sentences         the report's summary
+speed             what the timing says about control loops
+published_errors  folds beside published errors, pitfalls
+experiment        what a designed flight promises
+terminal          what `compare` and `diagnose` say when they are done
+"""

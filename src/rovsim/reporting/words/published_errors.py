@@ -1,0 +1,43 @@
+"""`published_errors.json` and `pitfalls.json` in words: for the report, docs/thesis.md."""
+
+from typing import Mapping
+
+from rovsim.evaluation.held_out.pitfalls import PITFALLS
+from rovsim.reporting.tables import QUANTITIES
+from rovsim.reporting.wording import known, title
+from rovsim.results.ladder import EFFECTS
+from rovsim.results.pitfalls import Cost, Pitfalls
+from rovsim.results.published_errors import ModelStanding, PublishedErrors
+
+
+def tell_standings(published_errors: PublishedErrors) -> list[str]:
+    """One sentence for each residual on top of effects: how many cells, how far, which not."""
+    models = published_errors.models
+    return [_sentence(n, found) for n, found in models.items() if n.startswith(f"{EFFECTS}+")]
+
+
+def _sentence(name: str, found: ModelStanding) -> str:
+    missed = ", ".join(
+        f"{c.run} {c.axis} {QUANTITIES[c.metric][0]} ({known(c.ratio)})" for c in found.not_below
+    )
+    return (
+        f"{title(name)}: {found.below} of {found.cells} cells below the mark, geometric mean of "
+        f"the ratios {known(found.geometric_mean)}. " + (f"Not below: {missed}." if missed else "")
+    ).strip()
+
+
+def tell_pitfalls(pitfalls: Pitfalls) -> list[str]:
+    """One sentence for each mistake: what was done, and what it cost on each run."""
+    return [
+        f"{name[0].upper()}{name[1:]}: {done}. {measure[0].upper()}{measure[1:]}: {costs}."
+        for name, (done, measure) in PITFALLS.items()
+        if (costs := _costs(pitfalls.runs, name))
+    ]
+
+
+def _costs(runs: Mapping[str, Mapping[str, Cost]], name: str) -> str:
+    return ", ".join(
+        f"{known(found[name].right)} becomes {known(found[name].wrong)} ({run})"
+        for run, found in runs.items()
+        if name in found
+    )
