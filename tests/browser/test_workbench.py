@@ -4,6 +4,7 @@ import itertools
 import json
 import re
 import shutil
+from xml.etree import ElementTree
 
 import pytest
 import yaml
@@ -574,6 +575,13 @@ def test_a_chart_is_kept_as_a_picture_and_as_values(tab):
     with tab.page.expect_download() as picture:
         tab.page.get_by_role("button", name="PNG: ").click()
     assert picture.value.path().read_bytes().startswith(b"\x89PNG")
+    with tab.page.expect_download() as lines:
+        tab.page.get_by_role("button", name="SVG: ").click()
+    drawn = ElementTree.fromstring(lines.value.path().read_text())
+    assert drawn.tag.endswith("svg")
+    words = {"".join(text.itertext()) for text in drawn.iter() if text.tag.endswith("text")}
+    assert any("measured" in word for word in words)
+    assert len([one for one in drawn.iter() if one.tag.endswith("path")]) > 10
     with tab.page.expect_download() as values:
         tab.page.get_by_role("button", name="CSV: ").click()
     head, *rows = values.value.path().read_text().splitlines()

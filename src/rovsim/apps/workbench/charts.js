@@ -1,4 +1,4 @@
-/* A chart to keep: its picture, or every value of it; `x` and `y` of a bar or a field are its names. */
+/* A chart to keep: its picture, as pixels or as lines, or every value of it; `x` and `y` of a bar or a field are its names. */
 function saveFile(url, name) {
   const link = document.createElement("a");
   link.href = url;
@@ -8,6 +8,18 @@ function saveFile(url, name) {
 
 function savePicture(chart) {
   saveFile(chart.getDataURL({pixelRatio: 2, backgroundColor: "#fff"}), "rovsim.png");
+}
+
+// Drawn once more as lines and letters: for a thesis, at any size. The page's charts are pixels.
+async function saveVectors(chart) {
+  const { echarts } = await import("nicegui-echart");
+  const size = {width: chart.getWidth(), height: chart.getHeight()};
+  const copy = echarts.init(null, null, {renderer: "svg", ssr: true, ...size});
+  copy.setOption({...chart.getOption(), animation: false, backgroundColor: "#fff"});
+  const url = URL.createObjectURL(new Blob([copy.renderToSVGString()], {type: "image/svg+xml"}));
+  saveFile(url, "rovsim.svg");
+  URL.revokeObjectURL(url);
+  copy.dispose();
 }
 
 function saveValues(chart) {

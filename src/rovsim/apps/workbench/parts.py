@@ -15,7 +15,8 @@ from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
-SAVE = {"PNG": "savePicture", "CSV": "saveValues"}  # functions of charts.js
+# Functions of charts.js
+SAVE = {"PNG": "savePicture", "SVG": "saveVectors", "CSV": "saveValues"}
 
 # One thread computes: it uses all cores, and what was asked for first is shown first.
 _thread = ThreadPoolExecutor(1)
