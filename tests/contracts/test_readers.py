@@ -21,6 +21,7 @@ from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality import assess, usable_reason
 from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.readers import command_readers, mocap_readers
+from rovsim.measurement.survey.look import BODIES, OTHERS
 
 every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
 every_text = pytest.mark.parametrize("name", sorted(TEXT))
@@ -29,6 +30,7 @@ every_text = pytest.mark.parametrize("name", sorted(TEXT))
 def test_the_formats_of_this_version_are_registered():
     assert set(command_readers()) >= {"csv", "rosbag2", "ardupilot"}
     assert set(mocap_readers()) == set(FORMATS)
+    assert set(mocap_readers()) == {*BODIES, *OTHERS}  # what `rovsim init` can look into
 
 
 def swum(recording):
