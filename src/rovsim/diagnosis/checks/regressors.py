@@ -1,6 +1,6 @@
 """What a force nobody named might vary with, and whether the remainder does."""
 
-from itertools import combinations
+from itertools import combinations, product
 from typing import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -47,6 +47,10 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
         found[f"attitude ({name})"] = x - np.mean(x)
     for name, x in zip(("north", "east", "down"), np.swapaxes(R, 1, 2)[:, :, 0].T, strict=True):
         found[f"heading ({name})"] = x
+    # water that streams otherwise in another place, or a force there, seen from a body that turns
+    for heading, side in product(("north", "east"), repeat=2):
+        along = found[f"place along {side}"] * found[f"heading ({heading})"]
+        found[f"place along {side} times heading ({heading})"] = along
     return found
 
 
