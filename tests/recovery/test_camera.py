@@ -24,6 +24,13 @@ def test_a_filter_in_the_software_is_found_by_the_noise(tmp_path, cutoff):
     assert find_smoothing(base + PoseFilter(cutoff=cutoff), runs) is None  # nothing is left to find
 
 
+def test_a_vehicle_that_tumbles_is_not_smoothed(tmp_path):
+    """Two thrusters swapped: its motion, not its software, falls off steeply above some Hz."""
+    swapped = EffectEntry(effect="thruster_order", parameters={"first": 5.0, "second": 8.0})
+    base, runs = observed(tmp_path, duration=60.0, effects=(swapped,))
+    assert find_smoothing(base, runs) is None
+
+
 @pytest.mark.parametrize("colour", [0.0, 0.3e-3])
 def test_cameras_that_do_not_smooth_are_not_said_to(tmp_path, colour):
     camera = Camera(colour_noise=colour, colour_attitude=3.0 * colour)

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Callable, Sequence
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.checks.common_scale import CommonScale
@@ -165,7 +166,7 @@ def _diagnose(
             named.append(name_drift(drift))
     return TrainDiagnosis(
         base, usable, found.fit,
-        correlate(wider.covariance, wider.hypothesis.parameter_names),
+        _correlate(wider),
         rank_selected(base, named, usable.runs),
         ranking=rank_alone(workspace, nothing, found.fit),
         rivals=rivals, structures=found.structures, refused=found.refused, scale=scale,
@@ -173,6 +174,13 @@ def _diagnose(
         proposed=proposed,
         disturbance=None if proposed else _trace(found),
     )  # fmt: skip
+
+
+def _correlate(found: Fit) -> Correlation:
+    """How values hang together; nothing is said where a fit does not know it."""
+    if not np.isfinite(found.covariance).all():
+        return Correlation()
+    return correlate(found.covariance, found.hypothesis.parameter_names)
 
 
 def _observe(

@@ -24,6 +24,7 @@ LOWEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 SEGMENT = 2.56  # s of each periodogram
 FEWEST = 8  # frequencies, to tell a shape
 SURE = 30.0  # in twice the log likelihood: odds of a million to one, for no effect depends on it
+KNOWN = 0.15  # of the cutoff: software at 6 Hz is known to 0.03 of it in four minutes
 SLOWEST, FASTEST = 0.5, 0.5  # Hz, and of the highest frequency there is: what can be told
 STEP = 0.05  # of the logarithm, for the curvature
 # What is left of the motion falls off at least as fast as a force without memory moves a mass; the
@@ -109,7 +110,10 @@ def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None
     bend = (cost(x + STEP) + cost(x - STEP) - 2.0 * least) / STEP**2
     if gain < SURE or bend <= 0.0 or np.exp(x) > 0.98 * highest:
         return None
-    return Smoothing(float(np.exp(x)), float(np.exp(x) / np.sqrt(bend)), gain)
+    found = Smoothing(float(np.exp(x)), float(np.exp(x) / np.sqrt(bend)), gain)
+    # far below what is looked at a filter only makes the motion fall off more steeply, as it does
+    # by itself where a vehicle tumbles: its cutoff is then hardly known
+    return found if found.std < KNOWN * found.cutoff else None
 
 
 def _measure(base: Model, run: ObservedRun) -> list[_Spectrum]:

@@ -225,8 +225,11 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
         if found is None:
             break
         gained = workspace.score(found) - workspace.score(current)
-        workspace = workspace.renew(found)
-        again = workspace.fit(found.hypothesis)
+        fresh = workspace.renew(found)
+        again = fresh.fit(found.hypothesis)
+        if not np.isfinite(again.likelihood):  # filters that suit it cannot hold it
+            break
+        workspace = fresh
         swap = max(SWAP, SLIGHT * gained)
         current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
     workspace = workspace.look_again(current)
