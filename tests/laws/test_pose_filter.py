@@ -1,6 +1,7 @@
 """Software that smooths poses: its inverse, its delay, and replay and training behind it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from rovsim.core.rotations import exp, log, multiply, normalized
+from rovsim.diagnosis.observer.camera import Smoothing
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.smoothed import absorb_delay, seen_through
+from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.sensing import MarkerOffset, WorldTilt
 from rovsim.dynamics.effects.thrusters import ThrusterLag
@@ -171,3 +177,17 @@ def test_binned_recordings_are_turned_back_too():
     inside = slice(5, -5)
     late, back = (np.abs(one.state_nu - true[:-1:10, 7:])[inside] for one in (bins, seen))
     assert back.mean() < 0.3 * late.mean()
+
+
+@pytest.mark.parametrize(("likelihood", "absorbed"), [(10.0, True), (-np.inf, False)])
+def test_a_delay_is_the_filters_unless_nothing_can_be_observed_behind_it(likelihood, absorbed):
+    smoothing, base = Smoothing(cutoff=6.0, std=0.3, gain=100.0), model()
+    delayed = Term(InputDelay(delay=0.001), ("delay",))
+    h = Hypothesis(seen_through(base, smoothing), (delayed,))
+    found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
+    rest = SimpleNamespace(likelihood=likelihood)
+    workspace = SimpleNamespace(fit=lambda start: rest)
+    selection = Selection(workspace, found, (), complete=True)
+    again, finer = absorb_delay(selection, base, smoothing)
+    assert (again.found is rest) is absorbed
+    assert (finer.cutoff != smoothing.cutoff) is absorbed

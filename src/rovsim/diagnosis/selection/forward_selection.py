@@ -225,11 +225,8 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
         if found is None:
             break
         gained = workspace.score(found) - workspace.score(current)
-        fresh = workspace.renew(found)
-        again = fresh.fit(found.hypothesis)
-        if not np.isfinite(again.likelihood):  # filters that suit it cannot hold it
-            break
-        workspace = fresh
+        workspace = workspace.renew(found)
+        again = workspace.fit(found.hypothesis)
         swap = max(SWAP, SLIGHT * gained)
         current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
     workspace = workspace.look_again(current)

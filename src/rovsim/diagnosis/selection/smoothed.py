@@ -43,4 +43,7 @@ def absorb_delay(
     std = found.std[column] * h.terms[k].parameters[0].scale
     finer = replace(smoothing, cutoff=cutoff, std=float(np.pi * cutoff**2 * std))
     rest = Hypothesis(seen_through(base, finer), h.without(k).terms)
-    return replace(selection, found=selection.workspace.fit(rest)), finer
+    again = selection.workspace.fit(rest)
+    if not np.isfinite(again.likelihood):  # undone, so slow a filter makes more than was there
+        return selection, smoothing
+    return replace(selection, found=again), finer
