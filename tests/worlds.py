@@ -92,7 +92,7 @@ def sticks(seed: int = 0, rows: int = 20) -> np.ndarray:
 
 def write_and_read(form, law, folder):
     """The file of a law that is proposed as a class, and that with the law's values."""
-    numbers = form.list_numbers(law, [0.1] * len(law.free))
+    numbers = form.list_numbers(law, dict.fromkeys(law.free, 0.1))
     path = folder / "proposed_effect.py"
     path.write_text(form.write("proposed_effect", law, numbers, "A test."), "utf-8")
     cls = read_effects(path, built_in())["proposed_effect"]

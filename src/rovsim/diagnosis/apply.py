@@ -1,7 +1,7 @@
 """A model file from a diagnosis."""
 
 from pathlib import Path
-from typing import Container, Sequence
+from typing import Container, NamedTuple, Sequence
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import checked
@@ -21,13 +21,21 @@ from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect
 
 
+class Added(NamedTuple):
+    """A model with effects of a diagnosis, their ids, and whether its base was `diagnosed`."""
+
+    model: Model
+    names: list[str]
+    diagnosed: bool
+
+
 def add_effects(
     diagnosis: Diagnosis,
     source: Path,
     to: str,
     effects: Sequence[str] | None,
     catalogue: Catalogue,
-) -> tuple[Model, list[str]]:
+) -> Added:
     """The base model and the effects named, or selected, with their fitted values.
 
     Where the catalogue has the effect that the diagnosis proposes, it and what is beside it.
@@ -52,17 +60,13 @@ def add_effects(
     entries = list_entries([fitted[name] for name in names], source)
     there = catalogue.on(vehicle)
     model = extend(base, build_effects(entries, there))
-    return add_uncertainty(model, names, base, diagnosis, source, there), names
+    model = add_uncertainty(model, names, base, diagnosis, source, there)
+    return Added(model, names, was_diagnosed(base, diagnosis))
 
 
-def is_base_of(diagnosis: Diagnosis, source: Path, to: str, catalogue: Catalogue) -> bool:
-    """Whether that model is the one that was diagnosed.
-
-    Raises:
-        BadInput: no such model.
-    """
-    vehicle = build_model(diagnosis.base, source, catalogue).vehicle
-    return describe_model(load_model(to, vehicle, catalogue)) == diagnosis.base
+def was_diagnosed(base: Model, diagnosis: Diagnosis) -> bool:
+    """Whether a diagnosis is of that model."""
+    return describe_model(base) == diagnosis.base
 
 
 def add_uncertainty(
@@ -74,7 +78,7 @@ def add_uncertainty(
     Of a model that it did not end with nothing is known.
     """
     posterior, whole = diagnosis.posterior, sorted(one.effect for one in diagnosis.selected)
-    if posterior is None or sorted(names) != whole or describe_model(base) != diagnosis.base:
+    if posterior is None or sorted(names) != whole or not was_diagnosed(base, diagnosis):
         return model
     instead = [
         {

@@ -71,10 +71,8 @@ def add_effects(
     catalogue: Catalogue,
     out: Path,
     story: Mapping[str, object],
-) -> tuple[list[str], bool]:
+) -> apply.Added:
     """Write `base` with effects that a diagnosis fitted as a model file.
-
-    Returns their ids, and whether `base` is the model that was diagnosed.
 
     Args:
         diagnosis: its file.
@@ -89,6 +87,6 @@ def add_effects(
     """
     found = Diagnosis.read(diagnosis)
     wanted = list(effects) if effects else None
-    model, names = apply.add_effects(found, diagnosis, base, wanted, catalogue)
-    write_model(model, out, provenance={"base": base, "effects": names, **story})
-    return names, apply.is_base_of(found, diagnosis, base, catalogue)
+    added = apply.add_effects(found, diagnosis, base, wanted, catalogue)
+    write_model(added.model, out, provenance={"base": base, "effects": added.names, **story})
+    return added

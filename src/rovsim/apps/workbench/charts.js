@@ -6,6 +6,12 @@ function saveFile(url, name) {
   link.click();
 }
 
+function saveText(text, type, name) {
+  const url = URL.createObjectURL(new Blob([text], {type}));
+  saveFile(url, name);
+  URL.revokeObjectURL(url);
+}
+
 function savePicture(chart) {
   saveFile(chart.getDataURL({pixelRatio: 2, backgroundColor: "#fff"}), "rovsim.png");
 }
@@ -16,9 +22,7 @@ async function saveVectors(chart) {
   const size = {width: chart.getWidth(), height: chart.getHeight()};
   const copy = echarts.init(null, null, {renderer: "svg", ssr: true, ...size});
   copy.setOption({...chart.getOption(), animation: false, backgroundColor: "#fff"});
-  const url = URL.createObjectURL(new Blob([copy.renderToSVGString()], {type: "image/svg+xml"}));
-  saveFile(url, "rovsim.svg");
-  URL.revokeObjectURL(url);
+  saveText(copy.renderToSVGString(), "image/svg+xml", "rovsim.svg");
   copy.dispose();
 }
 
@@ -35,10 +39,7 @@ function saveValues(chart) {
     return [name, ...own].map((x) => quoted(x ?? "")).join(",");
   }));
   const head = rows[0]?.split(",").length > 3 ? "series,x,y,value" : "series,x,y";
-  const text = [head, ...rows, ""].join("\n");
-  const url = URL.createObjectURL(new Blob([text], {type: "text/csv"}));
-  saveFile(url, "rovsim.csv");
-  URL.revokeObjectURL(url);
+  saveText([head, ...rows, ""].join("\n"), "text/csv", "rovsim.csv");
 }
 
 // ECharts takes every turn of the wheel: without Ctrl it belongs to the page.

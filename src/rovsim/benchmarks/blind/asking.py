@@ -30,5 +30,5 @@ def bands(campaign: Path, found: Diagnosis) -> Bands | None:
     settings = compose(["command=compare"])
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
-        model, _ = add_effects(found, campaign, "nominal", None, built_in())
+        model = add_effects(found, campaign, "nominal", None, built_in()).model
         return cover_test_runs([model], data, settings)

@@ -7,7 +7,7 @@ reads what it found, they are alike.
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import isfinite
-from typing import Sequence
+from typing import Mapping, Sequence
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.base import Effect
@@ -60,8 +60,8 @@ class Form(ABC):
         """In a sentence."""
 
     @abstractmethod
-    def list_numbers(self, law: Term, std: Sequence[float]) -> list[Number]:
-        """The parameters of the law in the units of its equation; `std` of those that are free."""
+    def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
+        """The free parameters of the law in the units of its equation; `std` of each by name."""
 
     @abstractmethod
     def divide(self, law: Term) -> list[Effect]:

@@ -20,7 +20,7 @@ from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.idle_effects import cross_validate
-from rovsim.diagnosis.selection.ranking import Named, name_terms
+from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
@@ -73,10 +73,8 @@ class ProposedLaw:
     @cached_property
     def numbers(self) -> list[Number]:
         """Its parameters in the units of its equation."""
-        h = self.fit.hypothesis
-        own = h.columns[[t.id for t in h.terms].index(self.law.id)]
-        scales = [p.scale for p in self.law.parameters]
-        return self.form.list_numbers(self.law, list(self.fit.std[own] * scales))
+        place = self.fit.hypothesis.terms.index(self.law)
+        return self.form.list_numbers(self.law, find_std(self.fit, place))
 
     @property
     def source(self) -> str:
@@ -133,18 +131,17 @@ def _holds(judged: Judged, selection: Selection, best: Catalogued, gate: Gate) -
 
 def _measure(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> tuple[tuple[float, ...], str]:
     """RMS of each term in N or N m, and the axis where it stands out most from the disturbance."""
-    bare, law = split_law(fit.hypothesis)[0].model, get_law(fit.hypothesis)
-    each = [np.concatenate([_push(bare, one, run) for run in runs]) for one in form.divide(law)]
-    whole = np.sqrt(np.mean(sum(each) ** 2, axis=0))
-    wrenches = [one @ bare.body.M.T for one in each]
-    sizes = tuple(float(np.sqrt(np.mean(np.sum(w**2, axis=1)))) for w in wrenches)
-    return sizes, AXES[int(np.argmax(whole / fit.noise.level))]
+    bare, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
+    each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
+    whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
+    sizes = np.sqrt(np.mean(np.sum((each @ bare.body.M.T) ** 2, axis=2), axis=1))
+    return tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.level))]
 
 
-def _push(model: Model, effect: Effect, run: ObservedRun) -> Array:
-    """Acceleration (n, 6) that an effect adds to a model where a run was measured."""
+def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
+    """Accelerations (k, n, 6) that each effect adds to a model where a run was measured."""
     state = as_true(model, run.motion).state[run.index]
     known = np.isfinite(state).all(axis=1)
     index, states = run.index[known], state[None, known]
-    there, without = (accelerate(m, run, index, states)[0] for m in (model + effect, model))
-    return np.asarray(there - without)
+    there = [accelerate(model + effect, run, index, states)[0] for effect in effects]
+    return np.stack(there) - accelerate(model, run, index, states)

@@ -8,7 +8,7 @@ import inspect
 from abc import abstractmethod
 from dataclasses import dataclass, replace
 from textwrap import dedent
-from typing import ClassVar, Sequence
+from typing import ClassVar, Mapping, Sequence
 
 from rovsim import AXES
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
@@ -36,14 +36,14 @@ class WithMemory(Form):
     def begin(cls, moving: Sequence[str]) -> list[tuple["WithMemory", Term]]:
         """The law at all values that a fit starts from, on axes that move and are seen."""
 
-    def list_numbers(self, law: Term, std: Sequence[float]) -> list[Number]:
+    def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
         """The free parameters, as the effect declares them."""
         return [
             Number(
-                p.name, p.unit, self._symbol(p.name), law.effect[p.name], s, p.scale,
+                p.name, p.unit, self._symbol(p.name), law.effect[p.name], std[p.name], p.scale,
                 stated(p.low), stated(p.high), law.effect[p.name] if p.default else None,
             )
-            for p, s in zip(law.parameters, std, strict=True)
+            for p in law.parameters
         ]  # fmt: skip
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:

@@ -43,7 +43,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
-    names, diagnosed = add_effects(
+    _, names, diagnosed = add_effects(
         Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
     )
     text = f"{base} + {' + '.join(names)}"

@@ -1,7 +1,8 @@
 """The form of a law that is a sum of products."""
 
 from dataclasses import dataclass
-from typing import Sequence
+from textwrap import indent
+from typing import Mapping, Sequence
 
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part, stated
@@ -52,21 +53,21 @@ class Products(Form):
         """In a sentence."""
         return describe(self.terms)
 
-    def list_numbers(self, law: Term, std: Sequence[float]) -> list[Number]:
+    def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
         """Coefficients with the units of their terms, then the place they speak of."""
-        sure, found = dict(zip(law.free, std, strict=True)), []
+        found = []
         each = zip(name_terms(self.terms), self.terms, strict=True)
         for k, (name, term) in enumerate(each, start=1):
             size = law.effect[f"size{k}"]
             value = law.effect[f"c{k}"] * size
             scale = float(f"{max(abs(value), 1e-6):.1g}")
             unit, symbol = unit_of(term.on, term.factors), f"c_{k}" if len(self.terms) > 1 else "c"
-            found.append(Number(name, unit, symbol, value, sure[f"c{k}"] * size, scale))
+            found.append(Number(name, unit, symbol, value, std[f"c{k}"] * size, scale))
         known = {p.name: p for p in law.parameters}
         for name in list_moved(self.terms):
             unit, symbol, scale = PLACES[name]
             value, low, high = law.effect[name], stated(known[name].low), stated(known[name].high)
-            found.append(Number(name, unit, symbol, value, sure[name], scale, low, high, value))
+            found.append(Number(name, unit, symbol, value, std[name], scale, low, high, value))
         return found
 
     def divide(self, law: Term) -> list[Effect]:
@@ -76,14 +77,13 @@ class Products(Form):
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """A kernel of plain arithmetic."""
-        lines = list(write_body(name_terms(self.terms), self.terms, law))
-        code = "\n".join(lines)
+        code = "\n".join(write_body(name_terms(self.terms), self.terms, law))
         maths = [f for f in ("exp", "sqrt", "tanh") if f"{f}(" in code]
         placed = any(n.default is not None for n in numbers)
         return write_effect(
             name, self, numbers, story, base="Wrench",
             imports=f"from math import {', '.join(maths)}\n\n" if maths else "",
-            method=KERNEL.format(body="\n".join(f"    {line}" for line in lines)),
+            method=KERNEL.format(body=indent(code, "    ")),
             start=round_start(numbers) if placed else {},
         )  # fmt: skip
 
