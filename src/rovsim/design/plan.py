@@ -27,7 +27,7 @@ from rovsim.simulation.batch import Batch
 LOOKED_AT, TAKEN_OVER, CHECKED = 8, 4, 40  # chances: while searching, of the worth, in the end
 FINALISTS = 4
 # Share of the time that is over when a stage begins: means over the development seeds.
-STAGES = {"learning": 0.0, "usual manoeuvres": 0.05, "searching": 0.2, "checking": 0.8}
+STAGES = {"learning": 0.0, "usual manoeuvres": 0.03, "searching": 0.12, "checking": 0.93}
 
 Stage = Callable[[str], None]
 
