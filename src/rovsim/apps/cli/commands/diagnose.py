@@ -29,7 +29,7 @@ from rovsim.results.error_conditions import ErrorConditions
 EARLY = [("where", ""), ("where_map", ""), ("excitation", "")]  # while the diagnosis goes on
 # The second process imports these; this one does without them, to begin sooner.
 DRAWING, SHOWING = "rovsim.reporting.html.folder", "rovsim.application.pipeline.shown_diagnosis"
-LOGGING = "mlflow.tracking"
+LOGGING = ("mlflow.tracking", "mlflow.store.tracking.sqlalchemy_store")
 
 
 class Settings(CampaignSettings):
@@ -47,7 +47,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     data = measure(campaign, settings.signals, even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     tracking = settings.tracking if installed("tracking") else None
-    with second_process(DRAWING, SHOWING, *([LOGGING] if tracking else [])) as other:
+    with second_process(DRAWING, SHOWING, *(LOGGING if tracking else ())) as other:
         early: list[Future] = []
 
         def draw_early(where: ErrorConditions) -> None:
