@@ -11,8 +11,8 @@ from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 from typing import Any, Callable, Iterator
 
+from rovsim.core.collector import end_at_once, import_large
 from rovsim.core.errors import RovsimError
-from rovsim.core.imports import end_at_once, import_large
 from rovsim.core.progress import heard_by
 
 

@@ -18,14 +18,14 @@ from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import search_runs
-from rovsim.evaluation.ladder import HORIZON, StepScore
+from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract
 from rovsim.measurement.runs import Runs
+from rovsim.results.comparison import HORIZON, WINDOW
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step
 from rovsim.simulation.replay import replay
-from rovsim.simulation.settings import LADDER
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
@@ -99,7 +99,7 @@ def _climb(
 
     Where a law is proposed, it and what is beside it come last, before the noise floor.
     """
-    models, how = _list_models(found), settings.replay.only(LADDER)
+    models, how = _list_models(found), settings.replay.only(WINDOW)
     scores = [StepScore(model.name) for model in models]
     for name in runs.of("test"):
         motion = runs.motions[name]

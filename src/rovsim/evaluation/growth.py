@@ -10,7 +10,7 @@ from rovsim.results.growth import Curve
 from rovsim.simulation.prediction import Prediction
 from rovsim.simulation.windows import find_windows
 
-HORIZON = "5"  # s, of the windows
+LONG = "5"  # s, of the windows
 BINS = 25  # of 0.2 s: wider than the spacing of bins that were recorded as means
 
 
@@ -18,14 +18,14 @@ class GrowthScore:
     """Squared velocity errors (25, 6) by the time since the anchor, summed over test runs."""
 
     def __init__(self) -> None:
-        self._edges = np.linspace(0.0, float(HORIZON), BINS + 1)
+        self._edges = np.linspace(0.0, float(LONG), BINS + 1)
         self._count, self._squares = np.zeros(BINS), np.zeros((BINS, 6))
 
     def add(self, motion: Motion, prediction: Prediction) -> None:
         """Take in a run and its windows of 5 s; a train run is passed by."""
         if motion.run.split != "test":
             return
-        age = _age(motion, float(HORIZON))
+        age = _age(motion, float(LONG))
         known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
         member = np.digitize(age, self._edges) - 1
         known &= (member >= 0) & (member < BINS)

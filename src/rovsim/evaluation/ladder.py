@@ -5,11 +5,9 @@ from typing import Iterable
 
 from rovsim.evaluation.scores import Errors, Moments, Sums, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.comparison import HORIZON
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
-from rovsim.simulation.settings import LADDER
-
-HORIZON = f"{LADDER:g}"  # s, as replays name it
 
 
 @dataclass(eq=False)

@@ -2,12 +2,11 @@
 
 from typing import Iterable, Mapping
 
-from rovsim.evaluation.growth import HORIZON as LONG
-from rovsim.evaluation.growth import GrowthScore
-from rovsim.evaluation.ladder import HORIZON, StepScore
+from rovsim.evaluation.growth import LONG, GrowthScore
+from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import OPEN_LOOP, Comparison, ModelErrors, RunErrors
+from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison, ModelErrors, RunErrors
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay

@@ -14,13 +14,13 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim import AXES
+from rovsim.core.normal import MAD
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
 from rovsim.learning.posterior_variance import PosteriorVariance, rbf
 from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
 
 NEARBY = 20  # rows: their median's own noise is a quarter of a row's
-MAD = 1.4826  # standard deviation of a Gaussian over its median absolute deviation
 SHOWN = 2000  # training rows that show how sure a process is where it was taught
 
 

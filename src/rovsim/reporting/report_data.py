@@ -14,7 +14,7 @@ from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
 from rovsim.results.budget import BudgetTotals
-from rovsim.results.comparison import OPEN_LOOP, Comparison
+from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
@@ -25,7 +25,6 @@ from rovsim.results.quality import Quality
 from rovsim.results.timing import Timing
 from rovsim.simulation.prediction import Band, Replay
 
-SHOWN = "2"  # horizon of the time series: long enough to drift, short enough to be fair
 R = TypeVar("R", bound=Result)
 
 
@@ -122,11 +121,11 @@ def select_arguments(
     motion = data.motions[run]
     common = {"time": motion.time, "usable": motion.usable}
     if figure == "velocities":
-        nu = data.predicted(run, SHOWN, "nu", models)
+        nu = data.predicted(run, HORIZON, "nu", models)
         measured = blank(motion.measured, motion.nu, np.nan)
         return {**common, "nu": measured, "predicted_nu": nu, "bands": data.banded(run, models)}
     if figure == "residual_series":
-        nu_dot = data.predicted(run, SHOWN, "nu_dot", models)
+        nu_dot = data.predicted(run, HORIZON, "nu_dot", models)
         measured = blank(motion.measured, motion.nu_dot, np.nan)
         return {**common, "nu_dot": measured, "predicted_nu_dot": nu_dot}
     eta = data.predicted(run, OPEN_LOOP, "eta", models)
@@ -144,4 +143,4 @@ def describe(figure: str, run: str, data: ReportData | None = None) -> str:
     if figure == "budget":
         model = data.budgets[run].model if data and run in data.budgets else ""
         return f"run {run}, model {title(model)}" if model else f"run {run}"
-    return f"run {run}, {'open loop' if figure == 'path_3d' else f'{SHOWN} s windows'}"
+    return f"run {run}, {'open loop' if figure == 'path_3d' else f'{HORIZON} s windows'}"

@@ -15,7 +15,7 @@ from rovsim.reporting.figures.pooled import name_horizon, pool
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.reporting.wording import fit, significant, title
 from rovsim.results.base import or_nan
-from rovsim.results.comparison import Comparison
+from rovsim.results.comparison import HORIZON, Comparison
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 from rovsim.results.published_errors import PublishedErrors
 
@@ -127,7 +127,7 @@ def _aligned(column: Series) -> str:
 
 def tabulate_errors(
     comparison: Comparison,
-    horizon: str = "2",
+    horizon: str = HORIZON,
     split: str = "test",
     quantity: str = "velocity_rmse",
 ) -> Table:

@@ -11,10 +11,10 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.bands import Bands, Coverage, ModelBands, RunBands
+from rovsim.results.comparison import HORIZON, WINDOW
 from rovsim.simulation.bands import foresee, why_without_bands
 from rovsim.simulation.prediction import LEVEL, Band
 from rovsim.simulation.replay import find_spans
-from rovsim.simulation.settings import LADDER
 
 
 def bands_when_asked(
@@ -25,10 +25,10 @@ def bands_when_asked(
     Made when they are asked for.
     """
     sure = [model for model in models if model.uncertainty is not None]
-    how = settings.replay.only(LADDER)
+    how = settings.replay.only(WINDOW)
 
     def of(model: Model, run: str) -> Band | None:
-        spans = find_spans(motions[run], how, open_loop=False)[f"{LADDER:g}"]
+        spans = find_spans(motions[run], how, open_loop=False)[HORIZON]
         return foresee(model, motions[run], spans, settings.signals, how)
 
     return {m.name: Remade(motions, partial(of, m), MOST // len(sure)) for m in sure}
@@ -61,7 +61,7 @@ def cover_test_runs(
 
 
 def _cover_run(model: Model, motion: Motion, settings: SimulationSettings) -> dict[str, Coverage]:
-    how = settings.replay.only(*(s for s in settings.replay.horizons if s >= LADDER))
+    how = settings.replay.only(*(s for s in settings.replay.horizons if s >= WINDOW))
     found = {}
     for name, spans in find_spans(motion, how, open_loop=False).items():
         band = foresee(model, motion, spans, settings.signals, how) if spans else None

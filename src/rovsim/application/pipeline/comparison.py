@@ -15,9 +15,9 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.evaluation.scored import Scored
-from rovsim.reporting.report_data import SHOWN, ReportData
+from rovsim.reporting.report_data import ReportData
 from rovsim.results.budget import BudgetTotals
-from rovsim.results.comparison import OPEN_LOOP, Comparison
+from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
 from rovsim.simulation.replay import replay
 
 DRAWN = 12  # runs: a report of fifty figures can still be read
@@ -38,7 +38,7 @@ def compare(data: Measured, models: Sequence[Model], settings: SimulationSetting
         for model in models:
             found = replay(model, motion, settings.signals, settings.replay)
             scored.add(motion, found)
-            shown[model.name].keep(run, found.only(SHOWN, OPEN_LOOP))
+            shown[model.name].keep(run, found.only(HORIZON, OPEN_LOOP))
         for search in searches:
             search.add(motion)
         forces[run] = budgets[run].totals
@@ -63,7 +63,7 @@ def _choose_drawn(comparison: Comparison, model: str, runs: Sequence[str]) -> tu
     if len(runs) <= DRAWN:
         return tuple(runs)
     found = comparison.models[model].runs
-    rmse = np.array([found[run].windows[SHOWN].velocity_rmse.array() for run in runs])
+    rmse = np.array([found[run].windows[HORIZON].velocity_rmse.array() for run in runs])
     rmse = np.nan_to_num(rmse[:, np.isfinite(rmse).any(axis=0)], nan=np.inf)  # diverged: the worst
     worst = np.argsort(-np.mean(rmse / np.median(rmse, axis=0), axis=1), kind="stable")
     return tuple(runs[k] for k in sorted(worst[:DRAWN].tolist()))

@@ -17,7 +17,8 @@ def write_tables(comparison: Path, ladder: Path, folder: Path) -> None:
     """The ladder and the errors on the test runs, as LaTeX and CSV."""
     tabulate_ladder(Ladder.read(ladder)).write(folder, "ladder")
     for quantity in QUANTITIES:
-        tabulate_errors(Comparison.read(comparison), "2", "test", quantity).write(folder, quantity)
+        table = tabulate_errors(Comparison.read(comparison), quantity=quantity)
+        table.write(folder, quantity)
 
 
 def write_report(

@@ -8,9 +8,9 @@ from rovsim.core.remade import MOST, Remade
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.comparison import WINDOW
 from rovsim.simulation.prediction import Replay
 from rovsim.simulation.replay import replay
-from rovsim.simulation.settings import LADDER
 
 Replays = Mapping[str, Mapping[str, Replay]]  # by model and run
 
@@ -22,7 +22,7 @@ def replay_when_asked(
 
     Made when they are asked for.
     """
-    how = settings.replay.only(LADDER)
+    how = settings.replay.only(WINDOW)
 
     def by(model: Model) -> Remade[Replay]:
         return Remade(

@@ -3,7 +3,7 @@
 from contextlib import nullcontext
 
 from rovsim.application.settings import Settings, select
-from rovsim.core.imports import import_large
+from rovsim.core.collector import import_large
 from rovsim.core.progress import heard_by
 from rovsim.dynamics.catalogue import load_catalogue
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim import __version__
+from rovsim.core.collector import end_at_once
 from rovsim.core.errors import BadInput, RovsimError, nearest
-from rovsim.core.imports import end_at_once
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")

@@ -21,7 +21,7 @@ from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import title
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
-from rovsim.results.comparison import Comparison
+from rovsim.results.comparison import HORIZON, Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect
 from rovsim.results.ladder import Ladder
@@ -92,7 +92,7 @@ class ShownComparison(Figures):
         return Series(values, name="error", dtype=float)
 
     def table(
-        self, quantity: str = "velocity_rmse", horizon: str = "2", split: str = "test"
+        self, quantity: str = "velocity_rmse", horizon: str = HORIZON, split: str = "test"
     ) -> DataFrame:
         """Errors by model and axis, runs pooled.
 
@@ -106,7 +106,7 @@ class ShownComparison(Figures):
         return printed.frame.set_axis(heads, axis=1)
 
     def printed(
-        self, quantity: str = "velocity_rmse", horizon: str = "2", split: str = "test"
+        self, quantity: str = "velocity_rmse", horizon: str = HORIZON, split: str = "test"
     ) -> Table:
         """The same for paper: `.latex()`, `.csv()`, `.write(folder, name)`."""
         return tabulate_errors(self.result, horizon, split, quantity)

@@ -35,10 +35,10 @@ from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.wording import significant
+from rovsim.results.comparison import WINDOW
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
 STEPS = 400  # of a slider
-HORIZON = 2.0  # s, at first; the errors above the curves are always of 2 s windows
 
 
 class Add:
@@ -49,7 +49,7 @@ class Add:
         train = bench.data.runs.of("train")
         self.runs = train or list(bench.data.motions)
         run = first_run(bench)
-        first = {"run": run, "axes": excited(bench, run), "horizon": HORIZON}
+        first = {"run": run, "axes": excited(bench, run), "horizon": WINDOW}
         possible: Mapping[str, Sequence[Any]] = {
             "run": self.runs, "axes": AXES, "horizon": HORIZONS,
         }  # fmt: skip

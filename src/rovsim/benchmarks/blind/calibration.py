@@ -19,13 +19,13 @@ from scipy.stats import chisquare
 
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import Case
+from rovsim.core.normal import INTERVAL
 from rovsim.dynamics.catalogue import built_in
 from rovsim.results.bands import Bands
 from rovsim.results.blind_benchmark import BandRates, Calibration, Claims, Ranks
 from rovsim.results.fitted import FittedEffect
 
 BINS = 10
-SURE = 1.96  # standard deviations to either side hold 95 % of a Gaussian
 # Claimed probabilities pile up at one, so that bins are finer there.
 EDGES = (0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0)
 EXPECTED = 5  # values a bin, below which the chi-square of a histogram is not one (Cochran 1954)
@@ -106,8 +106,8 @@ def rank(misses: Sequence[Miss]) -> Ranks:
     counts = np.bincount(at, minlength=BINS)
     return Ranks(
         values=len(z),
-        covered=float(np.mean(np.abs(z) <= SURE)) if len(z) else None,
-        stretch=float(np.quantile(np.abs(z), 0.95) / SURE) if len(z) else None,
+        covered=float(np.mean(np.abs(z) <= INTERVAL)) if len(z) else None,
+        stretch=float(np.quantile(np.abs(z), 0.95) / INTERVAL) if len(z) else None,
         counts=tuple(int(c) for c in counts),
         p_value=_test_evenness(counts),
     )

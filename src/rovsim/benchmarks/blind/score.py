@@ -10,13 +10,12 @@ from dataclasses import dataclass
 from typing import Iterator, Sequence
 
 from rovsim.benchmarks.blind.case import Case
+from rovsim.core.normal import INTERVAL
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Parameter
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Answer, Diagnosis
 from rovsim.results.fitted import FittedEffect
-
-SURE = 1.96  # standard deviations of a 95 % interval
 
 
 @dataclass(frozen=True)
@@ -127,6 +126,6 @@ def _parameter(declared: Parameter, truth: float, answer: FittedEffect) -> Param
     fitted = answer.parameters.get(declared.name)
     value, std = (fitted.value, fitted.std) if fitted else (declared.default, None)
     miss = abs(or_nan(value) - truth)
-    covered = None if std is None else miss <= SURE * std
+    covered = None if std is None else miss <= INTERVAL * std
     size = max(declared.size(truth), 1e-9)
     return ParameterScore(answer.effect, declared.name, miss / size, covered)

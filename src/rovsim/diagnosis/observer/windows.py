@@ -17,13 +17,12 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
+from rovsim.results.comparison import WINDOW
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.carried import carry
 from rovsim.simulation.measured_states import as_true
 from rovsim.simulation.sharpened import stage_outputs
 from rovsim.simulation.windows import find_windows
-
-SECONDS = 2.0  # contract, section 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +53,7 @@ class Windows:
     """Windows of one run, in which models are started anew at what was measured."""
 
     run: ObservedRun
-    seconds: float = SECONDS
+    seconds: float = WINDOW
 
     @cached_property
     def spans(self) -> list[tuple[int, int]]:

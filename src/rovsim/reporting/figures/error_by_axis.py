@@ -20,7 +20,7 @@ from rovsim.reporting.figures.pooled import (
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.reporting.wording import significant
-from rovsim.results.comparison import Comparison
+from rovsim.results.comparison import HORIZON, Comparison
 
 SECTION = "compare"
 CAPTION = (
@@ -36,7 +36,7 @@ TALLEST = 2.5  # times nominal; a higher bar is cut there and its value written 
 
 
 @styled()
-def draw(*, comparison: Comparison, horizon: str = "2", split: str = "test") -> Figure:
+def draw(*, comparison: Comparison, horizon: str = HORIZON, split: str = "test") -> Figure:
     """Draw `comparison.json` for one horizon ("2", "open_loop") and one split."""
     style = looks(comparison.models)
     figure = sheet(205)

@@ -4,7 +4,7 @@ from pandas import DataFrame, MultiIndex
 
 from rovsim import AXES
 from rovsim.reporting.wording import listed, title
-from rovsim.results.comparison import OPEN_LOOP, Comparison
+from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
 
 
 def tidy(comparison: Comparison, quantity: str, horizon: str, split: str) -> DataFrame:
@@ -20,7 +20,7 @@ def tidy(comparison: Comparison, quantity: str, horizon: str, split: str) -> Dat
 
 
 def pool(
-    comparison: Comparison, quantity: str, horizon: str = "2", split: str = "test"
+    comparison: Comparison, quantity: str, horizon: str = HORIZON, split: str = "test"
 ) -> DataFrame:
     """`quantity` over the runs of `split`, every run weighing the same: a row a model.
 
@@ -43,7 +43,7 @@ def pool(
 
 
 def between_runs(
-    comparison: Comparison, quantity: str, horizon: str = "2", split: str = "test"
+    comparison: Comparison, quantity: str, horizon: str = HORIZON, split: str = "test"
 ) -> tuple[DataFrame, DataFrame]:
     """Lowest and highest value of the runs that `pool` puts together: a row a model, each."""
     runs = tidy(comparison, quantity, horizon, split).groupby(["model", "axis"])["value"]

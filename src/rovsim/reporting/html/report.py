@@ -27,7 +27,7 @@ from rovsim.reporting.words.published_errors import tell_pitfalls, tell_standing
 from rovsim.reporting.words.sentences import summarize
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
-from rovsim.results.comparison import Comparison
+from rovsim.results.comparison import HORIZON, Comparison
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import RATES
 
@@ -35,9 +35,9 @@ from rovsim.results.timing import RATES
 CONTENTS = ("comparison", "ladder", "timing", "where", "diagnosis", "published_errors", "pitfalls")
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
-    ("2", "velocity_rmse"),
-    ("2", "acceleration_rmse"),
-    ("2", "velocity_mae"),
+    (HORIZON, "velocity_rmse"),
+    (HORIZON, "acceleration_rmse"),
+    (HORIZON, "velocity_mae"),
     ("open_loop", "velocity_rmse"),
 )
 

@@ -14,6 +14,7 @@ from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import listed, significant, title
 from rovsim.reporting.words.speed import timing_sentences
 from rovsim.results.bands import Bands, ModelBands
+from rovsim.results.comparison import HORIZON
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 from rovsim.results.quality import Quality
 
@@ -25,7 +26,7 @@ def summarize(data: ReportData) -> list[str]:
     """Return the summary, one string per paragraph; nothing without a comparison."""
     if data.comparison is None:
         return []
-    errors = pool(data.comparison, "velocity_rmse", "2", "test")
+    errors = pool(data.comparison, "velocity_rmse", HORIZON, "test")
     steps = scores(data.ladder) if data.ladder else {}
     paragraphs = [
         runs_sentences(data.quality),

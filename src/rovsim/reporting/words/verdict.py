@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 from rovsim import AXES
+from rovsim.core.normal import INTERVAL
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import listed, significant
@@ -25,7 +26,6 @@ VERDICTS = {
     "unexplained": "Something is missing that the catalogue does not know.",
     "insufficient_data": "The recordings cannot tell: too short, or some axis never moved.",
 }
-INTERVAL = 1.96  # standard deviations to either side hold 95 %
 MOST_PUSHES = 3  # moments of a disturbance that are told
 MANY = 1e6  # odds that need no number
 NO_TEST = (
