@@ -102,10 +102,9 @@ class Session:
         async with self._opening:
             if self.bench is None and self.settings.campaign and not self.problem:
                 from rovsim.apps.workbench.parts import in_thread
-                from rovsim.apps.workbench.workbench import Workbench
 
                 try:
-                    self.bench = await in_thread(Workbench.opened, self.settings, self.catalogue)
+                    self.bench = await in_thread(_open, self.settings, self.catalogue)
                     self.opened_at = time.monotonic()
                     remember(Path(self.settings.campaign))
                     _keep_loaded()
@@ -183,6 +182,13 @@ class Sessions:
         gone = [t for t, one in self._by_tab.items() if not one.pages and one is not self.last]
         for tab in gone[: max(0, len(self._by_tab) - MOST)]:
             del self._by_tab[tab]
+
+
+def _open(settings: WorkbenchSettings, catalogue: Catalogue) -> Any:
+    """A campaign; what computes is imported here, while the page already says that it waits."""
+    from rovsim.apps.workbench.workbench import Workbench
+
+    return Workbench.opened(settings, catalogue)
 
 
 def _keep_loaded() -> None:
