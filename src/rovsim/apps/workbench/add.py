@@ -1,5 +1,6 @@
 """Add: tick effects, move their values, see the replay move; save the model as a file."""
 
+import asyncio
 import shlex
 from functools import partial
 from pathlib import Path
@@ -39,6 +40,7 @@ from rovsim.results.comparison import WINDOW
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
 STEPS = 400  # of a slider
+SENT = 0.002  # s: curves are on their way, which the page would draw after the numbers
 
 
 class Add:
@@ -130,9 +132,12 @@ class Add:
             total = ui.label(self._total(effect, parameter.name, value)).classes("total")
 
         async def moved(event: Any) -> None:
-            number.set_value(float(significant(event.args)))
-            total.text = self._total(effect, parameter.name, float(event.args))
-            self.draft.move(effect, parameter.name, float(event.args))
+            now = float(event.args)
+            if now == self.draft.entry(effect).parameters[parameter.name].value:
+                return  # a key tells its value twice, and the throttle tells the last one again
+            number.set_value(float(significant(now)))
+            total.text = self._total(effect, parameter.name, now)
+            self.draft.move(effect, parameter.name, now)
             await self.update()
 
         async def typed() -> None:
@@ -239,6 +244,7 @@ class Add:
                     new, now = await computed(self._replayed, model)
                     motion = self.bench.data.motions[self.run]
                     self.traces.redraw(panels(motion, {"new": new}, self.axes))
+                    await asyncio.sleep(SENT)
                     note = "2 s windows, " + motion.run.split + " run"
                     self.after.content = tile_html("This run, now", now, "run/now", note)
         finally:
