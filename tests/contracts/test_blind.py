@@ -88,6 +88,16 @@ def test_recordings_of_others_hide_what_they_show_and_what_they_cannot():
     assert [c for c in cases if not c.hidden]
 
 
+def test_laboratories_have_everything_at_once():
+    cases = suite("laboratory", "development")
+    assert len({c.id for c in cases}) == len(cases) == 12
+    assert {len([n for n in c.names if n != "pose_filter"]) for c in cases} == {3, 5}
+    for one in cases:
+        one.settings()
+        assert {e.effect for e in one.hidden} > set(one.forgiven)
+        assert ("colour_noise" in one.tank["camera"]) != ("pose_filter" in one.names)
+
+
 def test_laws_lie_outside_the_catalogue():
     cases = suite("equations", "development")
     assert len({c.id for c in cases}) == len(cases) == 55

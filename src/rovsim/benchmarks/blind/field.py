@@ -1,7 +1,8 @@
 """Cases as a laboratory has them: a vehicle file that is wrong everywhere, and cameras as they are.
 
-workshop   every coefficient of the vehicle file off, and none to two special effects
-camera     a right model, seen by cameras that err slowly or whose software smooths
+workshop     every coefficient of the vehicle file off, and none to two special effects
+camera       a right model, seen by cameras that err slowly or whose software smooths
+laboratory   all of that at once, with three or five special effects
 
 How wrong is assumed: coefficients of drag and added mass by up to a quarter, the gain of the
 thrusters by a twentieth, the ballast by 1 N and its place by 4 mm.
@@ -57,14 +58,36 @@ def workshops(k: int, seeds: Range) -> Iterator[Case]:
 def camera(how: str, k: int, seeds: Range) -> Case:
     """A right model, seen by cameras that err slowly, or through software that smooths."""
     case_id = f"camera/{how}/{k}"
-    random = random_of(case_id, seeds)
+    settings, smoothing = _camera(how, random_of(case_id, seeds))
+    return Case(
+        id=case_id, kind="camera", seed=seed_of(case_id, seeds), hidden=smoothing, tank=settings
+    )
+
+
+def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case:
+    """A wrong file, a camera that errs, and three or five special effects of different families."""
+    how, count = list(CAMERAS)[k % 2], (3, 5)[k // 2 % 2]
+    random = random_of(f"laboratory/{k}", seeds)
+    known = [sorted(own) for family in families if (own := family & set(SPECIAL))]
+    chosen = random.choice(len(known), size=count, replace=False)
+    special = [str(random.choice(known[i])) for i in chosen]
+    case_id = f"laboratory/{how}/{'+'.join(special)}/{k}"
+    settings, smoothing = _camera(how, random)
+    hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special), *smoothing)
+    return Case(
+        id=case_id, kind="laboratory", seed=seed_of(case_id, seeds), hidden=hidden,
+        forgiven=NOMINAL, tank=merged(*(RECIPES[name].tank for name in special), settings),
+    )  # fmt: skip
+
+
+def _camera(
+    how: str, random: np.random.Generator
+) -> tuple[dict[str, Any], tuple[EffectEntry, ...]]:
+    """Settings of the tank, and what the software does."""
     settings: dict[str, Any] = {name: random.uniform(*size) for name, size in CAMERAS[how].items()}
     cutoff = float(f"{random.uniform(*CUTOFF):.3g}")
     smoothing = EffectEntry(effect="pose_filter", parameters={"cutoff": Value(value=cutoff)})
-    return Case(
-        id=case_id, kind="camera", seed=seed_of(case_id, seeds),
-        hidden=(smoothing,) if how == "smoothed" else (), tank={"camera": settings},
-    )  # fmt: skip
+    return {"camera": settings}, (smoothing,) if how == "smoothed" else ()
 
 
 def _wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:

@@ -8,6 +8,7 @@ pair, triple   effects of different families, none of which imitates another by 
 many       four to eight of them
 workshop   a vehicle file that is wrong everywhere, and none to two special effects (field.py)
 camera     cameras that err slowly, or whose software smooths
+laboratory  a wrong file, such a camera, and three or five special effects (field.py)
 deviation  every coefficient of damping and inertia a few per cent off
 none       nothing hidden
 outside    physics that no entry describes, alone or beside an effect
@@ -20,7 +21,7 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
-from rovsim.benchmarks.blind.field import CAMERAS, camera, workshops
+from rovsim.benchmarks.blind.field import CAMERAS, camera, laboratory, workshops
 from rovsim.benchmarks.blind.laws import LAWS, drawn_law
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
@@ -208,6 +209,11 @@ def equations(seeds: Range) -> Iterator[Case]:
     yield from (nothing(k, seeds) for k in range(4))
 
 
+def laboratories(seeds: Range) -> Iterator[Case]:
+    """Everything a little wrong, and much missing, at once."""
+    yield from (laboratory(FAMILIES, k, seeds) for k in range(12))
+
+
 def law(name: str, k: int, seeds: Range) -> Case:
     """A smooth law outside the catalogue."""
     case_id = f"law/{name}/{k}"
@@ -220,5 +226,5 @@ def law(name: str, k: int, seeds: Range) -> Case:
 
 SUITES = {
     "quick": quick, "standard": standard, "full": full, "recordings": recordings,
-    "equations": equations,
+    "equations": equations, "laboratory": laboratories,
 }  # fmt: skip
