@@ -23,19 +23,24 @@ from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 
+RULED_OUT = 1000.0  # to one: a rival with longer odds against it need not be told apart
+
 
 @dataclass(frozen=True, eq=False)
 class Known:
     """A hypothesis as the train runs leave it.
 
     `information` (k, k) they hold about its scaled parameters, of which `wanted` (j,) are asked
-    for; `likelihood` twice its logarithm, the price of its parameters paid.
+    for; `likelihood` twice its logarithm, the price of its parameters paid. `widest` has all
+    parameters free with which a rival might take up a flight, `held` (w, w) the information on it.
     """
 
     hypothesis: Hypothesis
     information: Array
     wanted: Array
     likelihood: float
+    widest: Hypothesis
+    held: Array
 
     @property
     def names(self) -> list[str]:
@@ -104,6 +109,12 @@ class Knowledge:
     def deficit(self) -> float:
         """How much less likely the second rival is than the first, in twice the log."""
         return self.rivals[0].likelihood - self.rivals[1].likelihood
+
+    @property
+    def likely(self) -> Array:
+        """Which of the rivals (r,) the train runs leave possible; all that was asked without."""
+        found = np.array([rival.likelihood for rival in self.rivals])
+        return found > np.max(found) - 2.0 * np.log(RULED_OUT)
 
 
 def learn(
@@ -216,12 +227,21 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     return polish(found, runs, REACH)
 
 
-def _know(found: Fit, bank: FilterBank, wanted: Sequence[str], price: float = 0.0) -> Known:
-    rows = bank.flatten(found.seen.J, found.noise)
+def _know(
+    found: Fit, bank: FilterBank, wanted: Sequence[str], price: float = 0.0,
+    widest: Hypothesis | None = None,
+) -> Known:  # fmt: skip
     names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = price * sum(term.choices for term in found.hypothesis.terms)
-    return Known(found.hypothesis, inner_products(rows), chosen, found.likelihood - paid)
+    information = inner_products(bank.flatten(found.seen.J, found.noise))
+    held = information
+    if widest is not None:
+        held = inner_products(bank.flatten(bank.linearise(widest).J, found.noise))
+    return Known(
+        found.hypothesis, information, chosen, found.likelihood - paid,
+        widest or found.hypothesis, held,
+    )  # fmt: skip
 
 
 def _learn_rivals(
@@ -240,10 +260,22 @@ def _learn_rivals(
     for name, (found, bank) in zip(question.between, fits, strict=True):
         names = found.hypothesis.parameter_names
         wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
-        rivals.append(_know(found, bank, wanted, price))
+        full = next(c for c in candidates if c.effect.id == name)
+        rivals.append(_know(found, bank, wanted, price, _widen(found.hypothesis, full)))
     best, bank = max(fits, key=lambda one: one[0].likelihood)
     asked = tuple(question.between)
     return Knowledge(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
+
+
+def _widen(h: Hypothesis, own: Candidate) -> Hypothesis:
+    """All parameters of an effect free: the train runs chose those that they needed."""
+
+    def widened(term: Term) -> Term:
+        if term.id != own.effect.id:
+            return term
+        return replace(term, free=(*term.free, *(n for n in own.free if n not in term.free)))
+
+    return replace(h, terms=tuple(widened(term) for term in h.terms))
 
 
 def _propose(

@@ -194,4 +194,5 @@ def _average(where: Range, one: Tried, some: Sequence[Sequence[Model]]) -> Worth
         tuple(np.median([w.surer[k] for w in found], axis=0) for k in range(len(some))),
         tuple(np.median([w.std[k] for w in found], axis=0) for k in range(len(some))),
         np.median([w.gain for w in found], axis=0),
+        where.known.likely,
     )

@@ -31,8 +31,8 @@ class DesignSettings(Section):
     """How a flight is looked for: `population` flights in each of `rounds` rounds."""
 
     limits: FlightLimits = FlightLimits()
-    population: Annotated[int, Field(ge=8)] = 48
-    rounds: PositiveInt = 20
+    population: Annotated[int, Field(ge=8)] = 96
+    rounds: PositiveInt = 12
 
 
 class Question(Section):

@@ -7,9 +7,10 @@ foresees the flight worse by what none of its parameters can take up:
     min over x of |e + J^T x|^2 + x^T H x,
 
 e being its innovations there and x how far its parameters move from where the train runs left
-them. What is left on an axis, r of n readings, a diagnosis would take for noise, as far as it can:
-not |r|^2 but n log(1 + |r|^2 / n) counts. Half of that is what the logarithm of the odds is
-expected to gain.
+them: all that its effect has, since with the flight a diagnosis frees others than before it. What
+is left a diagnosis would take for noise, as far as it can: of each axis and octave, with power P
+beside n readings' worth of noise, not P but n log(1 + P / n) counts. Half of that is what the
+logarithm of the odds is expected to gain.
 """
 
 from dataclasses import dataclass
@@ -39,21 +40,22 @@ class Worth:
 
     `surer` (j,) for each rival: standard deviation now over then of what is asked for; `std`
     likewise then, scaled. `gain` (r,): what the logarithm of the odds of each rival, were it true,
-    is expected to gain; empty without rivals.
+    is expected to gain; empty without rivals. `likely` (r,): the rivals that count.
     """
 
     surer: tuple[Array, ...]
     std: tuple[Array, ...]
     gain: Array
+    likely: Array
 
     @property
     def told(self) -> float:
-        """What is to be as large as possible: the least of the gains, else the information.
+        """What is to be as large as possible: the least of the gains that count, or information.
 
         Information in units of what the train runs hold, the geometric mean over what is asked for.
         """
         if len(self.gain):
-            return float(np.min(self.gain))
+            return float(np.min(self.gain[self.likely]))
         gained = np.maximum(self.surer[0] ** 2 - 1.0, NOTHING)
         return float(np.exp(np.mean(np.log(gained))))
 
@@ -65,7 +67,8 @@ def value(
 
     `exact`: the train runs are observed anew, with filters that suit them and the flight together,
     as a diagnosis of all would. Else as they were seen without it, thrust is steady over each step
-    of the observer, and where rivals are told apart nothing is asked of their parameters.
+    of the observer, and where rivals are told apart nothing is asked of their parameters, nor of
+    rivals that do not count.
     """
     if not exact:
         around = around.coarser
@@ -75,6 +78,10 @@ def value(
     ]
     told, gains, motions = [], [], None
     for k, (run, rival) in enumerate(zip(runs, known.rivals, strict=True)):
+        if not (exact or known.likely[k]):
+            told.append(np.zeros_like(rival.information))
+            gains.append(np.inf)
+            continue
         if exact or motions is None:
             motions = _mix_motions(run, rival, known)
         bank = _observe(run, rival, known, motions, exact)
@@ -85,7 +92,7 @@ def value(
     then = [one.std(of) for one, of in zip(known.rivals, told, strict=True)]
     now = [one.std() for one in known.rivals]
     surer = tuple(a / b for a, b in zip(now, then, strict=True))
-    return Worth(surer, tuple(then), np.array(gains))
+    return Worth(surer, tuple(then), np.array(gains), known.likely)
 
 
 def _mix_motions(run: ObservedRun, rival: Known, known: Knowledge) -> tuple[AxisMotion, ...]:
@@ -116,7 +123,7 @@ def _told(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge, exa
 
 def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, exact: bool) -> float:
     """What the log odds against a rival gain where another one is true."""
-    seen = bank.linearise(other.hypothesis)
+    seen = bank.linearise(other.widest)
     if not seen.finite:
         return np.inf
     beside = [a - b for a, b in zip(seen.e, true.e, strict=True)]
@@ -125,9 +132,24 @@ def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, ex
     J = bank.flatten(seen.J, known.noise)
     H, slope = inner_products(J), J @ e
     if not exact:
-        H = H + other.information
+        H = H + other.held
     x = -solve(H, slope)
     left = (e + x @ J).reshape(6, -1)
-    before = 0.0 if exact else float(x @ other.information @ x)
-    count = left.shape[1] + (0 if exact else known.count)
-    return 0.5 * (before + float(count * np.log1p(np.sum(left**2, axis=1) / count).sum()))
+    before = 0.0 if exact else float(x @ other.held @ x)
+    more = 0 if exact else known.count  # readings that it leaves as they were
+    return 0.5 * (before + surprise(left, 1.0 + more / left.shape[1]))
+
+
+def surprise(left: Array, lasting: float) -> float:
+    """How much less likely innovations (6, n) are under the noise that suits them, twice the log.
+
+    Noise of another spectrum takes up what is slow, or fast: in each octave the power that is left,
+    P beside n of noise, costs n log(1 + P / n). `lasting` times as long the noise is to hold.
+    """
+    n = left.shape[1]
+    numbers = np.full(n // 2 + 1, 2.0)  # each frequency has a sine and a cosine
+    numbers[0] = 1.0
+    power = numbers * np.abs(np.fft.rfft(left, axis=1)) ** 2 / n
+    octaves = np.concatenate([[0], 2 ** np.arange(int(np.log2(n // 2)) + 1)])
+    numbers = np.add.reduceat(numbers, octaves) * lasting
+    return float(np.sum(numbers * np.log1p(np.add.reduceat(power, octaves, axis=1) / numbers)))

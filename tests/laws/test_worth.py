@@ -1,0 +1,39 @@
+"""What a flight is expected to tell."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rovsim.design.worth import Worth, surprise
+
+N = 4096
+
+
+def one_sum(left, lasting):
+    """Noise that can only grow, not change its spectrum."""
+    n = lasting * left.shape[1]
+    return float(np.sum(n * np.log1p(np.sum(left**2, axis=1) / n)))
+
+
+@given(st.floats(0.1, 10.0), st.floats(1.0, 5.0), st.integers(0, 100))
+def test_white_innovations_are_taken_for_more_of_the_same_noise(size, lasting, seed):
+    left = size * np.random.default_rng(seed).normal(size=(6, N))
+    assert surprise(left, lasting) == pytest.approx(one_sum(left, lasting), rel=0.05)
+
+
+@given(st.floats(1e-4, 0.4), st.floats(0.1, 10.0), st.floats(1.0, 5.0))
+def test_noise_that_may_change_its_spectrum_takes_up_more(frequency, size, lasting):
+    left = size * np.sin(2.0 * np.pi * frequency * np.arange(N))[None] * np.ones((6, 1))
+    assert 0.0 < surprise(left, lasting) < one_sum(left, lasting)
+
+
+def test_what_is_small_counts_by_its_square():
+    left = 1e-3 * np.random.default_rng(0).normal(size=(6, N))
+    assert surprise(left, 1.0) == pytest.approx(np.sum(left**2), rel=1e-3)
+
+
+def test_a_rival_that_is_ruled_out_does_not_count():
+    gain = np.array([30.0, 2.0])
+    for likely, told in (([True, True], 2.0), ([True, False], 30.0)):
+        assert Worth(surer=(), std=(), gain=gain, likely=np.array(likely)).told == told
