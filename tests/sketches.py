@@ -2,13 +2,18 @@
 
 import pytest
 
-COMMANDS = "rovsim.apps.cli.commands"
+REPORTING = "rovsim.reporting"
+
+
+def few(data) -> list[str]:
+    """One figure of a diagnosis, one of a comparison."""
+    if data.diagnosis is not None:
+        return ["ranking"]
+    return ["excitation"] if data.comparison is not None else []
 
 
 def draw_few(patch: pytest.MonkeyPatch) -> None:
     """Let `compare` and `diagnose` draw one figure of each kind, in this process."""
-    patch.setattr(f"{COMMANDS}.compare.ONCE", ("excitation",))
-    patch.setattr(f"{COMMANDS}.compare.PER_RUN", ("velocities",))
-    patch.setattr(f"{COMMANDS}.diagnose.EARLY", [])
-    patch.setattr("rovsim.application.pipeline.shown_diagnosis.FIGURES", ("ranking",))
+    patch.setattr(f"{REPORTING}.report_data.ReportData.figures", property(few))
+    patch.setattr(f"{REPORTING}.html.folder.PER_RUN", ("velocities",))
     patch.setattr("rovsim.core.second_process.usable_cores", lambda: 1)

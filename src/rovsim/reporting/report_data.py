@@ -77,6 +77,13 @@ class ReportData:
             pitfalls=read("pitfalls", Pitfalls),
         )
 
+    @property
+    def figures(self) -> list[str]:
+        """Figures of what is known, of those that are drawn once."""
+        known = [name for name, result in ONCE.items() if getattr(self, result)]
+        pushed = self.diagnosis is not None and self.diagnosis.unexplained.disturbance is not None
+        return [name for name in known if name != "disturbance" or pushed]
+
     def predicted(
         self, run: str, horizon: str, name: str, models: Sequence[str]
     ) -> dict[str, Array]:

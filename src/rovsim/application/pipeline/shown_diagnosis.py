@@ -9,8 +9,6 @@ from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.reporting.html.folder import Drawn, present
 from rovsim.reporting.report_data import ReportData
 
-FIGURES = ("ranking", "where", "where_map", "ladder", "excitation")
-
 
 def show_diagnosis(
     out: Path,
@@ -38,10 +36,8 @@ def show_diagnosis(
     """
     found = data.diagnosis
     assert found is not None
-    names = [*FIGURES, *(["disturbance"] if found.unexplained.disturbance else [])]
-    wanted = [(name, "") for name in names]
     catalogue = load_catalogue(effect_files)
-    files = present(out, campaign, data, wanted, provenance, catalogue, drawn)
+    files = present(out, campaign, data, provenance, catalogue, drawn=drawn)
     if tracking is not None:
         kept = [out / "diagnosis.json", *files]
         track_diagnosis(tracking, campaign, base, found, params, kept)

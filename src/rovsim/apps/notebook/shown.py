@@ -16,7 +16,7 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
-from rovsim.reporting.report_data import ONCE, PER_RUN, ReportData, select_arguments
+from rovsim.reporting.report_data import PER_RUN, ReportData, select_arguments
 from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import title
 from rovsim.reporting.words.verdict import explain
@@ -37,8 +37,7 @@ class Figures:
     @property
     def figures(self) -> list[str]:
         """Names of the figures there are; those of one run take `run` as well."""
-        known = [name for name, of in ONCE.items() if getattr(self.data, of)]
-        return known + (list(PER_RUN) if self.data.replays else [])
+        return self.data.figures + (list(PER_RUN) if self.data.replays else [])
 
     def figure(self, name: str, run: str = "") -> Figure:
         """A figure, in the thesis style: 150 mm wide, 9 pt.

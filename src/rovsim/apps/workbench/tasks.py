@@ -17,15 +17,10 @@ from rovsim.core.progress import reported
 from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in, load_catalogue
-from rovsim.reporting.report_data import PER_RUN
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Ladder
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
-
-ONCE = (
-    "ranking", "ladder", "where", "where_map", "error_by_axis", "error_growth", "excitation"
-)  # fmt: skip
 
 
 def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
@@ -70,11 +65,9 @@ def report_into(
     data = measure(open_campaign(settings.campaign), settings.signals)
     models = load_models(settings.model, data.vehicle, catalogue)
     shown = replace(compare(data, models, settings), ladder=ladder, diagnosis=diagnosis)
-    wanted = [(figure, "") for figure in ONCE if figure != "ranking" or diagnosis]
     tests = [run for run in data.runs.of("test") if run in shown.drawn]
-    wanted += [(figure, run) for run in tests for figure in PER_RUN]
     origin = provenance(select(settings, CampaignSettings), catalogue, data.campaign)
-    present(out, data.campaign.name, shown, wanted, origin, catalogue)
+    present(out, data.campaign.name, shown, origin, catalogue, tests)
     for name in ("comparison", "where", "ladder", "diagnosis"):
         if result := getattr(shown, name):
             result.write(out / f"{name}.json")

@@ -9,7 +9,7 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import report
-from rovsim.reporting.report_data import ReportData, describe, select_arguments
+from rovsim.reporting.report_data import PER_RUN, ReportData, describe, select_arguments
 
 Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once
 
@@ -27,27 +27,31 @@ def present(
     out: Path,
     campaign: str,
     data: ReportData,
-    wanted: Iterable[Wanted],
     provenance: Mapping[str, object],
     catalogue: Mapping[str, type[Effect]],
+    runs: Sequence[str] = (),
     drawn: Iterable[Drawn] = (),
 ) -> list[Path]:
-    """Draw what is wanted and not yet drawn, write `out`/report.html; returns all files there are.
+    """Draw what is known and not yet `drawn`, write `out`/report.html; returns all files there are.
 
-    The page shows figures in the order in which they are wanted.
+    `runs`: those of which each has its figures.
     """
-    known = {one.wanted: one for one in drawn}
-    wanted = list(wanted)
-    known |= {one.wanted: one for one in draw(out, [w for w in wanted if w not in known], data)}
-    shown = [known[one] for one in wanted]
+    shown = draw(out, data, runs, drawn)
     page = report.Report(campaign, data, [one.picture for one in shown], provenance, catalogue)
     report.write(out / "report.html", page)
     return [out / "report.html", *(path for one in shown for path in one.files)]
 
 
-def draw(out: Path, wanted: Iterable[Wanted], data: ReportData) -> list[Drawn]:
-    """Draw figures into `out`/figures."""
-    return [_draw(out, *one, data) for one in counted(list(wanted), "drawing")]
+def draw(
+    out: Path, data: ReportData, runs: Sequence[str] = (), drawn: Iterable[Drawn] = ()
+) -> list[Drawn]:
+    """All figures of what is known, and of these runs; those not yet `drawn` into `out`/figures."""
+    known = {one.wanted: one for one in drawn}
+    wanted = [(figure, "") for figure in data.figures]
+    wanted += [(figure, run) for run in runs for figure in PER_RUN]
+    left = [one for one in wanted if one not in known]
+    known |= {one: _draw(out, *one, data) for one in counted(left, "drawing")}
+    return [known[one] for one in wanted]
 
 
 def _draw(out: Path, figure: str, run: str, data: ReportData) -> Drawn:

@@ -15,10 +15,7 @@ from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.report_data import PER_RUN
 from rovsim.reporting.words.terminal import tell_comparison
-
-ONCE = ("where", "where_map", "error_by_axis", "error_growth", "excitation")
 
 
 class Settings(CampaignSettings):
@@ -44,10 +41,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         found.coverage.write(out / "bands.json")
     else:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
-    wanted = [(figure, "") for figure in ONCE]
-    wanted += [(figure, run) for run in found.drawn for figure in PER_RUN]
     origin = provenance(settings, catalogue, campaign)
-    present(out, campaign.name, found, wanted, origin, catalogue)
+    present(out, campaign.name, found, origin, catalogue, found.drawn)
     errors = {step.model: step.windows_2s for step in found.steps}
     text = tell_comparison(errors, found.where, bool(data.runs.of("test")), found.coverage)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"

@@ -26,7 +26,6 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.report_data import ReportData
 from rovsim.results.error_conditions import ErrorConditions
 
-EARLY = [("where", ""), ("where_map", ""), ("excitation", "")]  # while the diagnosis goes on
 # The second process imports these; this one does without them, to begin sooner.
 DRAWING, SHOWING = "rovsim.reporting.html.folder", "rovsim.application.pipeline.shown_diagnosis"
 LOGGING = ("mlflow.tracking", "mlflow.store.tracking.sqlalchemy_store")
@@ -52,7 +51,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
         def draw_early(where: ErrorConditions) -> None:
             known = ReportData(where=where, quality=data.quality)
-            early.append(other.submit(call, f"{DRAWING}:draw", out, EARLY, known))
+            early.append(other.submit(call, f"{DRAWING}:draw", out, known))
 
         how = select(settings, DiagnosisSettings)
         found = diagnose(data.runs, base, how, catalogue, draw_early)
