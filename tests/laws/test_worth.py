@@ -5,7 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rovsim import AXES
+from rovsim.design.knowledge import Knowledge, Known, widen
 from rovsim.design.worth import Worth, surprise
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.dynamics.effects.damping import LinearDamping
+from rovsim.dynamics.effects.onboard_control import OnboardControl
 
 N = 4096
 
@@ -37,3 +42,30 @@ def test_a_rival_that_is_ruled_out_does_not_count():
     gain = np.array([30.0, 2.0])
     for likely, told in (([True, True], 2.0), ([True, False], 30.0)):
         assert Worth(surer=(), std=(), gain=gain, likely=np.array(likely)).told == told
+
+
+@pytest.mark.parametrize("n", [401, 402, 1024, 3])
+def test_octaves_hold_all_the_power_once(n):
+    left = 1e-4 * np.random.default_rng(n).normal(size=(6, n))
+    assert surprise(left, 1.0) == pytest.approx(np.sum(left**2), rel=1e-6)
+
+
+def test_a_rival_with_odds_of_a_thousand_against_it_is_ruled_out():
+    def known(*likelihoods):
+        rivals = [
+            Known(None, np.eye(1), np.array([0]), one, None, np.eye(1)) for one in likelihoods
+        ]
+        return Knowledge((), (), tuple(rivals), None, ())
+
+    assert list(known(0.0, -13.7).likely) == [True, True]
+    assert list(known(-13.9, 0.0).likely) == [False, True]
+    assert list(known(3.0).likely) == [True]
+
+
+def test_a_rival_frees_what_its_effect_can_change_from_where_it_is():
+    loop = Term(OnboardControl(gain_heave=2.0, bandwidth_heave=1.0), ("gain_heave",))
+    drag = Term(LinearDamping(sway=1.0), ("sway",))
+    loops, other = widen(Hypothesis(None, (loop, drag)), "onboard_control").terms
+    assert set(loops.free) == {"gain_heave", "bandwidth_heave"}
+    assert other is drag
+    assert set(widen(Hypothesis(None, (drag,)), "linear_damping").terms[0].free) == set(AXES)

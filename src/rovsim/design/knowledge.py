@@ -112,7 +112,7 @@ class Knowledge:
 
     @property
     def likely(self) -> Array:
-        """Which of the rivals (r,) the train runs leave possible; all that was asked without."""
+        """Which rivals (r,) the train runs leave possible; without rivals the one hypothesis."""
         found = np.array([rival.likelihood for rival in self.rivals])
         return found > np.max(found) - 2.0 * np.log(RULED_OUT)
 
@@ -235,12 +235,12 @@ def _know(
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = price * sum(term.choices for term in found.hypothesis.terms)
     information = inner_products(bank.flatten(found.seen.J, found.noise))
-    held = information
-    if widest is not None:
-        held = inner_products(bank.flatten(bank.linearise(widest).J, found.noise))
+    seen = bank.linearise(widest) if widest else found.seen
+    if not seen.finite:  # a parameter that nobody needs, and without which it cannot move
+        widest, seen = None, found.seen
     return Known(
         found.hypothesis, information, chosen, found.likelihood - paid,
-        widest or found.hypothesis, held,
+        widest or found.hypothesis, inner_products(bank.flatten(seen.J, found.noise)),
     )  # fmt: skip
 
 
@@ -260,22 +260,20 @@ def _learn_rivals(
     for name, (found, bank) in zip(question.between, fits, strict=True):
         names = found.hypothesis.parameter_names
         wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
-        full = next(c for c in candidates if c.effect.id == name)
-        rivals.append(_know(found, bank, wanted, price, _widen(found.hypothesis, full)))
+        rivals.append(_know(found, bank, wanted, price, widen(found.hypothesis, name)))
     best, bank = max(fits, key=lambda one: one[0].likelihood)
     asked = tuple(question.between)
     return Knowledge(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
 
 
-def _widen(h: Hypothesis, own: Candidate) -> Hypothesis:
-    """All parameters of an effect free: the train runs chose those that they needed."""
+def widen(h: Hypothesis, effect: str) -> Hypothesis:
+    """With all free that an effect can change from where it is: the train runs chose of these."""
 
     def widened(term: Term) -> Term:
-        if term.id != own.effect.id:
-            return term
-        return replace(term, free=(*term.free, *(n for n in own.free if n not in term.free)))
+        able = term.effect.free_at(term.effect.given())
+        return replace(term, free=tuple(dict.fromkeys((*term.free, *able))))
 
-    return replace(h, terms=tuple(widened(term) for term in h.terms))
+    return replace(h, terms=tuple(widened(t) if t.id == effect else t for t in h.terms))
 
 
 def _propose(

@@ -29,6 +29,7 @@ from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import tune
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.selection.gauss_newton import REACH
 
 NOTHING = 1e-3  # of what the train runs hold: less is not worth a comparison
 THINNED = 4  # of so many readings one is asked how errors go on: 0.2 s apart
@@ -40,7 +41,8 @@ class Worth:
 
     `surer` (j,) for each rival: standard deviation now over then of what is asked for; `std`
     likewise then, scaled. `gain` (r,): what the logarithm of the odds of each rival, were it true,
-    is expected to gain; empty without rivals. `likely` (r,): the rivals that count.
+    is expected to gain; empty without rivals. `likely` (r,): the rivals that count; of others the
+    gain is infinite where nobody asked for it.
     """
 
     surer: tuple[Array, ...]
@@ -72,22 +74,21 @@ def value(
     """
     if not exact:
         around = around.coarser
-    runs = [
-        record(path, commands, rival.hypothesis.model, around)
-        for path, rival in zip(paths, known.rivals, strict=True)
-    ]
     told, gains, motions = [], [], None
-    for k, (run, rival) in enumerate(zip(runs, known.rivals, strict=True)):
+    for k, (path, rival) in enumerate(zip(paths, known.rivals, strict=True)):
         if not (exact or known.likely[k]):
             told.append(np.zeros_like(rival.information))
             gains.append(np.inf)
             continue
+        run = record(path, commands, rival.hypothesis.model, around)
         if exact or motions is None:
             motions = _mix_motions(run, rival, known)
         bank = _observe(run, rival, known, motions, exact)
-        own = bank.linearise(rival.hypothesis if exact or len(runs) == 1 else rival.as_it_is)
+        own = bank.linearise(
+            rival.hypothesis if exact or len(known.rivals) == 1 else rival.as_it_is
+        )
         told.append(_told(bank, own, rival, known, exact))
-        if len(runs) > 1:
+        if len(known.rivals) > 1:
             gains.append(_gain(bank, own, known.rivals[1 - k], known, exact))
     then = [one.std(of) for one, of in zip(known.rivals, told, strict=True)]
     now = [one.std() for one in known.rivals]
@@ -122,20 +123,23 @@ def _told(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge, exa
 
 
 def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, exact: bool) -> float:
-    """What the log odds against a rival gain where another one is true."""
-    seen = bank.linearise(other.widest)
+    """What the log odds against a rival, with all that it could free, gain where one is true.
+
+    Its parameters stay within the reach that a fit gives them.
+    """
+    seen, held = bank.linearise(other.widest), other.held
+    if not seen.finite:
+        seen, held = bank.linearise(other.hypothesis), other.information
     if not seen.finite:
         return np.inf
     beside = [a - b for a, b in zip(seen.e, true.e, strict=True)]
     beside = [*(0.0 * one for one in beside[:-1]), beside[-1]]  # what is known is judged already
     e = bank.flatten([one[None] for one in beside], known.noise)[0]
     J = bank.flatten(seen.J, known.noise)
-    H, slope = inner_products(J), J @ e
-    if not exact:
-        H = H + other.held
-    x = -solve(H, slope)
+    near = np.eye(len(J)) / REACH**2 + (0.0 if exact else held)
+    x = -solve(inner_products(J) + near, J @ e)
     left = (e + x @ J).reshape(6, -1)
-    before = 0.0 if exact else float(x @ other.held @ x)
+    before = float(x @ near @ x)
     more = 0 if exact else known.count  # readings that it leaves as they were
     return 0.5 * (before + surprise(left, 1.0 + more / left.shape[1]))
 
@@ -147,9 +151,11 @@ def surprise(left: Array, lasting: float) -> float:
     P beside n of noise, costs n log(1 + P / n). `lasting` times as long the noise is to hold.
     """
     n = left.shape[1]
-    numbers = np.full(n // 2 + 1, 2.0)  # each frequency has a sine and a cosine
+    numbers = np.full(n // 2 + 1, 2.0)  # a frequency has a sine and a cosine
     numbers[0] = 1.0
+    if n % 2 == 0:
+        numbers[-1] = 1.0  # the highest has no sine at the samples
     power = numbers * np.abs(np.fft.rfft(left, axis=1)) ** 2 / n
-    octaves = np.concatenate([[0], 2 ** np.arange(int(np.log2(n // 2)) + 1)])
+    octaves = np.concatenate([[0], 2 ** np.arange(int(np.log2(max(1, (n - 1) // 2))) + 1)])
     numbers = np.add.reduceat(numbers, octaves) * lasting
     return float(np.sum(numbers * np.log1p(np.add.reduceat(power, octaves, axis=1) / numbers)))
