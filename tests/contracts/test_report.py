@@ -380,9 +380,20 @@ def test_of_many_runs_it_says_which_are_drawn(content):
         **{k: content[k] for k in ("comparison", "ladder")}, motions=many,
         replays={"nominal": {}, "better": {}}, drawn=("3", "4"),
     )  # fmt: skip
-    said = "Drawn are the 2 runs on which better errs most, of 200; the workbench shows each."
+    said = "Of 200 runs, 3 and 4 have figures of their own; the workbench shows each."
     assert said in report.render(report.Report("x", data))
-    assert "Drawn are" not in rendered(comparison=content["comparison"])
+    assert "figures of their own" not in rendered(comparison=content["comparison"])
+
+
+def test_what_is_known_says_which_figures_there_are(content):
+    assert ReportData().figures == []
+    early = ReportData(where=content["where"], quality=content["quality"])
+    assert early.figures == ["excitation", "where", "where_map"]
+    pushed = content["diagnosis"]
+    assert ReportData(diagnosis=pushed).figures == ["ranking", "disturbance"]
+    calm = pushed.unexplained.model_copy(update={"disturbance": None})
+    found = pushed.model_copy(update={"unexplained": calm})
+    assert ReportData(diagnosis=found).figures == ["ranking"]
 
 
 def test_long_lists_of_runs_are_cut():

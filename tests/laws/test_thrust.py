@@ -5,10 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rovsim.benchmarks.blind.outside import Backlash
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
 from rovsim.dynamics.effects.clocks import ClockDrift, InputDelay
 from rovsim.dynamics.effects.force_curve import ForceCurve
+from rovsim.dynamics.effects.thruster_play import ThrusterPlay
 from rovsim.dynamics.effects.thrusters import (
     AdvanceLoss,
     PropellerTorque,
@@ -97,6 +99,34 @@ def test_the_response_can_be_computed_in_pieces():
         mean, states = path.respond(piece, 0.01, states)
         parts.append(mean)
     np.testing.assert_allclose(np.concatenate(parts), whole, atol=1e-12)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3, 7, 100, 1201])
+def test_play_found_by_doubling_is_play_step_by_step(steps):
+    """Of the benchmark's own backlash, which is stated step by step."""
+    asked = np.cumsum(np.random.default_rng(steps).normal(size=(steps, 8)), axis=0)
+    for state in (None, np.linspace(-3.0, 3.0, 8)):
+        found, after = ThrusterPlay(band=0.7).respond(asked, 0.05, state)
+        told, then = Backlash(width=0.7).respond(asked, 0.05, state)
+        np.testing.assert_array_equal(found, told)
+        np.testing.assert_array_equal(after, then)
+
+
+def test_play_may_grow_and_be_computed_in_pieces():
+    asked = np.cumsum(np.random.default_rng(0).normal(size=(300, 8)), axis=0)
+    play = ThrusterPlay(band=0.2, share=0.3)
+    whole, _ = play.respond(asked, 0.05, None)
+    band = 0.2 + 0.3 * np.abs(asked)
+    F, told = asked[0], []
+    for wanted, w in zip(asked, band, strict=True):
+        F = np.clip(F, wanted - w, wanted + w)
+        told.append(F)
+    np.testing.assert_array_equal(whole, told)
+    state, parts = None, []
+    for piece in np.split(asked, [1, 50, 51]):
+        force, state = play.respond(piece, 0.05, state)
+        parts.append(force)
+    np.testing.assert_array_equal(np.concatenate(parts), whole)
 
 
 def test_gain_asymmetry_sag_and_deadband():

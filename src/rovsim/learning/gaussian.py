@@ -14,7 +14,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim import AXES
-from rovsim.core.normal import MAD
+from rovsim.core.normal import STD_PER_MAD
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
 from rovsim.learning.posterior_variance import PosteriorVariance, rbf
@@ -46,7 +46,7 @@ def huberize(X: Array, Y: Array, settings: GaussianSettings) -> Array:
     Z = fit_scaling("standard", X).apply(X)
     _, near = scipy.spatial.cKDTree(Z).query(Z, NEARBY + 1)
     usual = np.median(Y[np.asarray(near)[:, 1:]], axis=1)
-    reach = settings.huberized * MAD * np.median(np.abs(Y - usual), axis=0)
+    reach = settings.huberized * STD_PER_MAD * np.median(np.abs(Y - usual), axis=0)
     return usual + np.clip(Y - usual, -reach, reach)
 
 

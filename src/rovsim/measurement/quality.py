@@ -5,7 +5,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.core.normal import MAD
+from rovsim.core.normal import STD_PER_MAD
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
 from rovsim.measurement.recording.channels import KINDS
 from rovsim.measurement.recording.reading import Anomalies
@@ -235,7 +235,7 @@ def _evenly_spaced(recording: Recording) -> Array:
 def _robust_std(third: Array) -> float | None:
     if len(third) < 10:
         return None
-    per_axis = MAD * np.median(np.abs(third - np.median(third, axis=0)), axis=0)
+    per_axis = STD_PER_MAD * np.median(np.abs(third - np.median(third, axis=0)), axis=0)
     return float(np.sqrt(np.mean(per_axis**2) / 20.0))
 
 

@@ -40,7 +40,7 @@ from rovsim.results.comparison import WINDOW
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
 STEPS = 400  # of a slider
-SENT = 0.002  # s: curves are on their way, which the page would draw after the numbers
+SENT = 0.002  # s: NiceGUI has sent the curves; beside them it would send the numbers first
 
 
 class Add:
@@ -131,21 +131,21 @@ class Add:
             back.props(f'flat dense aria-label="{about}" title="{about}"')
             total = ui.label(self._total(effect, parameter.name, value)).classes("total")
 
-        async def moved(event: Any) -> None:
-            now = float(event.args)
+        async def change(now: float) -> None:
             if now == self.draft.entry(effect).parameters[parameter.name].value:
                 return  # a key tells its value twice, and the throttle tells the last one again
-            number.set_value(float(significant(now)))
             total.text = self._total(effect, parameter.name, now)
             self.draft.move(effect, parameter.name, now)
             await self.update()
 
+        async def moved(event: Any) -> None:
+            number.set_value(float(significant(event.args)))
+            await change(float(event.args))
+
         async def typed() -> None:
             if number.value is not None:
                 slider.set_value(number.value)
-                total.text = self._total(effect, parameter.name, float(number.value))
-                self.draft.move(effect, parameter.name, float(number.value))
-                await self.update()
+                await change(float(number.value))
 
         async def reset() -> None:
             self.draft.reset(effect, parameter.name)

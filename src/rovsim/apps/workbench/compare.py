@@ -25,6 +25,7 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.results.comparison import WINDOW
 from rovsim.simulation.bands import LEVEL, Band, why_without_bands
 from rovsim.simulation.prediction import Prediction
 
@@ -43,7 +44,7 @@ class Compare:
         run = first_run(bench)
         first = {
             "run": run, "beside": [], "models": [bench.base.name], "axes": excited(bench, run),
-            "quantity": "nu", "horizon": 2.0, "bands": False,
+            "quantity": "nu", "horizon": WINDOW, "bands": False,
         }  # fmt: skip
         possible: dict[str, Sequence[Any]] = {
             "run": runs, "beside": runs, "models": list(bench.models), "axes": AXES,

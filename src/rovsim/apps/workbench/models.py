@@ -37,7 +37,7 @@ from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import significant
 from rovsim.reporting.words.verdict import interval
-from rovsim.results.comparison import OPEN_LOOP, Metrics
+from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
 from rovsim.results.fitted import FittedValue
 
 TITLE, QUESTION = "Models", "Which of two models is better, and what sets them apart?"
@@ -59,7 +59,7 @@ class Models:
         added = list(bench.models)[1:]
         first = {
             "left": bench.base.name, "right": (added or known)[-1], "run": run,
-            "axes": excited(bench, run), "horizon": 2.0,
+            "axes": excited(bench, run), "horizon": WINDOW,
         }  # fmt: skip
         possible: Mapping[str, Sequence[Any]] = {
             "left": known, "right": known, "run": list(motions), "axes": AXES,

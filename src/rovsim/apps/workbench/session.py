@@ -34,7 +34,7 @@ class Session:
         self.described = Path()
         self.scratch: Any = None
         self.work, self.pages, self._changes = LongWork(), 0, 0
-        self._opening = asyncio.Lock()
+        self._reading: asyncio.Task[None] | None = None
 
     @property
     def name(self) -> str:
@@ -99,18 +99,30 @@ class Session:
 
     async def opened(self) -> Any:
         """The open campaign, read now if need be; None when there is none, or it cannot be read."""
-        async with self._opening:
-            if self.bench is None and self.settings.campaign and not self.problem:
-                from rovsim.apps.workbench.parts import in_thread
-
-                try:
-                    self.bench = await in_thread(_open, self.settings, self.catalogue)
-                    self.opened_at = time.monotonic()
-                    remember(Path(self.settings.campaign))
-                    _keep_loaded()
-                except RovsimError as error:
-                    self.problem = str(error)
+        while self.bench is None and self.settings.campaign and not self.problem:
+            if self._reading is None:
+                self._reading = asyncio.create_task(self._read(self.settings))
+            await asyncio.shield(self._reading)  # a screen that is left does not end it
         return self.bench
+
+    async def _read(self, settings: WorkbenchSettings) -> None:
+        """Read a campaign, unless another one is chosen meanwhile."""
+        from rovsim.apps.workbench.parts import in_thread
+
+        bench, problem = None, ""
+        try:
+            bench = await in_thread(_open, settings, self.catalogue)
+        except RovsimError as error:
+            problem = str(error)
+        finally:
+            self._reading = None
+        if settings is not self.settings:
+            return
+        self.bench, self.problem = bench, problem
+        if bench is not None:
+            self.opened_at = time.monotonic()
+            remember(Path(settings.campaign or ""))
+            _keep_loaded()
 
     @property
     def works(self) -> Iterator[LongWork]:

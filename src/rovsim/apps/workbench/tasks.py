@@ -64,10 +64,11 @@ def report_into(
     catalogue = load_catalogue(settings.effect_files)
     data = measure(open_campaign(settings.campaign), settings.signals)
     models = load_models(settings.model, data.vehicle, catalogue)
-    shown = replace(compare(data, models, settings), ladder=ladder, diagnosis=diagnosis)
-    tests = [run for run in data.runs.of("test") if run in shown.drawn]
+    compared = compare(data, models, settings)
+    tests = tuple(run for run in data.runs.of("test") if run in compared.drawn)
+    shown = replace(compared, ladder=ladder, diagnosis=diagnosis, drawn=tests)
     origin = provenance(select(settings, CampaignSettings), catalogue, data.campaign)
-    present(out, data.campaign.name, shown, origin, catalogue, tests)
+    present(out, data.campaign.name, shown, origin, catalogue)
     for name in ("comparison", "where", "ladder", "diagnosis"):
         if result := getattr(shown, name):
             result.write(out / f"{name}.json")

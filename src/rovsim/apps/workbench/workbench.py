@@ -27,7 +27,7 @@ from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scores import subtract, summarize
-from rovsim.results.comparison import OPEN_LOOP, Metrics
+from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import EFFECTS, Ladder, Step
 from rovsim.simulation.bands import Band, foresee
@@ -257,14 +257,14 @@ class Workbench:
     def run_error(self, model: Model, run: str) -> float | None:
         """`windows_2s` of one run alone."""
         motion = self.data.motions[run]
-        replayed = self.replayed(model, run, 2.0)
+        replayed = self.replayed(model, run, WINDOW)
         return score_step(model.name, [(motion, replayed)], motion.run.split).windows_2s
 
     def step(self, model: Model) -> Step:
         """The ladder's step of one model; this opens the test runs."""
         if model not in self._steps:
             tests = self.data.runs.of("test")
-            pairs = ((self.data.motions[r], self.replayed(model, r, 2.0)) for r in tests)
+            pairs = ((self.data.motions[r], self.replayed(model, r, WINDOW)) for r in tests)
             self._steps[model] = score_step(model.name, pairs)
         return self._steps[model]
 

@@ -19,7 +19,7 @@ from scipy.stats import chisquare
 
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import Case
-from rovsim.core.normal import INTERVAL
+from rovsim.core.normal import Z_95
 from rovsim.dynamics.catalogue import built_in
 from rovsim.results.bands import Bands
 from rovsim.results.blind_benchmark import BandRates, Calibration, Claims, Ranks
@@ -106,8 +106,8 @@ def rank(misses: Sequence[Miss]) -> Ranks:
     counts = np.bincount(at, minlength=BINS)
     return Ranks(
         values=len(z),
-        covered=float(np.mean(np.abs(z) <= INTERVAL)) if len(z) else None,
-        stretch=float(np.quantile(np.abs(z), 0.95) / INTERVAL) if len(z) else None,
+        covered=float(np.mean(np.abs(z) <= Z_95)) if len(z) else None,
+        stretch=float(np.quantile(np.abs(z), 0.95) / Z_95) if len(z) else None,
         counts=tuple(int(c) for c in counts),
         p_value=_test_evenness(counts),
     )

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Iterator, Sequence
 
 from rovsim.benchmarks.blind.case import Case
-from rovsim.core.normal import INTERVAL
+from rovsim.core.normal import Z_95
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Parameter
 from rovsim.results.base import or_nan
@@ -126,6 +126,6 @@ def _parameter(declared: Parameter, truth: float, answer: FittedEffect) -> Param
     fitted = answer.parameters.get(declared.name)
     value, std = (fitted.value, fitted.std) if fitted else (declared.default, None)
     miss = abs(or_nan(value) - truth)
-    covered = None if std is None else miss <= INTERVAL * std
+    covered = None if std is None else miss <= Z_95 * std
     size = max(declared.size(truth), 1e-9)
     return ParameterScore(answer.effect, declared.name, miss / size, covered)

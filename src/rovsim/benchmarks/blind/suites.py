@@ -96,7 +96,7 @@ def standard(seeds: Range) -> Iterator[Case]:
 
 
 def full(seeds: Range) -> Iterator[Case]:
-    """All kinds; the other suites are parts of it."""
+    """All kinds but laboratories, laws and recordings; quick and standard are parts of it."""
     for name, recipe in RECIPES.items():
         yield from (hiding("single", (name,), k, seeds) for k in range(6))
         if recipe.weak:

@@ -8,6 +8,7 @@ from scipy.signal import lfilter
 from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
+from rovsim.core.normal import STD_PER_MAD
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.diagnosis.observer.kalman import AxisFilter
 from rovsim.diagnosis.observer.observed_run import ObservedRun
@@ -15,7 +16,6 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 SUDDEN = 0.2  # s, about what the readings resolve
 RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
 UNEVEN = 1.15  # turbulence is not equally strong all the time, nor in all runs
-GAUSSIAN_MEDIAN = 0.6745  # of the magnitude, in standard deviations
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
 ECHO = 2.0  # s within which the filter forgets a kick
 # One moment counts by its own size, not by its mean over the run, but must stand out that far.
@@ -27,7 +27,7 @@ def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
     few = max(1, round(SUDDEN / residual.runs[0].period))
     sums = np.concatenate([_add_neighbours(w, few) for w in residual.white])
     # the median is not moved by what is looked for
-    usual = float(np.median(np.abs(sums))) / GAUSSIAN_MEDIAN
+    usual = STD_PER_MAD * float(np.median(np.abs(sums)))
     count = int(np.sum(np.abs(sums) > RARE * usual))
     limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE / UNEVEN))
     if count > limit:

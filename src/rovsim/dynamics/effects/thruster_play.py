@@ -33,7 +33,7 @@ class ThrusterPlay(Response):
         band = known.get("band", 0.0) + known.get("share", 0.0) * np.abs(force)
         low, high, done = force - band, force + band, 1
         while done < len(force):
-            own = low[done:].copy(), high[done:].copy()
+            own = low[done:].copy(), high[done:]
             low[done:] = np.clip(low[:-done], *own)
             high[done:] = np.clip(high[:-done], *own)
             done *= 2

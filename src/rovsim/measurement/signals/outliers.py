@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim.core import rotations
-from rovsim.core.normal import MAD
+from rovsim.core.normal import STD_PER_MAD
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
 
@@ -87,7 +87,7 @@ class Hampel(Section):
         slope = np.median(np.diff(window, axis=1) / np.diff(ago, axis=1), axis=1)
         window = window - slope[:, None] * ago
         middle = np.median(window, axis=1)
-        spread = MAD * np.median(np.linalg.norm(window - middle[:, None], axis=2), axis=1)
+        spread = STD_PER_MAD * np.median(np.linalg.norm(window - middle[:, None], axis=2), axis=1)
         return np.linalg.norm(x - middle, axis=1) > self.threshold * np.maximum(spread, noise)
 
 

@@ -29,26 +29,20 @@ def present(
     data: ReportData,
     provenance: Mapping[str, object],
     catalogue: Mapping[str, type[Effect]],
-    runs: Sequence[str] = (),
     drawn: Iterable[Drawn] = (),
 ) -> list[Path]:
-    """Draw what is known and not yet `drawn`, write `out`/report.html; returns all files there are.
-
-    `runs`: those of which each has its figures.
-    """
-    shown = draw(out, data, runs, drawn)
+    """Draw what is known and not yet `drawn`, write `out`/report.html; returns all files."""
+    shown = draw(out, data, drawn)
     page = report.Report(campaign, data, [one.picture for one in shown], provenance, catalogue)
     report.write(out / "report.html", page)
     return [out / "report.html", *(path for one in shown for path in one.files)]
 
 
-def draw(
-    out: Path, data: ReportData, runs: Sequence[str] = (), drawn: Iterable[Drawn] = ()
-) -> list[Drawn]:
-    """All figures of what is known, and of these runs; those not yet `drawn` into `out`/figures."""
+def draw(out: Path, data: ReportData, drawn: Iterable[Drawn] = ()) -> list[Drawn]:
+    """All figures of what is known; those that are not yet `drawn` go into `out`/figures."""
     known = {one.wanted: one for one in drawn}
     wanted = [(figure, "") for figure in data.figures]
-    wanted += [(figure, run) for run in runs for figure in PER_RUN]
+    wanted += [(figure, run) for run in data.drawn for figure in PER_RUN]
     left = [one for one in wanted if one not in known]
     known |= {one: _draw(out, *one, data) for one in counted(left, "drawing")}
     return [known[one] for one in wanted]

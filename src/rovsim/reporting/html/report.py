@@ -22,7 +22,7 @@ from rovsim.reporting.tables import (
     tabulate_ladder,
     tabulate_published_errors,
 )
-from rovsim.reporting.wording import explain_model, several, significant, title
+from rovsim.reporting.wording import explain_model, listed, several, significant, title
 from rovsim.reporting.words.published_errors import tell_pitfalls, tell_standings
 from rovsim.reporting.words.sentences import summarize
 from rovsim.reporting.words.verdict import explain
@@ -172,12 +172,12 @@ def _published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:
 
 
 def _tell_undrawn(data: ReportData) -> str:
-    """Which runs have figures, where not all of them do."""
+    """Which runs have figures of their own, where not all of them do."""
     if len(data.drawn) in (0, len(data.motions)):
         return ""
     return (
-        f"Drawn are the {len(data.drawn)} runs on which {list(data.replays)[-1]} errs most, of "
-        f"{len(data.motions)}; the workbench shows each."
+        f"Of {len(data.motions)} runs, {listed(data.drawn)} have figures of their own; the "
+        "workbench shows each."
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 from rovsim import AXES
-from rovsim.core.normal import INTERVAL
+from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import listed, significant
@@ -91,7 +91,7 @@ def _missing(one: FittedEffect, known: type[Effect] | None) -> Missing:
 def interval(value: FittedValue) -> str:
     """A fitted value with its 95 % interval and unit: 0.181 ± 0.002 s."""
     unit = "" if value.unit in (None, "1") else re.sub(r"(?<=[a-z])2", "²", value.unit)
-    half = INTERVAL * or_nan(value.std)
+    half = Z_95 * or_nan(value.std)
     if not math.isfinite(half) or half <= 0.0:
         return f"{significant(or_nan(value.value), 4)} {unit}".strip()
     places = max(0, 1 - math.floor(math.log10(half)))
@@ -100,7 +100,7 @@ def interval(value: FittedValue) -> str:
 
 def differs_from_zero(value: FittedValue) -> bool:
     """Whether a fitted value's 95 % interval leaves zero out; False where it has none."""
-    return abs(or_nan(value.value)) > INTERVAL * or_nan(value.std) > 0.0
+    return abs(or_nan(value.value)) > Z_95 * or_nan(value.std) > 0.0
 
 
 def percent(share: float | None) -> str:

@@ -42,7 +42,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     else:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
     origin = provenance(settings, catalogue, campaign)
-    present(out, campaign.name, found, origin, catalogue, found.drawn)
+    present(out, campaign.name, found, origin, catalogue)
     errors = {step.model: step.windows_2s for step in found.steps}
     text = tell_comparison(errors, found.where, bool(data.runs.of("test")), found.coverage)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
