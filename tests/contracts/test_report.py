@@ -380,7 +380,10 @@ def test_of_many_runs_it_says_which_are_drawn(content):
         **{k: content[k] for k in ("comparison", "ladder")}, motions=many,
         replays={"nominal": {}, "better": {}}, drawn=("3", "4"),
     )  # fmt: skip
-    said = "Of 200 runs, 3 and 4 have figures of their own; the workbench shows each."
+    said = (
+        "Of 200 runs, 3 and 4 have figures of their own: of many, those on which better errs most. "
+        "The workbench shows each."
+    )
     assert said in report.render(report.Report("x", data))
     assert "figures of their own" not in rendered(comparison=content["comparison"])
 

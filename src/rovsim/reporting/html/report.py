@@ -27,7 +27,7 @@ from rovsim.reporting.words.published_errors import tell_pitfalls, tell_standing
 from rovsim.reporting.words.sentences import summarize
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
-from rovsim.results.comparison import HORIZON, Comparison
+from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import RATES
 
@@ -38,7 +38,7 @@ COMPARED = (
     (HORIZON, "velocity_rmse"),
     (HORIZON, "acceleration_rmse"),
     (HORIZON, "velocity_mae"),
-    ("open_loop", "velocity_rmse"),
+    (OPEN_LOOP, "velocity_rmse"),
 )
 
 
@@ -176,8 +176,8 @@ def _tell_undrawn(data: ReportData) -> str:
     if len(data.drawn) in (0, len(data.motions)):
         return ""
     return (
-        f"Of {len(data.motions)} runs, {listed(data.drawn)} have figures of their own; the "
-        "workbench shows each."
+        f"Of {len(data.motions)} runs, {listed(data.drawn)} have figures of their own: of many, "
+        f"those on which {list(data.replays)[-1]} errs most. The workbench shows each."
     )
 
 
