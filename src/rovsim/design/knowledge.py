@@ -234,14 +234,13 @@ def _know(
     names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = price * sum(term.choices for term in found.hypothesis.terms)
-    information = inner_products(bank.flatten(found.seen.J, found.noise))
-    seen = bank.linearise(widest) if widest else found.seen
-    if not seen.finite:  # a parameter that nobody needs, and without which it cannot move
-        widest, seen = None, found.seen
-    return Known(
-        found.hypothesis, information, chosen, found.likelihood - paid,
-        widest or found.hypothesis, inner_products(bank.flatten(seen.J, found.noise)),
-    )  # fmt: skip
+    likelihood, taking_up = found.likelihood - paid, found.hypothesis
+    information = held = inner_products(bank.flatten(found.seen.J, found.noise))
+    if widest is not None:
+        seen = bank.linearise(widest)
+        if seen.finite:  # else it cannot move with what nobody needs free
+            taking_up, held = widest, inner_products(bank.flatten(seen.J, found.noise))
+    return Known(found.hypothesis, information, chosen, likelihood, taking_up, held)
 
 
 def _learn_rivals(

@@ -74,7 +74,7 @@ def value(
     """
     if not exact:
         around = around.coarser
-    told, gains, motions = [], [], None
+    told, gains, motions, alone = [], [], None, len(known.rivals) == 1
     for k, (path, rival) in enumerate(zip(paths, known.rivals, strict=True)):
         if not (exact or known.likely[k]):
             told.append(np.zeros_like(rival.information))
@@ -84,11 +84,9 @@ def value(
         if exact or motions is None:
             motions = _mix_motions(run, rival, known)
         bank = _observe(run, rival, known, motions, exact)
-        own = bank.linearise(
-            rival.hypothesis if exact or len(known.rivals) == 1 else rival.as_it_is
-        )
+        own = bank.linearise(rival.hypothesis if exact or alone else rival.as_it_is)
         told.append(_told(bank, own, rival, known, exact))
-        if len(known.rivals) > 1:
+        if not alone:
             gains.append(_gain(bank, own, known.rivals[1 - k], known, exact))
     then = [one.std(of) for one, of in zip(known.rivals, told, strict=True)]
     now = [one.std() for one in known.rivals]

@@ -14,7 +14,7 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, merged, random_of, seed_of
-from rovsim.benchmarks.blind.recipes import RECIPES, drawn
+from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
@@ -68,9 +68,8 @@ def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case
     """A wrong file, a camera that errs, and three or five special effects of different families."""
     how, count = list(CAMERAS)[k % 2], (3, 5)[k // 2 % 2]
     random = random_of(f"laboratory/{k}", seeds)
-    known = [sorted(own) for family in families if (own := family & set(SPECIAL))]
-    chosen = random.choice(len(known), size=count, replace=False)
-    special = [str(random.choice(known[i])) for i in chosen]
+    known = [own for family in families if (own := family & set(SPECIAL))]
+    special = draw_apart(known, count, random)
     case_id = f"laboratory/{how}/{'+'.join(special)}/{k}"
     settings, smoothing = _camera(how, random)
     hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special), *smoothing)

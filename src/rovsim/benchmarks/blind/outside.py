@@ -205,7 +205,7 @@ class Backlash(Response):
     parameters = (Parameter("width", "N", "w", low=0.0, scale=2.0),)
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
-        """The play operator, step by step."""
+        """The play operator, step by step: what the catalogue's, found by doubling, is held to."""
         F = force[0] if state is None else state
         out, w = np.empty_like(force), self["width"]
         for row, wanted in zip(out, force, strict=True):

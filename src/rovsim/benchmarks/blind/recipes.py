@@ -7,7 +7,7 @@ parameter's own `scale`. Weaker strengths multiply `sizes`, never `fixed`.
 """
 
 from dataclasses import dataclass, field
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 
@@ -118,6 +118,14 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
         values[k] = _moved(known[k], change, strength if recipe.weak else 1.0)
     values = {k: v for k, v in values.items() if _used(name, k, chosen)}
     return EffectEntry(effect=name, parameters={k: Value(value=v) for k, v in values.items()})
+
+
+def draw_apart(
+    families: Sequence[frozenset[str]], count: int, random: np.random.Generator
+) -> list[str]:
+    """So many effects, each of another family."""
+    chosen = random.choice(len(families), size=count, replace=False)
+    return [str(random.choice(sorted(families[i]))) for i in chosen]
 
 
 def _swapped(random: np.random.Generator) -> EffectEntry:

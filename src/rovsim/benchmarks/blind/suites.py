@@ -24,7 +24,7 @@ from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_o
 from rovsim.benchmarks.blind.field import CAMERAS, camera, laboratory, workshops
 from rovsim.benchmarks.blind.laws import LAWS, drawn_law
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
-from rovsim.benchmarks.blind.recipes import RECIPES, drawn
+from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.benchmarks.blind.recordings import recordings
 from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
@@ -144,8 +144,7 @@ def hiding(
 def combination(count: int, k: int, seeds: Range) -> Case:
     """Effects of different families, drawn."""
     random = random_of(f"combination/{count}/{k}", seeds)
-    families = random.choice(len(FAMILIES), size=count, replace=False)
-    names = [str(random.choice(sorted(FAMILIES[i]))) for i in families]
+    names = draw_apart(FAMILIES, count, random)
     return hiding({2: "pair", 3: "triple"}.get(count, "many"), names, k, seeds)
 
 
