@@ -1,17 +1,22 @@
 """Training pairs for a learned residual: features, and what the model's acceleration misses."""
 
-from typing import Any, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Iterable, Iterator
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model
-from rovsim.learning.learner import LearnerSettings, Progress, Trained, train
+from rovsim.learning.learner import spread_rows
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.samples import sample_run
+from rovsim.simulation.samples import Samples, sample_run
 from rovsim.simulation.settings import ReplaySettings
+
+MOST_ROWS = 1 << 18  # 44 min at 100 Hz, some 40 MB; of more, every second, fourth, ... is kept
 
 
 def flown_with(control: str, run: Any) -> bool:
@@ -19,49 +24,88 @@ def flown_with(control: str, run: Any) -> bool:
     return control in ("all", run.control)
 
 
-def _refuse_parts(motions: Sequence[Motion]) -> None:
-    for motion in motions:
-        known = np.ones(6, bool) if motion.measured is None else motion.measured.axes
-        if not known.all():
-            missing = ", ".join(axis for axis, yes in zip(AXES, known, strict=True) if not yes)
-            raise BadInput(
-                f"nothing was measured of {missing}",
-                where=f"run {motion.run.id}",
-                expected="all six axes, which a residual learns together",
-                remedy="Add effects instead (rovsim diagnose), or train on runs with full poses.",
-            )
+def _refuse_parts(motion: Motion) -> None:
+    known = np.ones(6, bool) if motion.measured is None else motion.measured.axes
+    if not known.all():
+        missing = ", ".join(axis for axis, yes in zip(AXES, known, strict=True) if not yes)
+        raise BadInput(
+            f"nothing was measured of {missing}",
+            where=f"run {motion.run.id}",
+            expected="all six axes, which a residual learns together",
+            remedy="Add effects instead (rovsim diagnose), or train on runs with full poses.",
+        )
 
 
-def choose_training_runs(motions: Sequence[Motion], control: str) -> list[Motion]:
-    """The runs a residual of this control may learn from.
+def training_runs(motions: Iterable[Motion], control: str) -> Iterator[Motion]:
+    """The runs a residual of this control may learn from, one after the other.
 
     Raises:
-        BadInput: the campaign has none, or one of them was measured in part only.
+        BadInput: there is none, or one of them was measured in part only.
     """
-    chosen = [m for m in motions if m.run.split == "train" and flown_with(control, m.run)]
-    _refuse_parts(chosen)
-    if chosen:
-        return chosen
-    runs = ", ".join(f"{m.run.id} ({m.run.control}, {m.run.split})" for m in motions)
-    raise BadInput(
-        f"no train run with control {control}",
-        where="campaign.yaml",
-        expected="at least one run with that control and split: train",
-        remedy=f"Its runs are {runs}. Train with the other control, or record such a run.",
-    )
+    seen, none = [], True
+    for motion in motions:
+        seen.append(f"{motion.run.id} ({motion.run.control}, {motion.run.split})")
+        if motion.run.split == "train" and flown_with(control, motion.run):
+            _refuse_parts(motion)
+            none = False
+            yield motion
+    if none:
+        raise BadInput(
+            f"no train run with control {control}",
+            where="campaign.yaml",
+            expected="at least one run with that control and split: train",
+            remedy=f"Its runs are {', '.join(seen)}. "
+            "Train with the other control, or record such a run.",
+        )
 
 
-def train_residual(
+@dataclass
+class Gathered:
+    """Training pairs, taken in run by run; memory holds `most` rows, spread over all runs.
+
+    Of each run it keeps one row at least. `runs`: their ids. `rows`: how many they had.
+    """
+
+    features: FeatureSettings
+    seed: int
+    most: int = MOST_ROWS
+    runs: list[str] = field(default_factory=list)
+    rows: int = 0
+    _every: int = 1
+    _kept: list[tuple[Array, Array]] = field(default_factory=list)
+
+    def take(self, run: str, samples: Samples) -> None:
+        """Take in a run."""
+        pairs = samples.features(self.features), samples.a_res
+        self.runs.append(run)
+        self.rows += len(samples.a_res)
+        self._kept.append(self._thinned(pairs, self._every))
+        while sum(len(Y) for _, Y in self._kept) > max(self.most, len(self.runs)):
+            self._every *= 2
+            self._kept = [self._thinned(kept, 2) for kept in self._kept]
+
+    def _thinned(self, pairs: tuple[Array, Array], every: int) -> tuple[Array, Array]:
+        X, Y = pairs
+        rows = spread_rows(len(Y), -(-len(Y) // every), self.seed)
+        return X[rows], Y[rows]
+
+    @property
+    def pairs(self) -> tuple[Array, Array]:
+        """X (n, d), features, and Y (n, 6), residual accelerations in m/s2 and rad/s2."""
+        X, Y = zip(*self._kept, strict=True)
+        return np.concatenate(X), np.concatenate(Y)
+
+
+def gather_pairs(
     model: Model,
-    motions: Sequence[Motion],
+    motions: Iterable[Motion],
     control: str,
-    learner: LearnerSettings,
+    features: FeatureSettings,
     signals: SignalSettings,
     settings: ReplaySettings,
     seed: int,
-    progress: Progress = lambda done, total: None,
-) -> Trained:
-    """Train a residual on top of a model, on the train runs with this control.
+) -> Gathered:
+    """What a residual on top of a model learns from: the train runs with this control.
 
     Raises:
         BadInput: the model has a residual already, or there is nothing to train on.
@@ -73,9 +117,7 @@ def train_residual(
             expected="a model of physics alone",
             remedy="Train on the model that residual was trained on.",
         )
-    found = [
-        sample_run(model, m, signals, settings) for m in choose_training_runs(motions, control)
-    ]
-    X = np.concatenate([s.features(learner.features) for s in found])
-    Y = np.concatenate([s.a_res for s in found])
-    return train(X, Y, learner, seed, progress)
+    gathered = Gathered(features, seed)
+    for motion in training_runs(motions, control):
+        gathered.take(motion.run.id, sample_run(model, motion, signals, settings))
+    return gathered

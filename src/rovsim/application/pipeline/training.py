@@ -1,7 +1,7 @@
 """A learned residual on top of a model, and how long its predictions take."""
 
 from pathlib import Path
-from typing import Mapping, Sequence
+from typing import Iterable, Mapping, Sequence
 
 from rovsim.application.sections import PredictorSettings, TrainingSettings
 from rovsim.core.progress import reported
@@ -10,14 +10,15 @@ from rovsim.dynamics.learned.residual import write_residual
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.evaluation.latency import time_both_ways
-from rovsim.learning.pairs import choose_training_runs, train_residual
+from rovsim.learning.learner import train as fit
+from rovsim.learning.pairs import gather_pairs
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.timing import Timing
 from rovsim.simulation.samples import sample_run
 
 
 def train(
-    motions: Sequence[Motion],
+    motions: Iterable[Motion],
     base: Model,
     settings: TrainingSettings,
     catalogue: Catalogue,
@@ -27,7 +28,8 @@ def train(
     """Train a residual on the train runs of one control; returns the model as read back.
 
     Args:
-        motions: runs; those of the control and of split `train` are learned from.
+        motions: runs, taken one after the other; those of the control and of split `train` are
+            learned from.
         base: the model whose acceleration is corrected.
         settings: the learner, and how runs were cleaned and are replayed.
         catalogue: all effects.
@@ -37,14 +39,16 @@ def train(
     Raises:
         BadInput: the model has a residual already, or no run is left to learn from.
     """
-    used, learner = choose_training_runs(motions, settings.control), settings.learner
+    learner = settings.learner
     with reported(f"training {learner.kind}") as progress:
-        trained = train_residual(
-            base, used, settings.control, learner, settings.signals, settings.replay,
-            settings.seed, progress,
+        gathered = gather_pairs(
+            base, motions, settings.control, learner.features, settings.signals, settings.replay,
+            settings.seed,
         )  # fmt: skip
+        trained = fit(*gathered.pairs, learner, settings.seed, progress)
     residual = write_residual(out.parent, trained.residual(settings.control))
-    known = {"base": base.name, "train_runs": [m.run.id for m in used], "seed": settings.seed}
+    known = {"base": base.name, "train_runs": gathered.runs, "train_rows": gathered.rows}
+    known |= {"seed": settings.seed}
     write_model(base, out, residual, {**known, **story})
     return read_model(out, catalogue)
 

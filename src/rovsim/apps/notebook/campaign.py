@@ -132,10 +132,9 @@ class Campaign:
         base = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
         named = f"{residual}_{control}"
         out = Path(path or self._folder / "trained" / named / f"{named}.yaml")
-        motions = list(self.data.motions.values())
         with in_a_cell():
             story = provenance(how, self.catalogue, self.data.campaign)
-            train(motions, base, how, self.catalogue, out, story)
+            train(self.data.motions.values(), base, how, self.catalogue, out, story)
         return self.model(out)
 
     def export(self, model: Spec, to: str, path: Spec | None = None) -> ShownExport:

@@ -39,8 +39,9 @@ def train_into(settings: WorkbenchSettings, path: Path) -> Path:
     catalogue = load_catalogue(settings.effect_files)
     data = measure(open_campaign(settings.campaign), settings.signals)
     base = load_one_model(settings.model, data.vehicle, catalogue)
-    motions, how = list(data.motions.values()), select(settings, TrainingSettings)
-    train(motions, base, how, catalogue, path, provenance(how, catalogue, data.campaign))
+    how = select(settings, TrainingSettings)
+    story = provenance(how, catalogue, data.campaign)
+    train(data.motions.values(), base, how, catalogue, path, story)
     return path
 
 

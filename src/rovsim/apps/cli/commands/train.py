@@ -40,7 +40,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     data = measure(campaign, settings.signals)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     file, story = out / "model.yaml", provenance(settings, catalogue, data.campaign)
-    corrected = train([*data.motions.values()], base, settings, catalogue, file, story)
+    corrected = train(data.motions.values(), base, settings, catalogue, file, story)
     scored = score_models([base, corrected], data.motions, settings)
     found = scored.comparison
     found.write(out / "comparison.json")
