@@ -5,12 +5,10 @@ import os
 import re
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from rovsim.application.provenance import find_modules
 from small_study import ROOT, SMALL, copy_of
 
 
@@ -79,6 +77,8 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     touched = _edited(study, "src/rovsim/reporting/figures/ladder.py")
     assert "figure_ladder" in touched
     assert touched <= {"figure_ladder", "report", "track", "all"}
+    touched = _edited(study, "conf/vehicle/bluerov2_heavy.yaml")
+    assert {"tank", "read", "replay", "diagnose", "train"} <= touched
     touched = _edited(study, "src/rovsim/measurement/signals/filter.py")
     assert {"filter", "replay"} <= touched
     assert "read" not in touched
@@ -122,47 +122,15 @@ def _edited(folder: Path, name: str) -> set[str]:
         path.write_text(before)
 
 
-def test_what_rules_depend_on_is_there():
+RULE = re.compile(r'(own_code|code_of)\("([\w.]+)".*?script:\s*"\.\./scripts/(\w+)\.py"', re.DOTALL)
+
+
+def test_a_rule_depends_on_what_its_own_script_imports():
     rules = "".join(path.read_text() for path in (ROOT / "workflow" / "rules").glob("*.smk"))
-    named = [
-        name
-        for names in re.findall(r"study\.(?:own_)?code\(([^)]*)\)", rules)
-        for name in re.findall(r'"([a-z_.]+)"', names)
-    ]
-    assert len(named) > 20
-    for name in named:
-        assert find_spec(f"rovsim.{name}"), name
-
-
-# What a script may import without its rule asking for it: how it is run; settings, whose values are
-# a rule's own parameters; what an edit of an effect would re-run, for reading knows no effects.
-UNASKED = {
-    "rovsim.application.snakemake_job", "rovsim.application.sections",
-    "rovsim.application.settings", "rovsim.application.pipeline.recordings",
-}  # fmt: skip
-UNASKED_BY = {
-    "read": {"rovsim.measurement.signals.chain"}
-}  # of whose settings outliers alone count
-RULE = re.compile(
-    r"code=study\.(own_)?code\(([^)]*)\).*?script:\s*\"\.\./scripts/(\w+)\.py\"", re.DOTALL
-)
-
-
-def test_rules_depend_on_what_their_scripts_import():
-    workflow = ROOT / "workflow"
-    rules = "".join(path.read_text() for path in (workflow / "rules").glob("*.smk"))
     found = RULE.findall(rules)
-    assert len(found) > 15
-    for own, names, script in found:
-        named = [f"rovsim.{name}" for name in re.findall(r'"([a-z_.]+)"', names)]
-        known = find_modules(*named)
-        text = (workflow / "scripts" / f"{script}.py").read_text()
-        imported = set(re.findall(r"^from (rovsim[\w.]*) import", text, re.MULTILINE))
-        for module in imported - UNASKED - UNASKED_BY.get(script, set()):
-            inside = (
-                any(module.startswith(f"{name}.") for name in named) if own else module in known
-            )
-            assert inside, f"{script}: {module}"
+    assert len(found) == rules.count("script:\n") > 15
+    for kind, name, script in found:
+        assert name == ("simulation.synthetic_tank" if kind == "own_code" else script)
 
 
 @pytest.mark.slow

@@ -1,10 +1,18 @@
 """What several chapters of the workflow name alike."""
 
+from pathlib import Path
+
 from rovsim.application.sections import PredictorSettings, SimulationSettings
 from rovsim.diagnosis.settings import DiagnosisSettings
 
 R = study.folder
 F = f"{R}/folds/{{fold}}"
+
+
+def code_of(script, *more, without=""):
+    """Digest of what a script imports: an edit re-runs what it touches."""
+    path = Path(workflow.basedir, "workflow", "scripts", f"{script}.py")
+    return study.code(path, *more, without=without)
 
 
 def clean_runs():

@@ -12,7 +12,7 @@ rule diagnose:
     priority: 10  # most of the study waits for it
     params:
         settings=study.section(DiagnosisSettings),
-        code=study.code("application.pipeline.diagnosis"),
+        code=code_of("diagnose"),
     script:
         "../scripts/diagnose.py"
 
@@ -28,7 +28,7 @@ rule add:
     benchmark:
         f"{R}/benchmarks/add.tsv"
     params:
-        code=study.code("application.pipeline.models"),
+        code=code_of("add"),
     script:
         "../scripts/add.py"
 
@@ -46,6 +46,6 @@ rule refit:
         f"{R}/benchmarks/refit.tsv"
     params:
         settings=study.settings.replay.model_dump_json(),
-        code=study.code("application.pipeline.refit"),
+        code=code_of("refit"),
     script:
         "../scripts/refit.py"

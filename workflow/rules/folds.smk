@@ -9,7 +9,7 @@ rule split:
     benchmark:
         f"{F}/benchmarks/split.tsv"
     params:
-        code=study.code("evaluation.held_out.folds", "measurement.signals.chain"),
+        code=code_of("split"),
     script:
         "../scripts/split.py"
 
@@ -87,7 +87,7 @@ rule fold:
         f"{F}/benchmarks/fold.tsv"
     params:
         settings=study.section(SimulationSettings),
-        code=study.code("application.pipeline.held_out"),
+        code=code_of("fold"),
     script:
         "../scripts/fold.py"
 
@@ -110,7 +110,7 @@ if folds.published:
             f"{R}/benchmarks/against_published.tsv"
         params:
             runs=folds.runs,
-            code=study.code("application.pipeline.held_out"),
+            code=code_of("against_published"),
         script:
             "../scripts/against_published.py"
 
@@ -133,6 +133,6 @@ if folds.pitfalls:
             learners={
                 kind: study.learner(kind).model_dump_json() for kind in ("knn", "gp")
             },
-            code=study.code("application.pipeline.held_out", "learning"),
+            code=code_of("pitfalls"),
         script:
             "../scripts/pitfalls.py"

@@ -29,8 +29,6 @@ rule read:
     params:
         campaign=study.campaign_file,
         settings=study.signal("outliers"),
-        code=study.code(
-            "measurement.recording", "measurement.quality", "measurement.campaign"
-        ),
+        code=code_of("read", without="rovsim.dynamics.effects"),
     script:
         "../scripts/read.py"

@@ -12,7 +12,7 @@ rule replay:
         f"{R}/benchmarks/replay/{{model}}.tsv"
     params:
         settings=study.section(SimulationSettings),
-        code=study.code("simulation.replay", "dynamics.effects"),
+        code=code_of("replay"),
     script:
         "../scripts/replay.py"
 
@@ -31,7 +31,7 @@ rule search:
         f"{R}/benchmarks/search/{{model}}.tsv"
     params:
         settings=study.section(SimulationSettings),
-        code=study.code("application.pipeline.error_conditions"),
+        code=code_of("search"),
     script:
         "../scripts/search.py"
 
@@ -49,7 +49,7 @@ rule budget:
         f"{R}/benchmarks/budget/{{run}}.tsv"
     params:
         settings=study.section(SimulationSettings),
-        code=study.code("application.pipeline.forces"),
+        code=code_of("budget"),
     script:
         "../scripts/budget.py"
 
@@ -66,6 +66,6 @@ rule score:
     benchmark:
         f"{R}/benchmarks/score/{{model}}.tsv"
     params:
-        code=study.code("evaluation.scored"),
+        code=code_of("score"),
     script:
         "../scripts/score.py"

@@ -15,7 +15,7 @@ rule train:
         f"{R}/benchmarks/train/{{base}}{{residual}}_{{control}}.tsv"
     params:
         settings=lambda w: study.training(w.residual, w.control),
-        code=study.code("application.pipeline.training", "learning"),
+        code=code_of("train"),
     script:
         "../scripts/train.py"
 
@@ -35,6 +35,6 @@ rule timing:
     threads: workflow.cores
     params:
         settings=study.section(PredictorSettings),
-        code=study.code("application.pipeline.training", "learning"),
+        code=code_of("timing"),
     script:
         "../scripts/timing.py"

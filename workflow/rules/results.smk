@@ -24,7 +24,7 @@ rule compare:
     benchmark:
         f"{R}/benchmarks/compare.tsv"
     params:
-        code=study.code("application.pipeline.summary"),
+        code=code_of("compare"),
     script:
         "../scripts/compare.py"
 
@@ -61,12 +61,7 @@ for figure in folds.once:
         params:
             figure=figure,
             runs=study.runs(),
-            code=study.code(
-                f"reporting.figures.{figure}",
-                "reporting.figures.style",
-                "reporting.report_data",
-                "application.pipeline.drawing",
-            ),
+            code=code_of("figure_of_study", f"rovsim.reporting.figures.{figure}"),
         script:
             "../scripts/figure_of_study.py"
 
@@ -94,12 +89,7 @@ for figure in PER_RUN:
             f"{R}/benchmarks/figures/{figure}-{{run}}.tsv"
         params:
             figure=figure,
-            code=study.code(
-                f"reporting.figures.{figure}",
-                "reporting.figures.style",
-                "reporting.report_data",
-                "application.pipeline.drawing",
-            ),
+            code=code_of("figure_of_run", f"rovsim.reporting.figures.{figure}"),
         script:
             "../scripts/figure_of_run.py"
 
@@ -120,7 +110,7 @@ rule tables:
     benchmark:
         f"{R}/benchmarks/tables.tsv"
     params:
-        code=study.code("reporting.tables", "application.pipeline.presentation"),
+        code=code_of("tables"),
     script:
         "../scripts/tables.py"
 
@@ -149,11 +139,7 @@ rule report:
         campaign=study.name,
         runs=study.runs(),
         provenance=study.provenance(),
-        code=study.code(
-            "reporting.html",
-            "reporting.report_data",
-            "application.pipeline.presentation",
-        ),
+        code=code_of("report"),
     script:
         "../scripts/report.py"
 
@@ -177,6 +163,6 @@ rule track:
         campaign=study.name,
         settings=study.settings.tracking.model_dump_json(),
         diagnosis=study.section(DiagnosisSettings),
-        code=study.code("application.tracking"),
+        code=code_of("track"),
     script:
         "../scripts/track.py"

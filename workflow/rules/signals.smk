@@ -10,7 +10,7 @@ rule resample:
         f"{R}/benchmarks/resample/{{run}}.tsv"
     params:
         settings=study.signal("outliers", "resample"),
-        code=study.code("measurement.signals.chain"),
+        code=code_of("resample"),
     script:
         "../scripts/resample.py"
 
@@ -27,7 +27,7 @@ rule filter:
         f"{R}/benchmarks/filter/{{run}}.tsv"
     params:
         settings=study.signal("filter"),
-        code=study.code("measurement.signals.chain"),
+        code=code_of("filter"),
     script:
         "../scripts/filter.py"
 
@@ -45,6 +45,6 @@ rule differentiate:
         f"{R}/benchmarks/differentiate/{{run}}.tsv"
     params:
         settings=study.signal("differentiate"),
-        code=study.code("measurement.signals.chain", "results.quality"),
+        code=code_of("differentiate", without="rovsim.dynamics.effects"),
     script:
         "../scripts/differentiate.py"

@@ -3,6 +3,7 @@
 No clock: equal inputs, equal files.
 """
 
+import ast
 import hashlib
 import platform
 from functools import cache
@@ -14,24 +15,34 @@ from typing import Any, Sequence
 import rovsim
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.vehicle import vehicle_file
 from rovsim.measurement.campaign import Campaign
 
 SOURCE = Path(rovsim.__file__).parent
-MODEL = "rovsim.dynamics.model"
+MODEL, VEHICLE = "rovsim.dynamics.model", "rovsim.dynamics.vehicle.load"
 OF_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
 LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning")
 UNRELATED = ("command", "tracking", "timing", "blind", "bench", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
 
 
-def digest(*names: str, effects: Sequence[Path] = ()) -> str:
-    """Digest of modules of rovsim and of all they import, however deep.
+def digest(*names: str, without: str = "", described: Sequence[Path] = ()) -> str:
+    """Digest of modules of rovsim and of all they import, however deep, but for a package.
 
-    A package stands for all its modules: what is found by looking has no import to follow. So do
-    files of `effects` from elsewhere, for modules that know models.
+    A package stands for all its modules: what is found by looking has no import to follow. Files
+    in which vehicles and effects are `described` count for modules that know either.
     """
     wanted = find_modules(*names)
-    return _digest([*map(_file, sorted(wanted)), *(effects if MODEL in wanted else ())])
+    if without:
+        wanted = {name for name in wanted if not f"{name}.".startswith(f"{without}.")}
+    return _digest([*map(_file, sorted(wanted)), *(described if wanted & {MODEL, VEHICLE} else ())])
+
+
+def imports_of(script: Path) -> list[str]:
+    """Modules of rovsim that a script imports."""
+    tree = ast.parse(script.read_text(encoding="utf-8"))
+    found = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    return sorted({name for name in found if name and name.startswith("rovsim")})
 
 
 def find_modules(*names: str) -> set[str]:
@@ -47,9 +58,9 @@ def find_modules(*names: str) -> set[str]:
     return wanted
 
 
-def own_digest(package: str, effects: Sequence[Path] = ()) -> str:
-    """Digest of a package's own modules, whatever they import, and of files of `effects`."""
-    return _digest([*sorted(_file(package).parent.rglob("*.py")), *effects])
+def own_digest(package: str, described: Sequence[Path] = ()) -> str:
+    """Digest of a package's own modules, whatever they import, and of `described` (`digest`)."""
+    return _digest([*sorted(_file(package).parent.rglob("*.py")), *described])
 
 
 def _digest(files: Sequence[Path]) -> str:
@@ -99,13 +110,16 @@ def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
 def provenance(
     settings: Section, catalogue: Catalogue, campaign: Campaign | None
 ) -> dict[str, Any]:
-    """Recordings, settings, code and versions behind a result.
+    """Recordings, vehicle file, settings, code and versions behind a result.
 
     Settings without influence are left out; so are recordings that these make (None).
     """
     chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
-    files = {} if campaign is None else {"recordings": digest_files(campaign)}
-    return {"settings": chosen, **describe_origin(catalogue), **files}
+    origin = {"settings": chosen, **describe_origin(catalogue)}
+    if campaign is None:
+        return origin
+    vehicle = vehicle_file(campaign.vehicle, campaign.file.parent)
+    return origin | {"recordings": digest_files(campaign), "vehicle": _sha256(vehicle)[:16]}
 
 
 def digest_files(campaign: Campaign) -> dict[str, str]:

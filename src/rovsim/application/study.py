@@ -7,13 +7,14 @@ from typing import Any, Mapping
 
 from filelock import FileLock, Timeout
 
-from rovsim.application.provenance import digest, own_digest, provenance
+from rovsim.application.provenance import digest, imports_of, own_digest, provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import Settings, compose, select
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BASELINES
+from rovsim.dynamics.vehicle import vehicle_file
 from rovsim.learning.learner import LearnerSettings, learner, learner_settings
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
@@ -23,6 +24,8 @@ from rovsim.simulation.synthetic_tank.description import SEALED, describe
 
 HELD: dict[Path, FileLock] = {}  # until the process ends
 PHYSICS = ("refitted", EFFECTS)
+# What a script imports to be run at all; the values of its settings are parameters of its rule.
+SURROUNDINGS = {f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")}
 DRAWN = ("nominal", EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
 
 
@@ -120,6 +123,12 @@ class Study:
         """Where a rule finds the campaign."""
         return self.raw(self.runs()[0])[0]
 
+    @cached_property
+    def _described(self) -> list[Path]:
+        """Files of the vehicle and of the user's effects: an edit changes what models do."""
+        beside = self.campaign.file.parent if isinstance(self.campaign, Campaign) else None
+        return [vehicle_file(self.campaign.vehicle, beside), *self.catalogue.files]
+
     def runs(self, split: str = "") -> list[str]:
         """Ids of the runs, all or of one split."""
         return [run.id for run in self.campaign.runs if split in ("", run.split)]
@@ -190,15 +199,20 @@ class Study:
         """Parts of the signal chain as JSON."""
         return self.settings.signals.model_dump_json(include=set(names))
 
-    def code(self, *modules: str) -> str:
-        """Digest of modules and all they import: an edit re-runs what it touches."""
-        names = (f"rovsim.{module}" for module in modules)
-        return digest(*names, effects=self.catalogue.files)
+    def code(self, script: Path, *more: str, without: str = "") -> str:
+        """Digest of what a script imports, however deep: an edit re-runs what it touches.
 
-    @staticmethod
-    def own_code(package: str) -> str:
-        """Digest of a package alone. A recorded campaign stands when the model is edited."""
-        return own_digest(f"rovsim.{package}")
+        Args:
+            script: of a rule.
+            more: modules that it finds by their names.
+            without: a package whose edits change nothing that the script writes.
+        """
+        names = [name for name in (*imports_of(script), *more) if name not in SURROUNDINGS]
+        return digest(*names, without=without, described=self._described)
+
+    def own_code(self, package: str) -> str:
+        """Digest of a package alone. A recorded campaign stands when rovsim's physics is edited."""
+        return own_digest(f"rovsim.{package}", self._described)
 
     def provenance(self) -> dict[str, Any]:
         """Settings, code and versions behind the study."""

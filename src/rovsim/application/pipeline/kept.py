@@ -25,7 +25,7 @@ def kept_diagnosis(
     folder: Path, campaign: Campaign, settings: DiagnosisSettings, base: Model, catalogue: Catalogue
 ) -> Path:
     """Of these recordings, settings, base and code: an outdated one is never found."""
-    key = _digest(campaign, settings, base, digest(CODE, effects=catalogue.files))
+    key = _digest(campaign, settings, base, digest(CODE, described=catalogue.files))
     return folder / key / "diagnosis.json"
 
 
@@ -33,7 +33,7 @@ def kept_flight(
     folder: Path, campaign: Campaign, question: Question, model: Model, catalogue: Catalogue
 ) -> Path:
     """Folder of a planned flight, of these recordings, this question, model and code."""
-    key = _digest(campaign, question, model, digest(PLAN, effects=catalogue.files))
+    key = _digest(campaign, question, model, digest(PLAN, described=catalogue.files))
     return folder / "flights" / key
 
 
@@ -42,5 +42,6 @@ def _digest(campaign: Campaign, settings: Section, model: Model, code: str) -> s
     content.update(json.dumps(digest_files(campaign)).encode())
     content.update(settings.model_dump_json().encode())
     content.update(json.dumps(describe_model(model), sort_keys=True).encode())
+    content.update(model.vehicle.model_dump_json().encode())  # a model may only name it
     content.update(code.encode())
     return content.hexdigest()[:12]

@@ -17,6 +17,7 @@ from rovsim.benchmarks.blind.methods import Method, chosen
 from rovsim.benchmarks.blind.suites import suite
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_json
+from rovsim.dynamics.vehicle import default_vehicle, vehicle_file
 from rovsim.results.bands import Bands
 from rovsim.results.diagnosis import Answer, Diagnosis
 
@@ -90,7 +91,8 @@ def pending(
 ) -> Iterator[Job]:
     """Jobs for what is missing or was answered by other code, of cases the simulator can fly."""
     flown_by = SIMULATORS[simulator]
-    codes = {m.name: digest(FLIGHT, *flown_by.code, *m.code) for m in methods}
+    vehicle = [vehicle_file(default_vehicle())]
+    codes = {m.name: digest(FLIGHT, *flown_by.code, *m.code, described=vehicle) for m in methods}
     for case in filter(flown_by.states, cases):
         wanted = [(m, place(folder, m, case), fingerprint(case, codes[m.name])) for m in methods]
         left = tuple(w for w in wanted if not _answered(w[1], w[2]))

@@ -16,6 +16,7 @@ from rovsim.dynamics.vehicle.load import (
     default_vehicle,
     known_vehicle,
     load_vehicle,
+    vehicle_file,
 )
 from rovsim.dynamics.vehicle.surfaces import Surfaces
 from rovsim.dynamics.vehicle.thrusters import Thrusters
@@ -28,4 +29,5 @@ __all__ = [
     "default_vehicle",
     "known_vehicle",
     "load_vehicle",
+    "vehicle_file",
 ]

@@ -24,11 +24,11 @@ def known_vehicle(name: str) -> Path | None:
     return conf_file(f"vehicle/{name}.yaml")
 
 
-def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
-    """Load a vehicle by its name in conf/vehicle/, or by a path (relative to `beside`).
+def vehicle_file(name: str, beside: Path | None = None) -> Path:
+    """The file of a vehicle: of a name in conf/vehicle/, or a path (relative to `beside`).
 
     Raises:
-        BadInput: no such vehicle, or its file does not describe one.
+        BadInput: there is none.
     """
     path = known_vehicle(name) or (beside or Path()) / name
     if not path.is_file():
@@ -38,6 +38,16 @@ def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
             expected="a name in conf/vehicle/ or the path of a vehicle file",
             remedy=nearest(name, conf_names("vehicle")),
         )
+    return path
+
+
+def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
+    """Load a vehicle by its name in conf/vehicle/, or by a path (relative to `beside`).
+
+    Raises:
+        BadInput: no such vehicle, or its file does not describe one.
+    """
+    path = vehicle_file(name, beside)
     return build_vehicle(read_yaml(path), path)
 
 
