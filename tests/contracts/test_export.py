@@ -2,7 +2,6 @@
 
 import json
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +15,8 @@ from rovsim.application.export.targets import target, targets
 from rovsim.application.export.write import represent
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
-from rovsim.core.run import Site
+from rovsim.core.run import Commands, Site
 from rovsim.core.shipped import conf_names
-from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.engine.types import NO_MEMORY
 from rovsim.dynamics.model import nominal
@@ -44,22 +42,13 @@ def draw(world, count, seed=0):
 
 
 def static(world, commands):
-    """Thruster forces (n, t) N of commands, and how far each thruster that turns is turned."""
-    path = world.thrust_path
-    throttle = path.thruster_commands(commands, "thruster")
-    force = path.static(throttle, np.zeros(len(commands)), 1.0)
-    azimuth, angle = path.steering(commands, "thruster")
-    return force, np.stack([np.cos(azimuth), np.sin(azimuth)]), angle
+    """Thrust of commands (n, c), each for itself."""
+    return world.thrust_path.at(Commands(np.zeros(len(commands)), commands, "thruster"), 0.0, 1.0)
 
 
 def accelerate(world, states, commands):
     """What the engine makes of them (n, 6)."""
-    force, heading, angle = static(world, commands)
-    none = np.full((len(states), 6), np.nan)
-    thrust = Thrust(force, np.zeros((len(states), 6)), none, heading, angle)
-    if world.thrust_path.readers:
-        thrust = replace(thrust, read=commands)
-    drive = Drive.by(world, thrust, 1.0)
+    drive = Drive.by(world, static(world, commands), 1.0)
     return Batch([world], Site.unknown(), learned=False).accelerations(
         drive, np.zeros(len(states)), states, NO_MEMORY
     )
@@ -72,7 +61,7 @@ def forces(world, name, count):
     states, commands = draw(world, count)
     equation = Equation(held)
     moves = READERS[name](chosen.text(equation, ["a note -- with hyphens"]))
-    pulls = static(held, commands)[0] * equation.reach
+    pulls = static(held, commands).force * equation.reach
     written = np.array([moves(*row) for row in zip(states, commands, pulls, strict=True)])
     inertia = held.body.M_RB + held.body.M_A
     expected = accelerate(held, states, commands) @ inertia.T

@@ -57,7 +57,7 @@ def read(vehicle, effect, command, nu):
     none = np.full((1, 6), np.nan)
     force = nominal(vehicle).thrust_path.thrusters.static_force(np.array([[command[0]]]))
     seen = np.array([[*command, 0.3, -2.0]])
-    thrust = Thrust(force, np.zeros((1, 6)), none, None, np.array([command[1:]]), seen)
+    thrust = Thrust(force, np.zeros((1, 6)), none, angle=np.array([command[1:]]), read=seen)
     return push(nominal(vehicle) + effect, thrust, nu) - push(nominal(vehicle), thrust, nu)
 
 

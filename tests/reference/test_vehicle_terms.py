@@ -56,8 +56,8 @@ def wrench(described, nu, eta=(0.0, 0.0, 0.0), depth=0.0, angle=(), force=()):
     world, state = nominal(described), at_rest()
     state[2], state[3:7], state[7:] = LEVEL + depth, from_euler(*eta), nu
     thrust = Thrust(
-        np.array([force], float), np.zeros((1, 6)), np.full((1, 6), np.nan), None,
-        np.array([angle], float),
+        np.array([force], float), np.zeros((1, 6)), np.full((1, 6), np.nan),
+        angle=np.array([angle], float),
     )  # fmt: skip
     drive = Drive.by(world, thrust, 1.0)
     batch = Batch([world], Site(np.full((3, 2), np.nan), np.ones(3), LEVEL))

@@ -1,6 +1,6 @@
 """From a wrench that is wanted to what a log of commands would hold, and what that does."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -8,7 +8,6 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.run import CommandKind, Commands
-from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.model import Model
 from rovsim.simulation.drive import Drive
 
@@ -102,18 +101,11 @@ class Authority:
 
         `state` of the thrusters is what the call before returned; None: they have settled.
         """
-        path, none = self.model.thrust_path, np.full((len(value), len(AXES)), np.nan)
-        if self.kind == "wrench":
-            force = np.zeros((len(value), path.thrusters.count))
-            return Drive.by(self.model, Thrust(force, value, none), 1.0), []
-        static = path.static(path.thruster_commands(value, self.kind), np.zeros(len(value)), 1.0)
+        path = self.model.thrust_path
+        thrust = path.at(Commands(np.zeros(len(value)), value, self.kind), 0.0, 1.0)
         # a thruster answers as its column does: those of all flights stand side by side
-        force, state = path.respond(static.reshape(1, -1), h, state)
-        azimuth, angle = path.steering(value, self.kind)
-        heading = np.stack([np.cos(azimuth), np.sin(azimuth)])
-        asked = value if self.kind == "demand" else none
-        still = np.zeros((len(value), len(AXES)))
-        thrust = Thrust(force.reshape(static.shape), still, asked, heading, angle)
+        force, state = path.respond(thrust.force.reshape(1, -1), h, state)
+        thrust = replace(thrust, force=force.reshape(thrust.force.shape))
         return Drive.by(self.model, thrust, 1.0), state
 
     def commands(self, time: Array, value: Array, at: Array) -> Commands:

@@ -4,9 +4,9 @@ Order (contract, section 2): clock -> mixer (demands only) -> deadband -> force 
 asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happens in the engine.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Literal, Sequence
+from typing import Callable, Literal, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -32,38 +32,38 @@ AT_ONCE = 1 << 16  # steps whose thrust is found together: it takes twenty times
 
 @dataclass(frozen=True, eq=False)
 class Thrust:
-    """Means over steps: `force` (k, n) N, `wrench` (k, 6) given directly, `demand` (k, 6).
+    """At k instants or means over k steps: `force` (k, n) N, `wrench` (k, 6) given directly.
 
-    `heading` (2, k, a) cosine and sine of the angle of each thruster that turns, None where none
-    does; `angle` (k, s) rad of each control surface. `read` (k, c + q): where an effect reads them,
-    commands as logged and mixed, then the channels of `ThrustPath.channels`; None elsewhere.
+    `demand` (k, 6), NaN where none was logged. `cosine`, `sine` (k, a) of the angle of each
+    thruster that turns, `angle` (k, s) rad of each control surface; None where a wrench is given.
+    `read` (k, c + q): where an effect reads them, commands as logged and mixed, then the channels
+    of `ThrustPath.channels`; None elsewhere.
     """
 
     force: Array
     wrench: Array
     demand: Array
-    heading: Array | None = None
+    cosine: Array | None = None
+    sine: Array | None = None
     angle: Array | None = None
     read: Array | None = None
+
+    def each(self, change: Callable[[Array], Array]) -> "Thrust":
+        """All of it changed alike."""
+        return Thrust(**{name: change(part) for name, part in self._parts.items()})
 
     @staticmethod
     def joined(parts: "Sequence[Thrust]") -> "Thrust":
         """Thrust over the steps of all parts, one after the other."""
         if len(parts) == 1:
             return parts[0]
-        return Thrust(
-            np.concatenate([part.force for part in parts]),
-            np.concatenate([part.wrench for part in parts]),
-            np.concatenate([part.demand for part in parts]),
-            _join([part.heading for part in parts], axis=1),
-            _join([part.angle for part in parts]),
-            _join([part.read for part in parts]),
-        )
+        names = parts[0]._parts
+        return Thrust(**{name: np.concatenate([p._parts[name] for p in parts]) for name in names})
 
-
-def _join(parts: Sequence[Array | None], axis: int = 0) -> Array | None:
-    known = [part for part in parts if part is not None]
-    return np.concatenate(known, axis=axis) if known else None
+    @property
+    def _parts(self) -> dict[str, Array]:
+        named = {one.name: getattr(self, one.name) for one in fields(self)}
+        return {name: part for name, part in named.items() if part is not None}
 
 
 class ThrustPath:
@@ -203,61 +203,55 @@ class ThrustPath:
 
         `start` s and `duration` s are those of the recording.
         """
-        arrival, value = lines.time, lines.value
+        arrival = lines.time
         pieces = np.union1d(edges, arrival[(arrival > edges[0]) & (arrival < edges[-1])])
         middle = 0.5 * (pieces[1:] + pieces[:-1])
-        at_middle = _between(arrival, value, middle, between)
-        width = np.diff(pieces)[:, None]
-        first = np.searchsorted(pieces, edges[:-1])
-
-        def mean(x: Array) -> Array:
-            return np.add.reduceat(x * width, first, axis=0) / np.diff(edges)[:, None]
-
-        steps = len(edges) - 1
-        none, still = np.full((steps, 6), np.nan), np.zeros((steps, 6))
-        if lines.kind == "wrench":
-            thrust = Thrust(np.zeros((steps, self.thrusters.count)), mean(at_middle), none)
-            columns = np.zeros((steps, self.columns("thruster")))
-            return replace(thrust, read=self.read_out(columns, lines, edges))
         if between == "held" and self._is_steady(lines):  # once for each line, not each piece
-            command = self.thruster_commands(value, lines.kind)
-            once = self.static(command, np.zeros(len(command)), duration)
-            static = mean(once[_latest(arrival, middle)])
+            thrust = self.at(lines, start, duration).each(lambda x: x[_latest(arrival, middle)])
         else:
-            command = self.thruster_commands(at_middle, lines.kind)
-            static = mean(self.static(command, middle - start, duration, _voltage(lines, middle)))
-        demand = mean(at_middle) if lines.kind == "demand" else none
-        azimuth, angle = self.steering(at_middle, lines.kind)
-        heading = np.stack([mean(np.cos(azimuth)), mean(np.sin(azimuth))])
-        thrust = Thrust(static, still, demand, heading, mean(angle))
-        if not self.readers:
-            return thrust
-        columns = mean(self.logged_columns(at_middle, lines.kind))
-        return replace(thrust, read=self.read_out(columns, lines, edges))
+            value = _between(arrival, lines.value, middle, between)
+            thrust = self.at(replace(lines, time=middle, value=value), start, duration)
+        width, first = np.diff(pieces)[:, None], np.searchsorted(pieces, edges[:-1])
+        long = np.diff(edges)[:, None]
+        return thrust.each(lambda x: np.add.reduceat(x * width, first, axis=0) / long)
 
-    def logged_columns(self, value: Array, kind: CommandKind) -> Array:
-        """Commands and angles (m, c), as a log of them has them, of logged values of any kind."""
-        if kind == "thruster":
-            return value
-        columns = np.zeros((len(value), self.columns("thruster")))
-        columns[:, self._throttles] = self.thruster_commands(value, kind)
-        return columns
+    def at(self, lines: Commands, start: float, duration: float) -> Thrust:
+        """Static thrust that each line makes by itself, at its time.
 
-    def read_out(self, columns: Array, lines: Commands, edges: Array) -> Array | None:
-        """Commands (k, c) and channels at the middle of each step; None where no effect reads them.
+        `start` s and `duration` s are those of the recording.
 
         Raises:
-            BadInput: the log lacks a channel.
+            BadInput: the log lacks a channel that an effect reads, or its columns do not fit.
         """
+        count = len(lines.time)
+        none, still = np.full((count, 6), np.nan), np.zeros((count, 6))
+        if lines.kind == "wrench":
+            force = np.zeros((count, self.thrusters.count))
+            return Thrust(force, lines.value, none, read=self._read_out(lines))
+        command = self.thruster_commands(lines.value, lines.kind)
+        force = self.static(command, lines.time - start, duration, _voltage(lines))
+        demand = lines.value if lines.kind == "demand" else none
+        azimuth, angle = self.steering(lines.value, lines.kind)
+        return Thrust(
+            force, still, demand, np.cos(azimuth), np.sin(azimuth), angle, self._read_out(lines)
+        )
+
+    def _read_out(self, lines: Commands) -> Array | None:
+        """Commands and angles as a log of thrusters has them, then channels; None where unread."""
         if not self.readers:
             return None
-        middle = 0.5 * (edges[1:] + edges[:-1])
-        beside = [_logged(lines, name, middle)[:, None] for name in self.channels]
+        columns = np.zeros((len(lines.time), self.columns("thruster")))
+        if lines.kind == "thruster":
+            columns = lines.value
+        elif lines.kind == "demand":
+            columns[:, self._throttles] = self.thruster_commands(lines.value, lines.kind)
+        beside = [_logged(lines, name)[:, None] for name in self.channels]
         return np.hstack([columns, *beside])
 
     def _is_steady(self, lines: Commands) -> bool:
-        """Whether the same command makes the same static force at all times."""
+        """Whether the same command makes the same thrust at all times, and nothing else is read."""
         timed = "voltage" in lines.auxiliary or any(not s.steady for s in self.strengths)
+        timed = timed or bool(self.channels)
         return len(lines.time) > 0 and not timed
 
 
@@ -275,11 +269,11 @@ def _latest(time: Array, at: Array) -> Array:
     return np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)
 
 
-def _logged(lines: Commands, name: str, at: Array) -> Array:
-    """A channel at these times."""
+def _logged(lines: Commands, name: str) -> Array:
+    """A channel at the times of the lines."""
     logged = lines.auxiliary.get(name)
     if logged is not None:
-        return np.interp(at, logged.time, logged.value)
+        return np.interp(lines.time, logged.time, logged.value)
     raise BadInput(
         f"no channel '{name}' was logged, and an effect of the model reads it",
         where="commands",
@@ -288,7 +282,7 @@ def _logged(lines: Commands, name: str, at: Array) -> Array:
     )
 
 
-def _voltage(lines: Commands, at: Array) -> Array | None:
-    """Voltage (m,) of the battery at these times, s, where it was logged."""
+def _voltage(lines: Commands) -> Array | None:
+    """Voltage (m,) of the battery at the times of the lines, where it was logged."""
     logged = lines.auxiliary.get("voltage")
-    return None if logged is None else np.interp(at, logged.time, logged.value)
+    return None if logged is None else np.interp(lines.time, logged.time, logged.value)

@@ -42,7 +42,7 @@ class Actuation(NamedTuple):
     @staticmethod
     def by(model: Model, thrust: Thrust) -> "Actuation":
         """Of a thrust."""
-        force = model.thrust_path.thrusters.resolved(thrust.force, thrust.heading)
+        force = model.thrust_path.thrusters.resolved(thrust.force, thrust.cosine, thrust.sine)
         angle = thrust.angle
         if angle is None:
             angle = np.zeros((len(force), model.thrust_path.surfaces))

@@ -77,9 +77,11 @@ def nothing(effect: Effect) -> tuple[Effect, str]:
 class Fixed(Thrusters):
     """Thrusters that stay at the angle zero, whatever they are told."""
 
-    def resolved(self, force: Array, heading: Array | None) -> Array:
+    def resolved(
+        self, force: Array, cosine: Array | None = None, sine: Array | None = None
+    ) -> Array:
         """All along the direction of the angle zero."""
-        return super().resolved(force, None)
+        return super().resolved(force)
 
 
 def fixed(thrusters: Thrusters) -> tuple[Effect, str]:

@@ -7,27 +7,18 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.run import Commands
-from rovsim.dynamics.vehicle import Thrusters, Vehicle
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import Vehicle
 from rovsim.dynamics.vehicle.hydrodynamics import matrix
+from rovsim.simulation.drive import Drive
 
 SMALL = 1e-9
 
 
 def wrench(vehicle: Vehicle, commands: Commands) -> Array:
     """Static body wrench (m, 6) of each logged line: N, N m, FRD."""
-    if commands.kind == "wrench":
-        return commands.value
-    thrusters = Thrusters(vehicle.thrusters)
-    value, count = commands.value, thrusters.count
-    if commands.kind == "demand":
-        value = np.clip(value @ thrusters.mixing.T, -1.0, 1.0)
-    angle = np.array(vehicle.angles[: value.shape[1]], dtype=bool)
-    on_thruster = [k for k, a in enumerate(angle) if not a][:count]
-    force = thrusters.static_force(value[:, on_thruster])
-    turned = value[:, [k for k, a in enumerate(angle) if a][: int(thrusters.turning.sum())]]
-    heading = np.stack([np.cos(turned), np.sin(turned)]) if turned.size else None
-    moments = np.cross(thrusters.positions, thrusters.directions)
-    return thrusters.resolved(force, heading) @ np.hstack([thrusters.directions, moments])
+    model = nominal(vehicle)
+    return Drive.by(model, model.thrust_path.at(commands, 0.0, 1.0), 1.0).wrench
 
 
 def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:

@@ -141,12 +141,13 @@ class Thrusters(Coefficients):
         same = self.curves and all(curve == self.curves[0] for curve in self.curves)
         return self.curves[0] if same else None
 
-    def resolved(self, force: Array, heading: Array | None) -> Array:
-        """Forces of the components (m, k), of forces (m, n) and their cos and sin (2, m, a)."""
+    def resolved(
+        self, force: Array, cosine: Array | None = None, sine: Array | None = None
+    ) -> Array:
+        """Forces of the components (m, k), of forces (m, n) and their cos and sin (m, a)."""
         if not self.turning.any():
             return force
         aside = force[:, self.turning]
-        cosine, sine = (np.ones_like(aside), np.zeros_like(aside)) if heading is None else heading
         along = force.copy()
-        along[:, self.turning] = aside * cosine
-        return np.hstack([along, aside * sine])
+        along[:, self.turning] = aside if cosine is None else aside * cosine
+        return np.hstack([along, 0.0 * aside if sine is None else aside * sine])

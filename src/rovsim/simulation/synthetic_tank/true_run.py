@@ -12,7 +12,6 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import HALF_TURN_X, from_euler, multiply, rotate
 from rovsim.core.run import CommandKind, Commands, Site
-from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch
@@ -140,22 +139,13 @@ class _TrueVehicle:
     def advance(self, k: int, command: Array, state: Array, pushes: Array) -> Array:
         """Take the command of tick k; the states (steps, 13) up to the next tick."""
         self.times[k], self.commands[k] = self._stamp(k * self.tick), command
-        path, t, steps = self.model.thrust_path, k * self.tick, len(pushes)
-        middle = t + self.h * (0.5 + np.arange(steps))
+        path, t = self.model.thrust_path, k * self.tick
+        middle = t + self.h * (0.5 + np.arange(len(pushes)))
         arrival = path.arrival(self.times[: k + 1])
         held = self.commands[np.maximum(np.searchsorted(arrival, middle, "right") - 1, 0)]
-        command = path.thruster_commands(held, self.kind)
-        static = path.static(command, middle, self.duration)
-        force, self.lag = path.respond(static, self.h, self.lag)
-        demand = held if self.kind == "demand" else np.full((steps, 6), np.nan)
-        azimuth, angle = path.steering(held, self.kind)
-        heading = np.stack([np.cos(azimuth), np.sin(azimuth)])
-        thrust = Thrust(force, np.zeros((steps, 6)), demand, heading, angle)
-        if path.readers:
-            columns = path.logged_columns(held, self.kind)
-            beside = np.zeros((steps, len(path.channels)))  # the tank logs none
-            thrust = replace(thrust, read=np.hstack([columns, beside]))
-        drive = Drive.by(self.model, thrust, self.duration)
+        static = path.at(Commands(middle, held, self.kind), 0.0, self.duration)
+        force, self.lag = path.respond(static.force, self.h, self.lag)
+        drive = Drive.by(self.model, replace(static, force=force), self.duration)
         return self.batch.advance_by_heun(drive, pushes, state, self.memory, t, self.h)
 
 
