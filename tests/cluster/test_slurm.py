@@ -1,4 +1,4 @@
-"""The study and a sweep through a real Slurm: controller and node on this machine.
+"""Study, folds, blind benchmark and a sweep through a real Slurm: controller and node are here.
 
 `make test-slurm` runs it, as root: Slurm's own job steps read nothing but /etc/slurm/slurm.conf.
 """
@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from rovsim.application.settings import compose
+from rovsim.benchmarks.blind.run import Benchmark, file_name
 from small_study import ROOT, SMALL, copy_of
 
 CONF = Path("/etc/slurm/slurm.conf")
@@ -111,26 +113,76 @@ def jobs(completed: Path, state: str) -> int:
     return completed.read_text().count(f"JobState={state}") if completed.exists() else 0
 
 
-def test_the_study_runs_job_by_job_and_a_cancelled_job_is_tried_again(slurm, tmp_path):
-    copy_of(ROOT, tmp_path)
-    shutil.copytree(ROOT / "profiles", tmp_path / "profiles")
-    quick = ("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "3")
-    study = call(
-        tmp_path, sys.executable, "-m", "snakemake", "--profile", "workflow/profiles/slurm", *quick,
-        "--seconds-between-status-checks", "3", "--default-resources", "mem_mb=1500", "runtime=20",
-        "--config", f"overrides={SMALL}",
-    )  # fmt: skip
-    _wait(lambda: jobs(slurm, "COMPLETED") > 3 or study.poll() is not None, 600)
+def cancelled(completed: Path) -> bool:
+    """Cancel what runs; whether anything did."""
     subprocess.run(["scancel", "--state=RUNNING"], check=True)
-    said = (tmp_path / "log.txt").read_text
-    assert study.wait(3600) == 0, said()[-3000:]
-    results = tmp_path / "results" / "tank-tiny"
+    return jobs(completed, "CANCELLED") > 0
+
+
+def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.Popen:
+    """A workflow over the cluster, which is asked more often than a large one would be."""
+    return call(
+        folder, sys.executable, "-m", "snakemake", "--profile", "workflow/profiles/slurm",
+        "--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "3",
+        "--seconds-between-status-checks", "3", "--default-resources", "mem_mb=1500", "runtime=20",
+        *words, "--config", f"overrides={overrides}",
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def clone(tmp_path_factory) -> Path:
+    """A working copy, whose results the tests add to."""
+    folder = copy_of(ROOT, tmp_path_factory.mktemp("clone"))
+    shutil.copytree(ROOT / "profiles", folder / "profiles")
+    return folder
+
+
+def ended_well(workflow: subprocess.Popen, folder: Path) -> None:
+    assert workflow.wait(3600) == 0, (folder / "log.txt").read_text()[-3000:]
+
+
+def test_the_study_runs_job_by_job_and_a_cancelled_job_is_tried_again(slurm, clone):
+    study = snakemake(clone, SMALL)
+    _wait(lambda: jobs(slurm, "COMPLETED") > 3 or study.poll() is not None, 600)
+    _wait(lambda: cancelled(slurm) or study.poll() is not None)
+    ended_well(study, clone)
+    results = clone / "results" / "tank-tiny"
     found = json.loads((results / "diagnosis.json").read_text())
     assert [one["effect"] for one in found["selected"]] == ["thruster_lag"]
     assert (results / "report.html").stat().st_size > 500
     assert jobs(slurm, "CANCELLED") >= 1
     assert jobs(slurm, "COMPLETED") > 40
-    assert list((tmp_path / ".snakemake" / "slurm_logs").rglob("*.log"))
+    assert list((clone / ".snakemake" / "slurm_logs").rglob("*.log"))
+
+
+def test_every_run_is_held_out_once(slurm, clone):
+    """What `make thesis` does, on the runs of the study."""
+    before = jobs(slurm, "COMPLETED")
+    held_out = "folds.leave_one_run_out=true folds.residuals=[knn] folds.controls=[all]"
+    ended_well(snakemake(clone, f"{SMALL} {held_out}"), clone)
+    folds = clone / "results" / "tank-tiny" / "folds"
+    runs = [folder.name for folder in sorted(folds.iterdir()) if folder.is_dir()]
+    scored = [json.loads((folds / run / "comparison.json").read_text())["models"] for run in runs]
+    assert runs == ["3dof-1", "6dof-1", "6dof-2"]
+    for run, models in zip(runs, scored, strict=True):
+        assert all(list(model["runs"]) == [run] for model in models.values())
+        assert {"nominal", "effects", "knn_all"} <= set(models)
+    assert jobs(slurm, "COMPLETED") >= before + len(runs)
+
+
+def test_cases_of_the_blind_benchmark_are_jobs(slurm, clone):
+    words = ["blind.suite=quick", "blind.seeds=development", "blind.methods=[diagnosis]"]
+    out = clone / "answers"
+    benchmark = Benchmark.of(compose(words).blind, str(out))
+    chosen = [job for job in benchmark.pending() if job.case.id.startswith("none/")][:2]
+    asked = [f"{out}/.asked/{file_name(job.case)}.{job.mark}" for job in chosen]
+    before = jobs(slurm, "COMPLETED")
+    overrides = " ".join([*words, f"out={out}"])
+    ended_well(snakemake(clone, overrides, "-s", "workflow/blind.smk", *asked), clone)
+    left = {job.case.id for job in benchmark.pending()}
+    assert len(chosen) == 2
+    assert not left & {job.case.id for job in chosen}
+    assert jobs(slurm, "COMPLETED") == before + 2
 
 
 def test_a_sweep_runs_over_submitit(slurm, tmp_path):
