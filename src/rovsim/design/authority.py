@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.run import CommandKind, Commands
 from rovsim.dynamics.model import Model
+from rovsim.simulation.command_columns import round_as_logged
 from rovsim.simulation.drive import Drive
 
 LEVELS = np.linspace(-1.0, 1.0, 81)  # of a thruster's command
@@ -87,10 +88,7 @@ class Authority:
 
     def round(self, value: Array) -> Array:
         """Values (m, c) to the digits that a log keeps."""
-        if self.kind != "thruster":
-            return np.round(value, 4)
-        whole = np.round(400.0 * value) / 400.0  # of pulses in whole us (vehicle file)
-        return np.where(self.model.vehicle.angles, np.round(value, 4), whole)
+        return round_as_logged(value, self.kind, self.model.vehicle)
 
     def drive(self, value: Array) -> Drive:
         """What values (m, c) of a log do to the model in the long run, each for itself."""

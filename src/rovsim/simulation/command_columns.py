@@ -1,8 +1,13 @@
-"""Which columns of a command log are angles: the vehicle says so."""
+"""Columns of a command log: which are angles, and how many digits they keep."""
 
 from dataclasses import replace
 
+import numpy as np
+from numpy import ndarray as Array
+
 from rovsim.core.errors import BadInput
+from rovsim.core.pwm import in_whole_pulses
+from rovsim.core.run import CommandKind
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.campaign import Campaign
 
@@ -28,3 +33,11 @@ def mark_angles(campaign: Campaign, vehicle: Vehicle) -> Campaign:
             )
     angles = [name for name, angle in zip(log.names, vehicle.angles, strict=True) if angle]
     return replace(campaign, commands=log.model_copy(update={"angles": angles}))
+
+
+def round_as_logged(value: Array, kind: CommandKind, vehicle: Vehicle) -> Array:
+    """Values (..., c) to the digits that a log keeps: pulses in whole us, else four decimals."""
+    rounded = np.round(value, 4)
+    if kind != "thruster":
+        return rounded
+    return np.where(vehicle.angles, rounded, in_whole_pulses(value))

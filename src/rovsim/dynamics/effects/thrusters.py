@@ -4,6 +4,7 @@ import numpy as np
 import scipy
 from numpy import ndarray as Array
 
+from rovsim.core.pwm import SPAN
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter, Response, Shaping, Strength
 from rovsim.dynamics.effects.parameters import STAMP, Signature
@@ -24,9 +25,9 @@ class ThrusterDeadband(Shaping):
         "band nothing happens at all, a low gain answers weakly from the very start."
     )
     signature = Signature({"width": 0.15}, "surge", "surge thrust")
-    # two steps of a log in whole microseconds, of 400 us: between them no command changes sides
-    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, grain=2 / 400),)
-    starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us of 400 us)
+    # two steps of a log in whole microseconds: between them no command changes sides
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, grain=2 / SPAN),)
+    starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us)
 
     def shaped(self, command: Array) -> Array:
         """Commands inside the band become zero."""

@@ -6,14 +6,14 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, Logged
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.readers import KIND, CommandExport, finite_rows
 
-# PWM = 1500 us + 400 us * c (the vehicle file's comment). Beyond 1100 .. 1900 us a speed
-# controller gives no more; beyond 800 .. 2200 us no servo signal is valid.
-PWM_CENTER, PWM_SPAN = 1500.0, 400.0
+# Beyond 1100 .. 1900 us a speed controller gives no more; beyond 800 .. 2200 us no servo signal is
+# valid.
 ALLOWED = {
     "pwm": (800.0, 2200.0, "pulses of 800 to 2200 us"),
     "normalized": (-1.05, 1.05, "commands in [-1, 1]"),
@@ -73,7 +73,7 @@ def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:
     """Values (m, c) as the model takes them, and how many lines reached beyond [-1, 1]."""
     angles = value * log.signs
     if unit == "pwm":
-        value = (value - PWM_CENTER) / PWM_SPAN
+        value = pwm.to_commands(value)
     value = value * log.signs
     if log.per_axis:
         value = _all_axes(value, log.axis_numbers)
@@ -100,5 +100,4 @@ def as_logged(commands: Commands, log: CommandLog) -> np.ndarray:
     signed = value * log.signs
     if log.kind != "pwm":
         return signed
-    pulses = np.round(PWM_CENTER + PWM_SPAN * signed)
-    return np.where(log.turned, signed, pulses)
+    return np.where(log.turned, signed, pwm.to_pulses(signed))

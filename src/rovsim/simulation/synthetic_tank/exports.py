@@ -6,9 +6,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.pwm import to_pulses
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import MocapView
 from rovsim.dynamics.vehicle import Vehicle
+from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.synthetic_tank.description import BODY
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
@@ -23,7 +25,7 @@ def export_poses(
     truth: TrueRun, camera: Camera, view: MocapView, random: np.random.Generator
 ) -> str:
     """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras."""
-    stride = round(1.0 / (camera.rate * (truth.time[1] - truth.time[0])))
+    stride = round(1.0 / (camera.rate * time_step(truth.time)))
     time, state = truth.time[:-1:stride], truth.state[:-1:stride]
     position, attitude = _measure(state[:, :7], camera, view, random)
     rows = _format_rows(position, attitude, random)
@@ -109,7 +111,7 @@ def export_commands(truth: TrueRun, log: Log, vehicle: Vehicle, random: np.rando
     value, names = commands.value, list(AXES)
     shapes = ["%.4f"] * value.shape[1]
     if commands.kind == "thruster":
-        value = np.where(vehicle.angles, value, np.round(1500.0 + 400.0 * value))
+        value = np.where(vehicle.angles, value, to_pulses(value))
         names = list(vehicle.command_columns)
         shapes = ["%.4f" if angle else "%d" for angle in vehicle.angles]
     text = io.StringIO()

@@ -15,6 +15,7 @@ from rovsim.core.run import CommandKind, Commands, Site
 from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch
+from rovsim.simulation.command_columns import round_as_logged
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.synthetic_tank.allocation import Allocation
 from rovsim.simulation.synthetic_tank.pilot import Helmsman, Pilot
@@ -117,12 +118,9 @@ class _TrueVehicle:
             self.batch = Batch([self.model + water], self.site)
 
     def log(self, demand: Array) -> Array:
-        """What a demand (6,) leaves in the log: itself, or commands in whole microseconds."""
-        if self.kind == "demand":
-            return np.round(demand, 4)
-        command = self.allocation.command(demand)
-        whole = np.round(400.0 * command) / 400.0  # PWM = 1500 us + 400 us c (vehicle file)
-        return np.where(self.model.vehicle.angles, np.round(command, 4), whole)
+        """What a demand (6,) leaves in the log: itself, or what the thrusters are told."""
+        told = demand if self.kind == "demand" else self.allocation.command(demand)
+        return round_as_logged(told, self.kind, self.model.vehicle)
 
     def _stamp(self, t: float) -> float:
         """Time at which the log puts a command that is given at t.

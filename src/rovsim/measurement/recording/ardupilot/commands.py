@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.ardupilot.logs import needs, open_log
 from rovsim.measurement.recording.ardupilot.series import Log, Series
-from rovsim.measurement.recording.commands import PWM_CENTER, as_commands
+from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.readers import CommandExport, command_reader
 
 # Kind of log -> kind of column -> type of message, and the field of a number.
@@ -79,4 +80,4 @@ def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
     if wanted == "RC" or not none.any():
         return np.where(none, np.nan, value), ()
     said = f"{int(none.sum())} outputs without a pulse stand for no command."
-    return np.where(none, PWM_CENTER, value), (said,)
+    return np.where(none, pwm.CENTER, value), (said,)

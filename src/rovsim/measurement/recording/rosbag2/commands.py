@@ -8,9 +8,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core import pwm
 from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import CommandLog
-from rovsim.measurement.recording.commands import PWM_CENTER, as_commands
+from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.readers import CommandExport, command_reader
 from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 
@@ -78,7 +79,7 @@ def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
         return value, ()
     if found.kind.endswith("RCOut"):
         said = f"{found.topic}: {int(none.sum())} outputs without a pulse stand for no command."
-        return np.where(none, PWM_CENTER, value), (said,)
+        return np.where(none, pwm.CENTER, value), (said,)
     return np.where(none, np.nan, value), ()
 
 

@@ -1,0 +1,22 @@
+"""Pulses of a radio control, in us, and the commands in [-1, 1] that they mean."""
+
+import numpy as np
+from numpy import ndarray as Array
+
+# PWM = 1500 us + 400 us c, as the vehicle files' comments say.
+CENTER, SPAN = 1500.0, 400.0
+
+
+def to_commands(pulses: Array) -> Array:
+    """Commands of pulses."""
+    return (pulses - CENTER) / SPAN
+
+
+def to_pulses(command: Array) -> Array:
+    """Pulses of commands, in whole us."""
+    return np.round(CENTER + SPAN * command)
+
+
+def in_whole_pulses(command: Array) -> Array:
+    """Commands that pulses in whole us mean, nearest to these."""
+    return np.round(SPAN * command) / SPAN
