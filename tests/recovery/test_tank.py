@@ -9,6 +9,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle, vehicle_file
 from rovsim.evaluation.scores import rms, subtract
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.quality import report_quality
@@ -177,6 +178,17 @@ def test_same_seed_same_bytes_and_runs_do_not_depend_on_each_other(tmp_path):
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
     names = {run.mocap for run in describe(TankSettings(runs=two)).runs}
     assert names <= {path.name for path in (tmp_path / "a").iterdir()}
+
+
+def test_a_vehicle_of_the_users_goes_along(tmp_path, monkeypatch):
+    own = vehicle_file(default_vehicle()).read_text().replace("mass: 13.5", "mass: 14.5")
+    (tmp_path / "mine.yaml").write_text(own)
+    monkeypatch.chdir(tmp_path)
+    flown = TankSettings(vehicle="mine.yaml", runs=(RUN,), duration=2.0)
+    make_campaign(flown, tmp_path / "deep" / "raw", built_in())
+    campaign = load_campaign(tmp_path / "deep" / "raw")
+    flown_with = load_vehicle(campaign.vehicle, campaign.file.parent)
+    assert nominal(flown_with).body.M_RB[0, 0] == 14.5
 
 
 def test_the_vehicle_stays_inside(tmp_path):

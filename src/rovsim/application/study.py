@@ -20,7 +20,7 @@ from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.reporting.report_data import PER_RUN
 from rovsim.results.ladder import EFFECTS
-from rovsim.simulation.synthetic_tank.description import SEALED, describe
+from rovsim.simulation.synthetic_tank.description import SEALED, VEHICLE, describe, own_vehicle
 
 HELD: dict[Path, FileLock] = {}  # until the process ends
 PHYSICS = ("refitted", EFFECTS)
@@ -115,7 +115,8 @@ class Study:
             return [str(self.campaign.file), *map(str, self.campaign.raw_files(one))]
         runs = [r for r in self.campaign.runs if run in ("", r.id)]
         files = [name for r in runs for name in (r.mocap, r.commands)]
-        extra = [] if run else [SEALED]
+        own = [VEHICLE] if own_vehicle(self.settings.tank) else []
+        extra = own if run else [*own, SEALED]
         return [f"{self.folder}/raw/{name}" for name in ["campaign.yaml", *extra, *files]]
 
     @property
@@ -126,8 +127,11 @@ class Study:
     @cached_property
     def _described(self) -> list[Path]:
         """Files of the vehicle and of the user's effects: an edit changes what models do."""
-        beside = self.campaign.file.parent if isinstance(self.campaign, Campaign) else None
-        return [vehicle_file(self.campaign.vehicle, beside), *self.catalogue.files]
+        if isinstance(self.campaign, Campaign):
+            vehicle = vehicle_file(self.campaign.vehicle, self.campaign.file.parent)
+        else:
+            vehicle = vehicle_file(self.settings.tank.vehicle)
+        return [vehicle, *self.catalogue.files]
 
     def runs(self, split: str = "") -> list[str]:
         """Ids of the runs, all or of one split."""

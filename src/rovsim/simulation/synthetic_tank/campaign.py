@@ -17,7 +17,14 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import build_effects
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.simulation.synthetic_tank.description import SEALED, describe, motion_file, seal
+from rovsim.simulation.synthetic_tank.description import (
+    SEALED,
+    VEHICLE,
+    describe,
+    motion_file,
+    own_vehicle,
+    seal,
+)
 from rovsim.simulation.synthetic_tank.exports import export_commands, export_poses
 from rovsim.simulation.synthetic_tank.sensors import export_channels
 from rovsim.simulation.synthetic_tank.sent_log import SentLog, read_sent_log
@@ -97,6 +104,8 @@ def _record_all(
     progress(len(runs), len(runs))
     campaign, truth = describe(settings), seal(settings, model.added[:hidden], unlisted)
     write_yaml(folder / "campaign.yaml", campaign.model_dump(mode="json", exclude_unset=True))
+    if vehicle := own_vehicle(settings):
+        shutil.copyfile(vehicle, folder / VEHICLE)
     beyond = None if truth.outside else {"outside"}
     write_yaml(folder / SEALED, truth.model_dump(mode="json", exclude=beyond))
 

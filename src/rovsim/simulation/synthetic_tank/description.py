@@ -1,11 +1,12 @@
 """The two files beside the recordings: what a reader is told, and the sealed answer."""
 
+from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from rovsim import AXES
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.dynamics.vehicle import known_vehicle, load_vehicle, vehicle_file
 from rovsim.measurement.campaign_file import CampaignFile
 from rovsim.simulation.synthetic_tank.settings import (
     PLACES,
@@ -18,6 +19,7 @@ from rovsim.simulation.synthetic_tank.settings import (
 BODY = "vehicle"
 CAMERAS = {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"}
 SEALED = "truth.yaml"  # nothing that reads a campaign may open it
+VEHICLE = "vehicle.yaml"  # a copy of the user's, so that the folder can be moved
 
 
 class HiddenEffect(Section):
@@ -43,6 +45,15 @@ class SealedTruth(Section):
     settings: TankSettings
 
 
+def own_vehicle(settings: TankSettings) -> Path | None:
+    """The file of a vehicle that rovsim does not bring.
+
+    Raises:
+        BadInput: there is no such vehicle.
+    """
+    return None if known_vehicle(settings.vehicle) else vehicle_file(settings.vehicle)
+
+
 def describe(settings: TankSettings) -> CampaignFile:
     """`campaign.yaml` of a tank, without simulating anything.
 
@@ -53,7 +64,7 @@ def describe(settings: TankSettings) -> CampaignFile:
     kind = settings.log.kind
     content = {
         "name": settings.name,
-        "vehicle": settings.vehicle,
+        "vehicle": VEHICLE if own_vehicle(settings) else settings.vehicle,
         "tank": _describe_walls(settings),
         "mocap": _describe_sensors(settings.sensors) if settings.sensors else CAMERAS,
         "commands": {
