@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.application.pipeline.recordings import load_campaign_vehicle
+from rovsim.application.pipeline.reading import load_campaign_vehicle
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in

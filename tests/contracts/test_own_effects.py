@@ -13,6 +13,7 @@ from rovsim.core.errors import BadInput
 from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.results.diagnosis import Diagnosis, Proposal
+from small_study import ROOT
 from synthetic_study import diagnosis
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")
@@ -97,11 +98,12 @@ def test_the_study_takes_it_and_sees_edits():
     study = Study({"effects_file": "floor_cushion.py"})
     assert study.catalogue.files == (Path("floor_cushion.py"),)
     assert "floor_cushion" in study.catalogue
-    before = {name: study.code(name) for name in ("simulation.replay", "measurement.signals")}
+    replay, smooth = (ROOT / "workflow" / "scripts" / f"{name}.py" for name in ("replay", "filter"))
+    before = {script: study.code(script) for script in (replay, smooth)}
     with Path("floor_cushion.py").open("a") as file:
         file.write("# later\n")
-    assert study.code("simulation.replay") != before["simulation.replay"]
-    assert study.code("measurement.signals") == before["measurement.signals"]
+    assert study.code(replay) != before[replay]
+    assert study.code(smooth) == before[smooth]
     assert Study({}).catalogue.files == ()
 
 

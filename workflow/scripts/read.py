@@ -2,17 +2,17 @@
 
 from pathlib import Path
 
-from rovsim.application.pipeline.recordings import read_recording
+from rovsim.application.pipeline.reading import read_recording
 from rovsim.application.snakemake_job import job
 from rovsim.measurement.campaign import load_campaign
-from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.outliers import OutlierSettings
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         recording, quality = read_recording(
             campaign=load_campaign(Path(rule.params.campaign)),
             run=rule.wildcards.run,
-            settings=rule.section(SignalSettings),
+            outliers=rule.section(OutlierSettings).outliers,
         )
         quality.write(rule.output("quality"))
         recording.write(rule.output("recording"))

@@ -90,7 +90,7 @@ class Job:
     @property
     def vehicle(self) -> "Vehicle":
         """That of the input `campaign`."""
-        from rovsim.application.pipeline.recordings import load_campaign_vehicle
+        from rovsim.application.pipeline.reading import load_campaign_vehicle
         from rovsim.measurement.campaign import load_campaign
 
         return load_campaign_vehicle(load_campaign(self.path("campaign")))

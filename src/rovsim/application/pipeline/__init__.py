@@ -1,6 +1,7 @@
 """The way of the data, one step a file: commands, workbench and workflow call the same functions.
 
-recordings        raw exports -> recordings, quality, motions
+reading           raw exports -> recordings, quality
+recordings        a campaign -> motions, poses before the filter, quality
 models            names and files -> models; effects added to one
 replays           models x motions -> replays -> scores, growth of errors, steps of the ladder
 bands             how surely models predict, and what of the test runs lies inside

@@ -1,4 +1,4 @@
-"""Raw exports in; motions, the poses before the filter and quality reports out."""
+"""A whole campaign in; motions, the poses before the filter and quality reports out."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -6,14 +6,13 @@ from typing import Mapping
 
 import numpy as np
 
+from rovsim.application.pipeline.reading import load_campaign_vehicle, read_recording
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.core.remade import Remade
-from rovsim.dynamics.vehicle import Vehicle, load_vehicle
+from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
-from rovsim.measurement.quality import report_quality, usable_reason
-from rovsim.measurement.recording import read_run
-from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.quality import usable_reason
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import (
     SignalSettings,
@@ -24,7 +23,6 @@ from rovsim.measurement.signals.chain import (
 )
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.quality import Quality
-from rovsim.simulation.command_columns import mark_angles
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,24 +61,6 @@ def open_campaign(folder: str | None) -> Campaign:
     return load_campaign(Path(folder))
 
 
-def load_campaign_vehicle(campaign: Campaign) -> Vehicle:
-    """The vehicle a campaign was recorded with."""
-    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
-
-
-def read_recording(
-    campaign: Campaign, run: str, settings: SignalSettings
-) -> tuple[Recording, Quality]:
-    """One raw export in NED and FRD, nothing filtered, and its quality report.
-
-    Raises:
-        BadInput: it cannot be read.
-    """
-    known = mark_angles(campaign, load_campaign_vehicle(campaign))
-    recording, anomalies = read_run(known, run)
-    return recording, report_quality(recording, anomalies, settings.outliers)
-
-
 def derive_motion(poses: Stage, quality: Quality, settings: SignalSettings) -> Motion:
     """Velocities and accelerations of filtered poses; an unusable run keeps none."""
     motion = differentiated(poses, settings)
@@ -98,14 +78,14 @@ def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = 
     quality: dict[str, Quality] = {}
 
     def read(run: str) -> Stage:
-        return resampled(read_recording(campaign, run, settings)[0], settings)
+        return resampled(read_recording(campaign, run, settings.outliers)[0], settings)
 
     def derive(run: str) -> Motion:
         return derive_motion(filtered(stages[run], settings), quality[run], settings)
 
     stages, motions = Remade((), read), Remade((), derive)
     for run in counted(campaign.runs, "reading"):
-        recording, quality[run.id] = read_recording(campaign, run.id, settings)
+        recording, quality[run.id] = read_recording(campaign, run.id, settings.outliers)
         if usable_reason(recording) is None:
             stages.keep(run.id, resampled(recording, settings))
             motions.keep(run.id, derive(run.id))

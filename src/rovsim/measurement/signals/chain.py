@@ -11,7 +11,6 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.array_files import read_arrays
-from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.binned import bin_motion
 from rovsim.measurement.signals.clock import find_stretches, time_step, without_margins
@@ -28,7 +27,7 @@ from rovsim.measurement.signals.filter import (
 )
 from rovsim.measurement.signals.measured import Measured, blank
 from rovsim.measurement.signals.motion import Motion, Poses
-from rovsim.measurement.signals.outliers import Outliers, VelocityGate
+from rovsim.measurement.signals.outliers import OutlierSettings
 from rovsim.measurement.signals.resample import Linear, Resampling, resample
 from rovsim.measurement.signals.track import track_channels
 
@@ -36,10 +35,9 @@ from rovsim.measurement.signals.track import track_channels
 Stage: TypeAlias = Poses | Recording
 
 
-class SignalSettings(Section):
+class SignalSettings(OutlierSettings):
     """The whole chain; each part has a `kind` and that kind's own keys."""
 
-    outliers: Outliers = VelocityGate()
     resample: Resampling = Linear()
     filter: Filter = Butterworth()
     differentiate: Differentiation = Spline()

@@ -104,6 +104,12 @@ class KeepAll(Section):
 Outliers: TypeAlias = Annotated[VelocityGate | Hampel | KeepAll, Field(discriminator="kind")]
 
 
+class OutlierSettings(Section):
+    """How impossible poses are found."""
+
+    outliers: Outliers = VelocityGate()
+
+
 def find_outliers(recording: Recording, settings: VelocityGate | Hampel | KeepAll) -> Array:
     """Mask (n,) of the frames that were found but cannot be true.
 
