@@ -187,7 +187,7 @@ def test_a_delay_is_the_filters_unless_nothing_can_be_observed_behind_it(likelih
     found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
     rest = SimpleNamespace(likelihood=likelihood)
     workspace = SimpleNamespace(fit=lambda start: rest)
-    selection = Selection(workspace, found, (), complete=True)
+    selection = Selection(workspace, found, ())
     again, finer = absorb_delay(selection, base, smoothing)
     assert (again.found is rest) is absorbed
     assert (finer.cutoff != smoothing.cutoff) is absorbed

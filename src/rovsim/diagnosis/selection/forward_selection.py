@@ -234,7 +234,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
     current = change_mode(workspace, current)
     current = prefer_file(workspace, current)
     current, rivals = contest(workspace, current, settings.trials)
-    return Selection(workspace, current, tuple(rivals), complete=True)
+    return Selection(workspace, current, tuple(rivals))
 
 
 def search_unnoticed(selection: Selection, seed: int) -> Selection:

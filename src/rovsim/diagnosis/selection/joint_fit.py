@@ -49,7 +49,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
         for term in fit.hypothesis.terms
         if own.id in ACTUATION and term.id in ACTUATION and term.id not in named
     )
-    return Selection(best, found, rivals, complete=False)
+    return Selection(best, found, rivals, REACH)
 
 
 def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
+from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 SURE = 6.0  # twice a log likelihood: odds of 20 to 1
@@ -29,19 +29,15 @@ class Rival:
 class Selection:
     """What a search found, its rivals, and the workspace as it was then.
 
-    `complete`: found one by one, each sure beside the others. If not, all that could be wrong was
-    fitted at once, and what acts only together is kept near where it began.
+    `reach`: how far a fit may go from where it starts, in scales. Without end where terms were
+    found one by one, each sure beside the others; where all that could be wrong was fitted at once,
+    what acts only together is kept near where it began.
     """
 
     workspace: SearchWorkspace
     found: Fit
     rivals: tuple[Rival, ...]
-    complete: bool
-
-    @property
-    def reach(self) -> float:
-        """How far a fit may go from where it starts, in scales."""
-        return np.inf if self.complete else REACH
+    reach: float = np.inf
 
     def fit(self, start: Hypothesis) -> Fit:
         """Fit another hypothesis as this one was found."""
