@@ -19,12 +19,12 @@ from rovsim.apps.workbench import app, charts, path, tasks
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.totals import list_totals, tell_total
-from rovsim.apps.workbench.traces import panels, turned
+from rovsim.apps.workbench.traces import panels
 from rovsim.apps.workbench.work import Work, reap
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
-from rovsim.core.rotations import to_euler
+from rovsim.core.rotations import short_way, to_euler
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import describe_model, read_model, write_model
 from rovsim.results.diagnosis import Diagnosis
@@ -200,7 +200,7 @@ def test_a_band_lies_about_its_curve_and_about_the_difference(bench):
         low, high = shown[1].bands["m"]
         known = np.isfinite(low)
         assert known.sum() > 100
-        np.testing.assert_allclose(turned(low[known]), -0.1, atol=1e-9)
+        np.testing.assert_allclose(short_way(low[known]), -0.1, atol=1e-9)
         np.testing.assert_allclose(high - low, np.where(known, 0.4, np.nan), atol=1e-9)
     low, wide = charts.series_data(motion.time, shown[:1], ("measured", "m"))
     assert (low["id"], wide["id"]) == (

@@ -121,6 +121,11 @@ def to_euler(q: Array) -> Array:
     return np.stack([roll, pitch, yaw], axis=-1)
 
 
+def short_way(angle: Array | float) -> Array:
+    """Angles in rad within -pi .. pi: the short way round."""
+    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
+
+
 def exp(rotation: Array) -> Array:
     """Quaternions (..., 4) of rotation vectors (..., 3) in rad."""
     if not np.any(rotation):  # of every model that turns nothing; SciPy is slow to import

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.rotations import short_way
 from rovsim.core.run import Site
 from rovsim.design.flight import reached
 from rovsim.design.instructions import instruct
@@ -56,8 +57,7 @@ def describe_start(place: Array, heading: float, site: Site) -> Start:
     """In the recordings' axes; a yaw about an axis that points up turns the other way."""
     x, y, z = (float(v) for v in np.round(place * site.axes, 4))
     yaw = heading if np.array_equal(site.axes, np.ones(3)) else -heading
-    turn = float((yaw + np.pi) % (2.0 * np.pi) - np.pi)
-    return Start(x_m=x, y_m=y, z_m=z, yaw_rad=round(turn, 6))
+    return Start(x_m=x, y_m=y, z_m=z, yaw_rad=round(float(short_way(yaw)), 6))
 
 
 def _expect(known: Knowledge, worth: Worth) -> Expected:

@@ -5,7 +5,7 @@ works on whole generations, which the engine flies side by side. A flight beyond
 than any within them, and the worse the farther beyond (Deb 2000).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Any, Sequence, cast
 
@@ -92,11 +92,7 @@ class Range:
         seconds = self.around.seconds
         sticks = [move_sticks(own[1:], self.axes, seconds) for own in x]
         tried = self.try_all(sticks, [self.envelope.longest + np.pi * own[0] for own in x])
-        return [_with_numbers(one, own) for one, own in zip(tried, x, strict=True)]
-
-
-def _with_numbers(one: Tried, x: Array) -> Tried:
-    return Tried(one.sticks, one.heading, one.commands, one.excess, one.worth, x)
+        return [replace(one, numbers=own) for one, own in zip(tried, x, strict=True)]
 
 
 def try_usual(where: Range, seed: int) -> dict[str, list[Tried]]:
@@ -108,8 +104,8 @@ def try_usual(where: Range, seed: int) -> dict[str, list[Tried]]:
         scales = [np.where(np.isin(np.arange(6), VERTICAL), b, a) for a, b in levels]
         tried = where.try_all([full * s for s in scales], [where.envelope.longest] * len(levels))
         named = [
-            Tried(o.sticks, o.heading, o.commands, o.excess, o.worth, name=name, amplitude=level)
-            for o, level in zip(tried, levels, strict=True)
+            replace(one, name=name, amplitude=level)
+            for one, level in zip(tried, levels, strict=True)
         ]
         found[name] = sorted(named, key=lambda one: -one.told)
     return found

@@ -176,7 +176,9 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
         vehicle = load_vehicle(file.vehicle, beside=path.parent)
     else:
         vehicle = build_vehicle(file.vehicle, f"{path}, vehicle")
-    residual = read_residual(file.residual, path.parent) if file.residual else None
+    residual = None
+    if file.residual:
+        residual = read_residual(file.residual, path.parent, f"{path}, residual")
     known = catalogue.on(vehicle)
     added = build_effects(file.effects, known)
     model = Model(path.stem, vehicle, (*vehicle.effects(), *added), residual)

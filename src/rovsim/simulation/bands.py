@@ -12,7 +12,7 @@ from typing import Iterator
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.rotations import conjugate, multiply, rotate, to_euler
+from rovsim.core.rotations import conjugate, multiply, rotate, short_way, to_euler
 from rovsim.dynamics.effects.base import Wander
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.chain import SignalSettings
@@ -112,8 +112,7 @@ def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
 def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
     """Position and angles (n, 6); the angle to the measured ones is steady within each window."""
     measured = to_euler(motion.eta[:, 3:])
-    turned = to_euler(found.eta[:, 3:]) - measured
-    turned = (turned + np.pi) % (2.0 * np.pi) - np.pi
+    turned = short_way(to_euler(found.eta[:, 3:]) - measured)
     for a, b in spans:
         at = np.arange(a, b) if motion.binned else np.arange(a + 1, b + 1)
         turned[at] = np.unwrap(turned[at], axis=0)

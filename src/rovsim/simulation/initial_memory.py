@@ -3,11 +3,11 @@
 from typing import Iterable, Sequence
 
 import numpy as np
-import scipy
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import unrotate
 from rovsim.dynamics.engine.types import NO_MEMORY
+from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion
 
@@ -31,9 +31,10 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
     count = max(1, int(np.ceil((times[-1] - motion.time[0]) / STEP - 1e-9)))
     grid = np.linspace(motion.time[0], times[-1], count + 1)
     h = float(grid[1] - grid[0])
-    columns = (np.interp(grid, motion.time[known], column) for column in nu_r.T)
-    remembered = [lag_of_lines(column, h * body.forgets) for column in columns]
-    return np.stack([np.interp(times, grid, column) for column in remembered], axis=1)
+    moved = np.stack([np.interp(grid, motion.time[known], column) for column in nu_r.T], axis=1)
+    wake = LowPass((1.0 / body.forgets,))
+    remembered = wake.smooth(moved, h, first=np.zeros((1, 6)), straight=True)
+    return np.stack([np.interp(times, grid, column) for column in remembered.T], axis=1)
 
 
 def remembered_at(
@@ -47,14 +48,3 @@ def remembered_at(
         return NO_MEMORY
     rows = [measured_memory(m, run, edges) for m, run in zip(models, motions, strict=True)]
     return np.stack([r[steps] if r.size else np.zeros((len(steps), 6)) for r in rows])
-
-
-def lag_of_lines(values: Array, step: float) -> Array:
-    """First-order lag (k,), zero at the start, of straight lines through values (k,).
-
-    `step` between two values is in time constants.
-    """
-    kept = np.exp(-step)
-    mean = (1.0 - kept) / step
-    end, begin = 1.0 - mean, mean - kept
-    return scipy.signal.lfilter([end, begin], [1.0, -kept], values, zi=[-end * values[0]])[0]

@@ -12,6 +12,7 @@ from rovsim.dynamics.learned.features import FeatureSettings, assemble
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.measured_states import (
@@ -67,7 +68,7 @@ def _of_samples(
     """At each sample, under the thrust around it; the model's acceleration is filtered too."""
     drive = drive_as_measured(model, motion, settings)
     a_sim = accelerate_as_measured(model, motion, drive)
-    period = float(motion.time[1] - motion.time[0])
+    period = time_step(motion.time)
     kept = [np.arange(a, b) for a, b in motion.segments()]
     like = np.concatenate(
         [signals.filter.smoothed(a_sim[k], period) for k in kept] or [np.empty((0, 6))]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion
 
 
@@ -36,7 +37,7 @@ class StepGrid:
             count = int(np.ceil((motion.end - motion.time[0]) / step - 1e-9))
             edges = motion.time[0] + step * np.arange(count + 1)
             return StepGrid(edges, 1, motion.commands.before)
-        period = float(motion.time[1] - motion.time[0])
+        period = time_step(motion.time)
         stride = int(np.ceil(period / step - 1e-9))
         h, count = period / stride, (len(motion.time) - 1) * stride
         return StepGrid(motion.time[0] + h * np.arange(count + 1), stride, motion.commands.before)

@@ -4,6 +4,7 @@ from typing import Iterator
 
 import numpy as np
 
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion
 
 
@@ -17,7 +18,7 @@ def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
         if motion.binned:
             yield from _find_bins(motion, first, last, seconds)
             continue
-        count = round(seconds / float(motion.time[1] - motion.time[0]))
+        count = round(seconds / time_step(motion.time))
         for anchor in range(first, last - count, count):
             yield anchor, anchor + count
 

@@ -17,6 +17,7 @@ from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.quality import EXCITED, usable_reason
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.survey.grid import even_poses, slopes
 
 # A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
@@ -119,7 +120,7 @@ def check_order(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) -> 
 def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
     """How alike body velocities (n, 6) FRD and those that commands cause are."""
     push = held(commands.time, wrench(fit.vehicle, commands), time)
-    caused = respond(fit.vehicle, push, float(time[1] - time[0]))
+    caused = respond(fit.vehicle, push, time_step(time))
     excited = caused.std(axis=0) > EXCITED
     return float(_alike(nu, caused)[excited].mean()) if excited.any() else 0.0
 

@@ -10,6 +10,7 @@ from numpy import ndarray as Array
 
 from rovsim.measurement.quality import EXCITED
 from rovsim.measurement.recording.readers import finite_rows
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.survey.grid import Velocities
 
 REACH = 10.0  # s by which clocks that share a start may differ
@@ -83,7 +84,7 @@ def likeness(
 
     `shift` s is added to the commanded times first.
     """
-    step = float(measured.time[1] - measured.time[0])
+    step = time_step(measured.time)
     count = max(1, int(reach / step))
     first, last = measured.time[0] - count * step, measured.time[-1] + count * step
     clock = first + step * np.arange(round((last - first) / step) + 1)

@@ -10,6 +10,7 @@ from rovsim.core.run import Commands
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.dynamics.vehicle.hydrodynamics import matrix
+from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.drive import Drive
 
 SMALL = 1e-9
@@ -24,7 +25,7 @@ def wrench(vehicle: Vehicle, commands: Commands) -> Array:
 def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
     """Body velocity (n, 6) at the even times (n,) s, commands held between their lines."""
     tau = held(commands.time, wrench(vehicle, commands), time)
-    return respond(vehicle, tau, float(time[1] - time[0]))
+    return respond(vehicle, tau, time_step(time))
 
 
 def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:

@@ -12,7 +12,7 @@ from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel, cursor, height, series_data, styles, time_series
 from rovsim.apps.workbench.parts import Slider, chart
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.rotations import to_euler
+from rovsim.core.rotations import short_way, to_euler
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.palette import Look
@@ -84,7 +84,7 @@ def panels(
         title = axis
         if quantity == "eta":
             title = POSES[axis]
-            missed = {n: turned(x) if k > 2 else x for n, x in missed.items()}
+            missed = {n: short_way(x) if k > 2 else x for n, x in missed.items()}
         around = {name: end - measured[:, k] + missed[name] for name, end in ends.items()}
         found.append(Panel(title, units[k], {"measured": measured[:, k], **models}, bands=ends))
         found.append(
@@ -108,11 +108,6 @@ def _measured(motion: Motion, quantity: str) -> Array:
     if seen is None or quantity != "eta":
         return blank(seen, values, np.nan)
     return np.where([*seen.coordinates, *seen.axes[3:5], *seen.heading], values, np.nan)
-
-
-def turned(angle: Array) -> Array:
-    """An angle between two headings, the short way round."""
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
 def beside(

@@ -5,15 +5,15 @@ from typing import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 from scipy.stats import chi2
 
 from rovsim import AXES
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.effects.law import SMOOTH
+from rovsim.dynamics.low_pass import LowPass
 
-SMOOTH = 0.02  # m/s or rad/s: a sign that turns over within the noise of the velocity
 # The measured velocity at an instant holds some noise of the readings around it, and so would agree
 # with the innovation there; a little earlier it does not, and a vehicle changes little meanwhile.
 EARLIER = 0.2  # s
@@ -77,7 +77,8 @@ def find_dependence(
 
 def _lag(v: Array, run: ObservedRun, memory: float) -> Array:
     """v through a first-order lag, stretch by stretch."""
-    keep, out = np.exp(-run.period / memory), np.empty_like(v)
+    lag, out = LowPass((memory,)), np.empty_like(v)
     for first, last in run.rows:
-        out[first:last] = lfilter([1.0 - keep], [1.0, -keep], v[first:last])
+        stretch = v[first:last, None]
+        out[first:last] = lag.smooth(stretch, run.period, first=np.zeros((1, 1)))[:, 0]
     return out

@@ -14,6 +14,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.measurement.signals.chain import Stage
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.simulation.drive import Drives
@@ -268,7 +269,7 @@ def _divide(at: Array, most: float) -> tuple[Array, Array]:
 def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
     """A group of frames is a reading, and one step leads from it to the next."""
     assert isinstance(stage, Poses)
-    count, period = len(motion.time), float(motion.time[1] - motion.time[0])
+    count, period = len(motion.time), time_step(motion.time)
     group = 2 * round(0.5 * (GROUP / period - 1.0)) + 1 if period < GROUP else 1
     readings = count // group
     steps, ends = _divide(np.arange(readings) * group * grid.stride, GROUP / grid.h)
@@ -282,7 +283,7 @@ def _lasts(motion: Motion, a: int, b: int) -> bool:
     """Whether the stretch from sample or bin a to b - 1 is long enough."""
     if motion.binned:
         return bool(motion.time[b - 1] - motion.time[a] > SHORTEST)
-    return bool((b - a) * (motion.time[1] - motion.time[0]) > SHORTEST)
+    return bool((b - a) * time_step(motion.time) > SHORTEST)
 
 
 def number_blocks(runs: Sequence[ObservedRun]) -> Array:

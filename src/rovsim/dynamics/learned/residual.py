@@ -66,15 +66,15 @@ class Residual:
         return posterior(self.data, X, self.features)
 
 
-def write_residual(folder: Path, residual: Residual, name: str = ARRAYS) -> StoredResidual:
-    """Write the arrays to `folder/name`; returns the description for the model file."""
+def write_residual(folder: Path, residual: Residual) -> StoredResidual:
+    """Write the arrays to a file of the folder; returns the description for the model file."""
     library = {LIBRARY + key: array for key, array in residual.arrays.items()}
-    write_arrays(folder / name, data=residual.data, **library)
+    write_arrays(folder / ARRAYS, data=residual.data, **library)
     return StoredResidual(
         kind=residual.kind,
         control=residual.control,
-        file=name,
-        sha256=_digest(folder / name),
+        file=ARRAYS,
+        sha256=_digest(folder / ARRAYS),
         features=residual.features.blocks,
         scaling=residual.features.scaling,
         settings=plain(residual.settings),

@@ -31,10 +31,10 @@ SAID = 0.1  # s, the bin that the public code replays with
 FAR = 1e6  # standard deviations from all that was seen: there a process has no data either
 
 
-def on_wrong_clock(motion: Motion, length: float = SAID) -> Motion:
-    """A binned run as if each bin lasted `length` s; its commands move along."""
+def on_wrong_clock(motion: Motion) -> Motion:
+    """A binned run as if each bin lasted as long as is said; its commands move along."""
     edges = np.append(motion.time, motion.end)
-    said = motion.time[0] + length * np.arange(len(edges))
+    said = motion.time[0] + SAID * np.arange(len(edges))
     arrival = np.interp(motion.commands.time, edges, said)
     return replace(
         motion, time=said[:-1], end=float(said[-1]),

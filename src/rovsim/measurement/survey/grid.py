@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
 from rovsim.measurement.recording.channels import Channel, Channels
 from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.signals.clock import time_step
 
 # A vehicle's speed answers within tenths of a second; a median over a step rejects single outliers.
 STEP = 0.05  # s
@@ -124,12 +125,12 @@ def _interpolated(clock: Array, time: Array, values: Array) -> Array:
 def _rates(time: Array, attitude: Array) -> Array:
     """Angular velocities (n, 3) in the body axes of attitudes (n, 4)."""
     turns = log(multiply(conjugate(attitude[:-1]), attitude[1:]))
-    return smooth(np.vstack([turns, turns[-1:]]) / (time[1] - time[0]))
+    return smooth(np.vstack([turns, turns[-1:]]) / time_step(time))
 
 
 def slopes(time: Array, values: Array) -> Array:
     """Slopes (n, c) of straight lines through the neighbours of each sample."""
-    step, k = time[1] - time[0], np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
+    step, k = time_step(time), np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
     return _windowed(values, k[::-1] / (step * np.sum(k**2)))
 
 

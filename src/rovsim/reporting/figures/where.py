@@ -49,14 +49,14 @@ def draw(*, where: ErrorConditions) -> Figure:
     return figure
 
 
-def strongest(models: Sequence[Mapping[str, ConditionTable]], count: int = COLUMNS) -> list[str]:
+def strongest(models: Sequence[Mapping[str, ConditionTable]]) -> list[str]:
     """Names of the conditions with more than one bin that explain most, the best first."""
     known: dict[str, float] = {}
     for tables in models:
         for name, table in tables.items():
             if len(table.mean) > 1:
                 known[name] = max(known.get(name, 0.0), table.share_of_error)
-    return sorted(known, key=lambda name: -known[name])[:count]
+    return sorted(known, key=lambda name: -known[name])[:COLUMNS]
 
 
 def _title(name: str, tables: Sequence[ConditionTable]) -> str:

@@ -5,6 +5,7 @@ from functools import cached_property
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.rotations import short_way
 from rovsim.dynamics.vehicle import Vehicle
 
 FULL_ANGLE = 0.25  # rad, of a surface at full demand: below the stall of most
@@ -49,7 +50,7 @@ class Allocation:
         ahead, aside = demand[0] - demand[5] * y, demand[1] + demand[5] * x
         zero = np.arctan2(self.units[k].direction[1], self.units[k].direction[0])
         angle = np.arctan2(aside, ahead) - zero
-        return [float(np.hypot(ahead, aside)), float((angle + np.pi) % (2.0 * np.pi) - np.pi)]
+        return [float(np.hypot(ahead, aside)), float(short_way(angle))]
 
 
 def _largest_one(levers: Array) -> Array:

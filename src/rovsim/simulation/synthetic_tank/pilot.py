@@ -3,7 +3,7 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.rotations import to_euler, unrotate
+from rovsim.core.rotations import short_way, to_euler, unrotate
 from rovsim.simulation.synthetic_tank.turbulence import kept_in_part
 
 REACTION = 0.2  # s, human visual reaction time
@@ -106,7 +106,7 @@ class Helmsman(Pilot):
         seen = self.seen[max(0, tick - self.delay)]
         way = self.set_points[int(tick * self.dt / COURSE_TIME)] - seen[:3]
         _, pitch, yaw = to_euler(seen[3:7])
-        off = (np.arctan2(way[1], way[0]) - yaw + np.pi) % (2.0 * np.pi) - np.pi
+        off = short_way(np.arctan2(way[1], way[0]) - yaw)
         demand = STRAY * self.wander[tick]
         demand[0] += AHEAD
         demand[5] += TURN * off - TURN_RATE * seen[12]

@@ -7,6 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import exp, multiply, rotate, to_euler, unrotate
+from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.synthetic_tank.settings import Sensor, SensorKind
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
 
@@ -51,7 +52,7 @@ def export_channels(
 
 def _choose_rows(truth: TrueRun, sensor: Sensor, random: np.random.Generator) -> Array:
     """Samples at which it measures, the first anywhere in its first period."""
-    stride = 1.0 / (sensor.rate * (truth.time[1] - truth.time[0]))
+    stride = 1.0 / (sensor.rate * time_step(truth.time))
     rows = np.round(np.arange(random.uniform(0.0, stride), len(truth.time) - 1, stride))
     return np.unique(rows.astype(int))
 
@@ -77,7 +78,7 @@ def _measure(
 
 def _specific_force(truth: TrueRun, place: Array, gravity: float) -> Array:
     """Acceleration less gravity (n, 3) of a place in the body, along FRD."""
-    nu, step = truth.state[:, 7:], float(truth.time[1] - truth.time[0])
+    nu, step = truth.state[:, 7:], time_step(truth.time)
     nu_dot = np.gradient(nu, step, axis=0)
     spin, down = nu[:, 3:], np.array([0.0, 0.0, gravity])
     moved = nu_dot[:, :3] + np.cross(spin, nu[:, :3])
