@@ -9,9 +9,9 @@ from numpy import ndarray as Array
 
 from rovsim.core import rotations
 from rovsim.diagnosis.observer.innovations import accelerate, observe
-from rovsim.diagnosis.observer.noise import Path, Tuning
+from rovsim.diagnosis.observer.noise import Path, Tuning, whiten_run
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.random_walk import RandomWalk, Rate, list_terms
+from rovsim.diagnosis.observer.random_walk import RandomWalk, Rate, fit_common, list_terms
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
 from rovsim.simulation.measured_states import as_true
@@ -27,9 +27,9 @@ SURE = 13.8
 
 
 class DriftFit(NamedTuple):
-    """The likeliest drift of the current, and by how much it is likelier than any other walk.
+    """The likeliest drift of the current, and by how much it is likelier than what else may wander.
 
-    `surplus`, in twice the log likelihood; that of no walk where no other comes as close.
+    `surplus`, in twice the log likelihood; that of nothing where nothing else comes as close.
     """
 
     rate: Rate
@@ -101,8 +101,21 @@ class MovingWater:
         if found.gain < LIKELY:
             return DriftFit(found, found.gain)
         forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
-        others = (self._walk(pushes).fit_rate(z, tunings).gain for pushes in forces)
-        return DriftFit(found, found.gain - max(0.0, *others))
+        others = [self._walk(pushes).fit_rate(z, tunings).gain for pushes in forces]
+        return DriftFit(found, found.gain - max(0.0, self._gain_by_place(z, tunings), *others))
+
+    def _gain_by_place(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> float:
+        """What a current would gain that is steady, and another at every place along a line.
+
+        A vehicle that moves through it meets a current that wanders.
+        """
+        pushes = zip(_lines(self.runs), self._pushes, self.bends, strict=True)
+        every = zip(self.runs, self.tunings, tunings, pushes, strict=True)
+        columns = [
+            whiten_run(self._show(run, found, *how), run, found, wanted)
+            for run, found, wanted, how in every
+        ]
+        return fit_common(columns, z).gain
 
     def shows_drift(self, tunings: Sequence[Tuning]) -> bool:
         """Whether a drift worth looking for would be told from none."""
@@ -111,14 +124,24 @@ class MovingWater:
 
     def _walk(self, pushes: Sequence[Array]) -> RandomWalk:
         each = zip(self.runs, self.tunings, pushes, self.bends, strict=True)
-        return RandomWalk(self.runs, tuple(self._show(*one) for one in each), self.tunings)
+        columns = (self._show(run, tuning, list_terms(run), *how) for run, tuning, *how in each)
+        return RandomWalk(self.runs, tuple(columns), self.tunings)
 
-    def _show(self, run: ObservedRun, tuning: Tuning, push: Array, bend: Array) -> Array:
-        """Innovations (c, 6, n) by all terms of a walk along pushes (d, n, 6), for a rate of 1."""
-        terms = (list_terms(run)[:, None, :, None] * push).reshape(-1, *bend.shape)
-        pushed = np.concatenate([bend[None], bend + RATE * terms])
+    def _show(
+        self, run: ObservedRun, tuning: Tuning, terms: Array, push: Array, bend: Array
+    ) -> Array:
+        """Innovations (k d, 6, n) by terms (k, n) along pushes (d, n, 6)."""
+        each = (terms[:, None, :, None] * push).reshape(-1, *bend.shape)
+        pushed = np.concatenate([bend[None], bend + RATE * each])
         e = observe([self.model] * len(pushed), run, tuning, pushed)
         return np.asarray((e[0] - e[1:]) / RATE)  # what a model does not foresee
+
+
+def _lines(runs: Sequence[ObservedRun]) -> list[Array]:
+    """One and the place in m from their middle (4, n) at the readings of each run."""
+    places = [np.nan_to_num(run.motion.eta[run.index, :3].T) for run in runs]
+    middle = np.mean(np.hstack(places), axis=1, keepdims=True)
+    return [np.vstack([np.ones(p.shape[1]), p - middle]) for p in places]
 
 
 def push_by_current(model: Model, run: ObservedRun, current: Array) -> Array:

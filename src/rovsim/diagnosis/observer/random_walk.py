@@ -115,6 +115,17 @@ class RandomWalk:
         return rests, walks
 
 
+def fit_common(columns: Sequence[Array], z: Sequence[Array]) -> Rate:
+    """The likeliest size of what is the same in all runs, for whitened innovations (6, m) of each.
+
+    `columns` (c, 6, m) of each run: innovations, white too, by each of its parts for a size of 1.
+    The parts are independent normal numbers.
+    """
+    joined = np.concatenate([own.reshape(len(own), -1) for own in columns], axis=1)
+    white = np.concatenate([own.ravel() for own in z])
+    return _Evidence.of([white], [_decompose(joined)]).fit()
+
+
 def _decompose(columns: Array) -> _Principal:
     """Of whitened columns (c, 6, m)."""
     columns = columns.reshape(len(columns), -1)
