@@ -179,13 +179,18 @@ def test_binned_recordings_are_turned_back_too():
     assert back.mean() < 0.3 * late.mean()
 
 
-@pytest.mark.parametrize(("likelihood", "absorbed"), [(10.0, True), (-np.inf, False)])
-def test_a_delay_is_the_filters_unless_nothing_can_be_observed_behind_it(likelihood, absorbed):
-    smoothing, base = Smoothing(cutoff=6.0, std=0.3, gain=100.0), model()
-    delayed = Term(InputDelay(delay=0.001), ("delay",))
+@pytest.mark.parametrize(
+    ("delay", "likelihood", "absorbed"),
+    [(0.001, 10.0, True), (-0.007, 10.0, True), (0.001, -np.inf, False), (0.03, 10.0, False),
+     (-0.02, 10.0, False), (-0.08, 10.0, False)],
+    ids=["late", "early", "nothing is observed", "too late", "too early", "before the filter"],
+)  # fmt: skip
+def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood, absorbed):
+    smoothing, base = Smoothing(6.0, std=0.3, gain=100.0, lowest=5.5, highest=7.0), model()
+    delayed = Term(InputDelay(delay=delay), ("delay",))
     h = Hypothesis(seen_through(base, smoothing), (delayed,))
     found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
-    rest = SimpleNamespace(likelihood=likelihood)
+    rest = SimpleNamespace(likelihood=likelihood, hypothesis=SimpleNamespace(x=np.empty(0)))
     workspace = SimpleNamespace(fit=lambda start: rest)
     selection = Selection(workspace, found, ())
     again, finer = absorb_delay(selection, base, smoothing)

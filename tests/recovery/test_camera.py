@@ -31,9 +31,11 @@ def test_a_vehicle_that_tumbles_is_not_smoothed(tmp_path):
     assert find_smoothing(base, runs) is None
 
 
-@pytest.mark.parametrize("colour", [0.0, 0.3e-3])
-def test_cameras_that_do_not_smooth_are_not_said_to(tmp_path, colour):
-    camera = Camera(colour_noise=colour, colour_attitude=3.0 * colour)
+@pytest.mark.parametrize(
+    ("colour", "lasts"), [(0.0, 0.5), (0.3e-3, 0.5), (2.0e-3, 0.5), (2.0e-3, 0.1), (2.0e-3, 0.03)]
+)
+def test_cameras_that_do_not_smooth_are_not_said_to(tmp_path, colour, lasts):
+    camera = Camera(colour_noise=colour, colour_attitude=3.0 * colour, colour_time=lasts)
     base, runs = observed(tmp_path, duration=30.0, effects=(LAG,), camera=camera)
     assert find_smoothing(base, runs) is None
 

@@ -29,7 +29,7 @@ from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
-from rovsim.diagnosis.observer.camera import find_smoothing
+from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -134,20 +134,24 @@ def diagnose(
 
 def _diagnose(
     base: Model, usable: UsableRuns, settings: SearchSettings, catalogue: Catalogue, seed: int,
-    stage: Stages,
+    stage: Stages, smooths: bool = True,
 ) -> TrainDiagnosis:  # fmt: skip
+    """`smooths`: whether the cameras may smooth."""
     stage("observing")
-    smoothing = find_smoothing(base, usable.runs)
-    seen = seen_through(base, smoothing)
+    smoothing = find_smoothing(base, usable.runs) if smooths else None
     chosen, apart = keep_apart(usable.runs)
-    workspace = _observe(seen, chosen, settings, catalogue)
-    nothing = workspace.fit(Hypothesis(seen))
+    nothing, workspace = _begin(base, smoothing, chosen, settings, catalogue)
+    if smoothing:  # what the motion tells of its delay, before that is taken for something else
+        _, smoothing = absorb_delay(Selection(workspace, nothing, ()), base, smoothing)
+        nothing, workspace = _begin(base, smoothing, chosen, settings, catalogue)
     stage("searching")
     selection = search(workspace, nothing, seed)
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
     gate = Gate(apart, usable.runs)
     found = _settle_noticed(selection, usable, gate, seed)
+    if smoothing and gate.refuses(found.fit.hypothesis.model, base):
+        return _diagnose(base, usable, settings, catalogue, seed, stage, smooths=False)
     stage("checking")
     if found.lasting:
         seen = seen_through(base, smoothing)
@@ -174,6 +178,16 @@ def _diagnose(
         proposed=proposed,
         disturbance=None if proposed else _trace(found),
     )  # fmt: skip
+
+
+def _begin(
+    base: Model, smoothing: Smoothing | None, runs: Sequence[ObservedRun],
+    settings: SearchSettings, catalogue: Catalogue,
+) -> tuple[Fit, SearchWorkspace]:  # fmt: skip
+    """Nothing but what the camera does, and where to look for more."""
+    seen = seen_through(base, smoothing)
+    workspace = _observe(seen, runs, settings, catalogue)
+    return workspace.fit(Hypothesis(seen)), workspace
 
 
 def _correlate(found: Fit) -> Correlation:

@@ -5,6 +5,7 @@ train_runs      runs of a campaign, prepared: those parts of long ones that tell
 usable_runs     those with something to observe, and whether that is enough
 noise           what no model predicts: noise of the readings, a disturbance with memory
 noise_fit       how large it most likely is
+camera_noise    how likely poses are, if the noise of the cameras is of some kind
 camera          does the software of the motion capture smooth what it reports?
 random_walk     pushes that wander: how they show, and how likely they are
 drifting_current  does the water wander?

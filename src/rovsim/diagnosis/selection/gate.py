@@ -71,10 +71,17 @@ class Gate:
             if weakest is None:
                 break
             found = selection.fit(weakest)
-        if self.runs and self._is_worse(found.hypothesis.model, found.hypothesis.base):
+        if self.refuses(found.hypothesis.model, found.hypothesis.base):
             base = replace(found.hypothesis, terms=())
             found = selection.fit(base)
         return replace(selection, found=found), found is selection.found
+
+    def refuses(self, model: Model, before: Model) -> bool:
+        """Whether a model replays these stretches surely worse than the one before."""
+        if not self.runs:
+            return False
+        errors = self._errors([model, before])
+        return _compare(errors[0], errors[1]) > 0.0
 
     def improves(self, more: Model, less: Model, share: float) -> bool:
         """Whether one model errs less than the other by that share on all runs."""
@@ -143,10 +150,6 @@ class Gate:
             if _ratio(errors[1 + k], errors[0]) < 1.0 + CLOSE:
                 fewer[k] = selection.fit(one).hypothesis
         return fewer, self._errors([h.model, *(one.model for one in fewer)])
-
-    def _is_worse(self, model: Model, before: Model) -> bool:
-        errors = self._errors([model, before])
-        return _compare(errors[0], errors[1]) > 0.0
 
     def _errors(self, models: Sequence[Model]) -> Array:
         """Mean squared error (m, w) of each window, every axis in units of how much it varies.

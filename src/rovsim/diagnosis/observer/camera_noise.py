@@ -1,0 +1,157 @@
+"""How likely the spectra of poses are, if the noise of the cameras is of some kind.
+
+Above some Hz a vehicle stands still, and what is left in the poses is the noise of the cameras.
+Whittle's likelihood of averaged periodograms (Whittle 1953; Welch 1967).
+"""
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.optimize import minimize
+from scipy.signal import welch
+
+from rovsim.core.rotations import body_rates
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.low_pass import LowPass
+from rovsim.dynamics.model import Model
+
+LOWEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
+SEGMENT = 2.56  # s of each periodogram
+FEWEST = 8  # frequencies, to tell a shape
+# What is left of the motion falls off at least as fast as a force without memory moves a mass, or
+# as one that thrusters lag.
+STEEP = (4.0, 6.0)
+# s, of errors that last: markers that merge, another choice of cameras. The longest of them fall
+# off like a random walk above `LOWEST`; the shortest are over within two frames of 100 Hz.
+MEMORIES = (np.inf, 0.2, 0.06, 0.02)
+NOTHING, MUCH = 1e-8, 1e8  # power of a part beside the white noise
+ROUNDED = 0.03  # the same at most, of poses written in units of up to 0.6 of the noise: 0.6^2 / 12
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What noise is beside white.
+
+    `memory` in s: an error that lasts, too; None: none. `bridged`: frames lie on straight lines
+    between those that were taken, as where these came at uneven times or are missing.
+    """
+
+    memory: float | None = None
+    bridged: bool = False
+
+
+KINDS = [Kind(memory, bridged) for memory, bridged in product((None, *MEMORIES), (False, True))]
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Mean periodograms `power` (6, f) of a pose at `frequency` (f,) Hz of frames `period` s apart.
+
+    Each is the mean of `count` independent ones.
+    """
+
+    power: Array
+    frequency: Array
+    count: float
+    period: float
+
+    @property
+    def _cosine(self) -> Array:
+        return np.cos(2.0 * np.pi * self.frequency * self.period)
+
+    def _response(self, cutoff: float) -> Array:
+        """Power (f,) that a filter in the software lets through."""
+        low_pass = LowPass(PoseFilter(cutoff=cutoff).time_constants())
+        return low_pass.pass_power(self.frequency, self.period)
+
+    def _lasting(self, memory: float) -> Array:
+        """Power (f,) of first-order Gauss-Markov noise, 1 at the first frequency."""
+        kept = np.exp(-self.period / memory)
+        power = 1.0 / (1.0 - 2.0 * kept * self._cosine + kept**2)
+        return np.asarray(power / power[0])
+
+    def cost(self, kind: Kind, cutoff: float | None) -> float:
+        """Minus twice the log likelihood; `cutoff` Hz of the software's filter, None: none."""
+        others = [(self.frequency / self.frequency[0]) ** -steep for steep in STEEP]
+        if kind.memory is not None:
+            others.append(self._lasting(kind.memory))
+        if kind.bridged:  # x in 0 .. 1 of the way: 1 - x (1 - x) (2 - 2 cos), a share of this
+            others.append(0.5 * (1.0 + self._cosine))
+        white, most = np.ones_like(self.frequency), [MUCH] * len(others)
+        if cutoff is not None:
+            smoothed = self._response(cutoff)
+            others = [*(smoothed * other for other in others), white]
+            white, most = smoothed, [*most, ROUNDED]
+        return 2.0 * self.count * _misfit(self.power, white, np.array(others), most)
+
+    def price(self, kind: Kind) -> float:
+        """What its sizes cost beyond those of white noise (Schwarz 1978)."""
+        sizes = (kind.memory is not None) + kind.bridged
+        return float(np.log(self.count * self.power.shape[1]) * sizes * len(self.power))
+
+
+def _misfit(power: Array, white: Array, others: Array, most: Sequence[float]) -> float:
+    """Whittle's cost, least over sizes, of periodograms (c, f) of white and other noise (k, f).
+
+    `most` (k,): how large these may be beside the white noise.
+    """
+    shape = (len(power), len(others))
+
+    def cost(x: Array) -> tuple[float, Array]:
+        parts = np.exp(x.reshape(shape))[:, :, None] * others
+        total = white + np.sum(parts, axis=1)
+        ratio = power / total
+        size = np.mean(ratio, axis=1)  # the likeliest
+        misfit = (1.0 - ratio / size[:, None]) / total
+        slope = np.sum(parts * misfit[:, None], axis=2)
+        return float(np.sum(np.log(total)) + power.shape[1] * np.sum(np.log(size))), slope.ravel()
+
+    low, high = np.log(NOTHING), np.log(most)
+    start = np.tile(0.5 * (low + high), len(power))
+    bounds = [(low, one) for one in high] * len(power)
+    return float(minimize(cost, start, jac=True, method="L-BFGS-B", bounds=bounds).fun)
+
+
+def measure_spectra(base: Model, runs: Sequence[ObservedRun]) -> list[Spectrum]:
+    """Spectra of the noise of all runs of motion capture, one for each rate of their frames."""
+    cameras = [run for run in runs if not run.motion.binned and run.motion.measured is None]
+    found = [one for run in cameras if (one := _measure(base, run)) is not None]
+    alike: dict[tuple[float, int], list[Spectrum]] = {}
+    for one in found:
+        alike.setdefault((round(one.period, 9), len(one.frequency)), []).append(one)
+    return [_pool(some) for some in alike.values()]
+
+
+def _pool(some: Sequence[Spectrum]) -> Spectrum:
+    """The mean of spectra at the same frequencies: the cameras are the same in all runs."""
+    count = sum(one.count for one in some)
+    power = sum(one.count / count * one.power for one in some)
+    return Spectrum(np.asarray(power), some[0].frequency, count, some[0].period)
+
+
+def _measure(base: Model, run: ObservedRun) -> Spectrum | None:
+    """Of a run's frames, from its longest stretch; None where that is too short."""
+    motion, period = run.motion, run.frame_period
+    a, b = max(motion.segments(), key=lambda one: one[1] - one[0], default=(0, 0))
+    if (b - a) * period < 2.0 * SEGMENT or 0.5 / period < 2.0 * LOWEST:
+        return None
+    eta = base.mocap_view.sharpen(run.frames[a:b, :7], period)
+    twice = np.diff(eta, 2, axis=0)  # what the vehicle does is slow, so little of it stays
+    channels = np.hstack([twice[:, :3], body_rates(eta[1:-1, 3:], twice[:, 3:])]).T
+    return describe_noise(channels, period)
+
+
+def describe_noise(channels: Array, period: float) -> Spectrum | None:
+    """Of the second differences (6, n) of a pose; None where frequencies are too few."""
+    frequency, power = welch(channels, 1.0 / period, nperseg=round(SEGMENT / period))
+    differenced = np.abs(1.0 - np.exp(-2j * np.pi * frequency * period)) ** 4
+    kept = (frequency >= LOWEST) & (frequency < 0.96 * frequency[-1])
+    if kept.sum() < FEWEST:
+        return None
+    # half overlapping Hann windows: 0.95 of an independent one each (Welch 1967, eq. 12 f.)
+    count = 0.95 * (2.0 * channels.shape[1] * period / SEGMENT - 1.0)
+    return Spectrum(power[:, kept] / differenced[kept], frequency[kept], count, period)
