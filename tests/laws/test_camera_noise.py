@@ -30,7 +30,7 @@ def told(poses):
     return fit_smoothing([describe_noise(np.diff(poses, 2, axis=0).T, PERIOD)])
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(
     st.floats(0.0, 6.0), st.floats(0.02, 3.0), st.floats(0.0, 0.004), st.floats(0.0, 0.2),
     st.integers(0, 99),

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.camera import find_smoothing
+from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.procedure import diagnose
+from rovsim.diagnosis.settings import SearchSettings
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model_file import EffectEntry
 from rovsim.simulation.synthetic_tank.settings import Camera
@@ -52,3 +55,11 @@ def test_a_slow_error_of_the_cameras_is_told_from_noise_and_from_turbulence(tmp_
     assert np.all(levels[0][3:] == 0.0)
     assert np.count_nonzero(levels[0]) <= 1
     assert np.median(levels[1][:3]) == pytest.approx(1.0e-3, rel=0.4)
+
+
+def test_a_filter_that_replays_worse_than_nothing_is_refused(tmp_path, monkeypatch):
+    base, runs = observed(tmp_path, duration=60.0)
+    wrong = Smoothing(cutoff=1.5, std=0.01, gain=100.0, lowest=1.49, highest=1.51)
+    monkeypatch.setattr("rovsim.diagnosis.procedure.find_smoothing", lambda base, runs: wrong)
+    found = diagnose(base, runs, SearchSettings(most_effects=1), catalogue=built_in())
+    assert found.verdict == "adequate"
