@@ -140,10 +140,7 @@ def _diagnose(
     stage("observing")
     smoothing = find_smoothing(base, usable.runs) if smooths else None
     chosen, apart = keep_apart(usable.runs)
-    nothing, workspace = _begin(base, smoothing, chosen, settings, catalogue)
-    if smoothing:  # what the motion tells of its delay, before that is taken for something else
-        _, smoothing = absorb_delay(Selection(workspace, nothing, ()), base, smoothing)
-        nothing, workspace = _begin(base, smoothing, chosen, settings, catalogue)
+    nothing, workspace, smoothing = _begin(base, smoothing, chosen, settings, catalogue)
     stage("searching")
     selection = search(workspace, nothing, seed)
     if smoothing:
@@ -183,11 +180,23 @@ def _diagnose(
 def _begin(
     base: Model, smoothing: Smoothing | None, runs: Sequence[ObservedRun],
     settings: SearchSettings, catalogue: Catalogue,
-) -> tuple[Fit, SearchWorkspace]:  # fmt: skip
-    """Nothing but what the camera does, and where to look for more."""
-    seen = seen_through(base, smoothing)
-    workspace = _observe(seen, runs, settings, catalogue)
-    return workspace.fit(Hypothesis(seen)), workspace
+) -> tuple[Fit, SearchWorkspace, Smoothing | None]:  # fmt: skip
+    """Nothing but what the camera does, where to look for more, and the camera's filter.
+
+    What the motion tells of its delay is used before that is taken for something else.
+    """
+
+    def look(smoothing: Smoothing | None) -> tuple[Fit, SearchWorkspace]:
+        seen = seen_through(base, smoothing)
+        workspace = _observe(seen, runs, settings, catalogue)
+        return workspace.fit(Hypothesis(seen)), workspace
+
+    nothing, workspace = look(smoothing)
+    if smoothing:
+        _, finer = absorb_delay(Selection(workspace, nothing, ()), base, smoothing)
+        if finer is not smoothing:
+            return *look(finer), finer
+    return nothing, workspace, smoothing
 
 
 def _correlate(found: Fit) -> Correlation:

@@ -232,19 +232,21 @@ class ThrustPath:
         force = self.static(command, lines.time - start, duration, _voltage(lines))
         demand = lines.value if lines.kind == "demand" else none
         azimuth, angle = self.steering(lines.value, lines.kind)
-        return Thrust(
-            force, still, demand, np.cos(azimuth), np.sin(azimuth), angle, self._read_out(lines)
-        )
+        read = self._read_out(lines, command)
+        return Thrust(force, still, demand, np.cos(azimuth), np.sin(azimuth), angle, read)
 
-    def _read_out(self, lines: Commands) -> Array | None:
-        """Commands and angles as a log of thrusters has them, then channels; None where unread."""
+    def _read_out(self, lines: Commands, command: Array | None = None) -> Array | None:
+        """Commands and angles as a log of thrusters has them, then channels; None where unread.
+
+        `command` (m, n): what the thrusters are told, if they are told anything.
+        """
         if not self.readers:
             return None
         columns = np.zeros((len(lines.time), self.columns("thruster")))
         if lines.kind == "thruster":
             columns = lines.value
-        elif lines.kind == "demand":
-            columns[:, self._throttles] = self.thruster_commands(lines.value, lines.kind)
+        elif command is not None:
+            columns[:, self._throttles] = command
         beside = [_logged(lines, name)[:, None] for name in self.channels]
         return np.hstack([columns, *beside])
 

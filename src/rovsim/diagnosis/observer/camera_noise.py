@@ -27,7 +27,7 @@ FEWEST = 8  # frequencies, to tell a shape
 STEEP = (4.0, 6.0)
 # s, of errors that last: markers that merge, another choice of cameras. The longest of them fall
 # off like a random walk above `LOWEST`; the shortest are over within two frames of 100 Hz.
-MEMORIES = (np.inf, 0.2, 0.06, 0.02)
+MEMORIES = (3600.0, 0.2, 0.06, 0.02)
 NOTHING, MUCH = 1e-8, 1e8  # power of a part beside the white noise
 ROUNDED = 0.03  # the same at most, of poses written in units of up to 0.6 of the noise: 0.6^2 / 12
 
@@ -59,19 +59,17 @@ class Spectrum:
     count: float
     period: float
 
-    @property
-    def _cosine(self) -> Array:
-        return np.cos(2.0 * np.pi * self.frequency * self.period)
-
     def _response(self, cutoff: float) -> Array:
         """Power (f,) that a filter in the software lets through."""
         low_pass = LowPass(PoseFilter(cutoff=cutoff).time_constants())
         return low_pass.pass_power(self.frequency, self.period)
 
     def _lasting(self, memory: float) -> Array:
-        """Power (f,) of first-order Gauss-Markov noise, 1 at the first frequency."""
-        kept = np.exp(-self.period / memory)
-        power = 1.0 / (1.0 - 2.0 * kept * self._cosine + kept**2)
+        """Power (f,) of first-order Gauss-Markov noise, white noise that a low-pass made last.
+
+        1 at the first frequency.
+        """
+        power = LowPass((memory,)).pass_power(self.frequency, self.period)
         return np.asarray(power / power[0])
 
     def cost(self, kind: Kind, cutoff: float | None) -> float:
@@ -80,7 +78,7 @@ class Spectrum:
         if kind.memory is not None:
             others.append(self._lasting(kind.memory))
         if kind.bridged:  # x in 0 .. 1 of the way: 1 - x (1 - x) (2 - 2 cos), a share of this
-            others.append(0.5 * (1.0 + self._cosine))
+            others.append(0.5 * (1.0 + np.cos(2.0 * np.pi * self.frequency * self.period)))
         white, most = np.ones_like(self.frequency), [MUCH] * len(others)
         if cutoff is not None:
             smoothed = self._response(cutoff)
