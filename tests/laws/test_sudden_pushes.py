@@ -14,12 +14,13 @@ PERIOD, COUNT, KICK = 0.05, 1200, 600
 NOISE = AxisNoise(level=0.02, memory=1.0, reading=1e-3)
 
 
-def residual_with(size, undecided):
+def residual_with(size, undecided, noise=1.0):
     """Noise and one push of 0.2 s, m/s2, in the innovations of an axis."""
     f = design_filter(POSE, PERIOD, AxisMotion(1.0), NOISE)
     push = np.zeros(COUNT)
     push[KICK : KICK + 4] = size
-    white = np.random.default_rng(3).normal(size=COUNT) + lfilter(*f.response, push)
+    shown = lfilter(*f.response, push)
+    white = noise * np.random.default_rng(3).normal(size=COUNT) + shown
     time = PERIOD * np.arange(COUNT)
     run = SimpleNamespace(
         period=PERIOD, time=time, edges=time, settled=np.ones(COUNT, bool),
@@ -36,6 +37,15 @@ def test_a_push_is_found_at_its_time():
 
 def test_noise_alone_is_no_push():
     assert not list(find_kicks(residual_with(0.0, np.zeros(COUNT, bool))))
+
+
+def test_a_push_stands_out_of_turbulence_that_is_stronger_at_times():
+    """Turbulence a seventh stronger reaches 5.6 standard deviations where even one reaches 4.9."""
+    known = np.zeros(COUNT, bool)
+    unit = residual_with(1.0, known, noise=0.0)
+    deviations = float(np.linalg.norm(unit.white[0]))
+    assert not list(find_kicks(residual_with(5.6 / deviations, known, noise=0.0)))
+    assert list(find_kicks(residual_with(7.0 / deviations, known, noise=0.0)))
 
 
 def test_a_push_while_a_thruster_was_at_the_edge_of_its_deadband_is_none():

@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 
 SUDDEN = 0.2  # s, about what the readings resolve
 RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
-UNEVEN = 1.15  # turbulence is not equally strong all the time, nor in all runs
+UNEVEN = 1.15  # times its standard deviation: turbulence is not as strong at all times, in all runs
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
 ECHO = 2.0  # s within which the filter forgets a kick
 # One moment counts by its own size, not by its mean over the run, but must stand out that far.
@@ -70,7 +70,8 @@ def _judge_kick(
     factor = np.correlate(w, template, "valid") / power
     factor *= known[: len(factor)]
     k = int(np.argmax(np.abs(factor)))
-    limit = chi2.isf(FALSE_ALARM / (2 * len(KICKS) * len(AXES) * len(factor)), 1)
+    moments = len(factor) * len(residual.runs)
+    limit = UNEVEN**2 * chi2.isf(FALSE_ALARM / (2 * len(KICKS) * len(AXES) * moments), 1)
     at = run.edges[0] + run.time[run.settled][k]
     yield from residual.weigh(
         f"a push of {duration:g} s at {at:.1f} s in run {run.motion.run.id}",
