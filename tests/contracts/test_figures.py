@@ -118,6 +118,19 @@ def test_the_ranking_shows_each_share_and_what_the_selected_add():
     assert [line.get_xdata()[0] for line in axes.lines] == pytest.approx([42.0, 36.0])
 
 
+def test_the_ranking_shows_a_share_beyond_its_ends_as_an_arrow_there():
+    found = study()["diagnosis"]
+    first, *rest = found.selected
+    far = found.model_copy(
+        update={"selected": (first.model_copy(update={"error_reduction": -2.0}), *rest)}
+    )
+    figure = drawn("ranking", {"diagnosis": far})
+    mark = next(line for line in figure.axes[0].lines if line.get_marker() == "<")
+    assert mark.get_xdata()[0] == -20.0
+    assert any(text.get_text().startswith("-200") for text in figure.axes[0].texts)
+    show(figure)  # the layout finds room
+
+
 def test_the_measured_line_is_the_measurement():
     content = study()
     figure = drawn("velocities", content)

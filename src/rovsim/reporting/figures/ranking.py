@@ -19,6 +19,7 @@ CAPTION = (
     "estimate; for the selected ones also what each adds in the final model, fitted together."
 )
 OTHER = "#BBBBBB"
+LOWEST, HIGHEST = -0.2, 1.0  # a share outside is drawn as an arrow at that end
 
 
 @styled()
@@ -42,8 +43,11 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
     for label in axes.get_yticklabels():
         label.set_fontweight("bold" if label.get_text() in chosen else "normal")
     axes.set_ylim(max(len(names), 1) - 0.4, -0.6)
-    axes.set_xlim(0, 122)
-    axes.set_xticks(range(0, 101, 20))
+    harm = any(share < 0.0 for share in chosen.values())
+    axes.set_xlim(-25 if harm else 0, 122)
+    axes.set_xticks(range(-20 if harm else 0, 101, 20))
+    if harm:
+        axes.axvline(0, color="black", linewidth=0.5)
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
     axes.set_xlabel("share of the error removed (%)")
@@ -56,9 +60,11 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
 
 def _row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
     axes.barh(y, 100 * np.nan_to_num(alone), 0.66, color=color, linewidth=0)
+    shown = float(np.clip(together, LOWEST, HIGHEST))
     if np.isfinite(together):
-        axes.plot(100 * together, y, "D", color="black", markersize=4, clip_on=False)
-    right = 100 * max(np.nan_to_num(alone), np.nan_to_num(together))
+        marker = "D" if shown == together else "<" if together < shown else ">"
+        axes.plot(100 * shown, y, marker, color="black", markersize=4, clip_on=False)
+    right = 100 * max(np.nan_to_num(alone), np.nan_to_num(shown))
     axes.annotate(_text(alone, together), (right, y), xytext=(6, 0), va="center",
                   textcoords="offset points", fontsize=8,
                   bbox={"facecolor": "white", "pad": 1, "linewidth": 0})  # fmt: skip
