@@ -7,11 +7,11 @@ from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.advice import FIX_SCALE, advise
 from rovsim.diagnosis.checks.common_scale import include_scale
+from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.dynamics.catalogue import built_in

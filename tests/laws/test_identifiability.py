@@ -5,11 +5,11 @@ import numpy as np
 from rovsim import AXES
 from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.identifiability import find_doubtful, group_joint_parameters
+from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.procedure import TrainDiagnosis
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.dynamics.catalogue import built_in

@@ -4,7 +4,9 @@ observer      the model runs along the train runs, corrected by a filter: what i
 selection     which effects explain that: candidates, search, fits, what else they could be
 checks        what is asked of the answer: structure left, what is known, noise floor
 equations     a law for what is left, where one holds
+answer        what was selected, past the gate, at its final values, and what that leaves
 procedure     these, in order
+found         what comes of it
 advice        what to record next
 result        what is written of it
 of_campaign   a campaign in, all that is reported out; test runs are opened here, once

@@ -2,7 +2,7 @@
 
 from typing import Sequence
 
-from rovsim.diagnosis.procedure import TrainDiagnosis
+from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 
 FIX_SCALE = (

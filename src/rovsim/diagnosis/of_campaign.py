@@ -9,8 +9,9 @@ import numpy as np
 from rovsim.core.files import write_text
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.equations.proposal import FILE
+from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
-from rovsim.diagnosis.procedure import TrainDiagnosis, diagnose
+from rovsim.diagnosis.procedure import diagnose
 from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue

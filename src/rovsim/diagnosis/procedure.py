@@ -14,21 +14,25 @@ equation        where there is some: a law for it, if one holds; if not, the for
 test runs       opened once, for the errors that are reported
 """
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Callable, Sequence
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rovsim.diagnosis.checks.common_scale import CommonScale
-from rovsim.diagnosis.checks.identifiability import find_doubtful
+from rovsim.diagnosis.answer import (
+    Answer,
+    choose,
+    polish_selection,
+    refit_to_replays,
+    settle,
+    settle_noticed,
+)
 from rovsim.diagnosis.checks.observability import list_not_observable
-from rovsim.diagnosis.checks.residual import Structure
-from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
+from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
@@ -36,23 +40,19 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.forward_selection import search, search_unnoticed
+from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.gate import Gate, keep_apart
-from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
-from rovsim.diagnosis.selection.idle_effects import drop_idle
+from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
     Named,
-    Ranked,
-    Selected,
     name_drift,
     name_smoothing,
     name_terms,
     rank_alone,
     rank_selected,
 )
-from rovsim.diagnosis.selection.replay_fit import fit_to_replays
-from rovsim.diagnosis.selection.rivals import Rival, Selection
+from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linearise_candidates
 from rovsim.diagnosis.selection.smoothed import absorb_delay, seen_through
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -60,59 +60,9 @@ from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.uncertainty import correlate
-from rovsim.results.diagnosis import Verdict
 from rovsim.results.fitted import Correlation
 
 Stages = Callable[[str], None]
-
-
-@dataclass(frozen=True, eq=False)
-class TrainDiagnosis:
-    """What was found on the train runs.
-
-    `usable` runs; `fit` of the base and all selected effects, None where there was too little to
-    judge, and the `correlation` of its values; `structures` that are left, and whether the gate
-    `refused` effects that explain something; `scale` of all forces, where it is unknown;
-    `not_observable` effects that the runs could not show; `proposed`: a law for what is left, where
-    one holds; `disturbance`: the force in time, where none does.
-    """
-
-    base: Model
-    usable: UsableRuns
-    fit: Fit | None = None
-    correlation: Correlation | None = None
-    selected: Sequence[Selected] = ()
-    ranking: Sequence[Ranked] = ()
-    rivals: Sequence[Rival] = ()
-    structures: Sequence[Structure] = ()
-    refused: bool = False
-    scale: CommonScale | None = None
-    not_observable: Sequence[str] = ()
-    proposed: ProposedLaw | None = None
-    disturbance: ForceInTime | None = None
-
-    @property
-    def enough(self) -> bool:
-        """Whether there was enough to judge anything."""
-        return self.fit is not None
-
-    @property
-    def verdict(self) -> Verdict:
-        """One of the four of the contract."""
-        if not self.enough:
-            return "insufficient_data"
-        if self.structures or self.refused:
-            return "unexplained"
-        if self.selected:
-            return "missing_effects"
-        return "insufficient_data" if self.usable.still else "adequate"
-
-    def models(self) -> list[Model]:
-        """The base, then one model more for each selected effect."""
-        found = [self.base]
-        for one in self.selected:
-            found.append((found[-1] + one.term.effect).called(f"+{one.term.id}"))
-        return found
 
 
 def diagnose(
@@ -146,16 +96,16 @@ def _diagnose(
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
     gate = Gate(apart, usable.runs)
-    found = _settle_noticed(selection, usable, gate, seed)
+    found = settle_noticed(selection, usable, gate, seed)
     if smoothing and gate.refuses(found.fit.hypothesis.model, base):
         return _diagnose(base, usable, settings, catalogue, seed, stage, smooths=False)
     stage("checking")
     if found.lasting:
         seen = seen_through(base, smoothing)
-        joint = _settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
-        found = _choose(found, joint, gate)
+        joint = settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
+        found = choose(found, joint, gate)
     if found.lasting and len(found.fit.hypothesis.x):
-        found = replace(found, fit=_fit_to_replays(found.fit, found.bank))
+        found = replace(found, fit=refit_to_replays(found.fit, found.bank))
     camera = [name_smoothing(smoothing)] if smoothing else []
     proposed = _propose(found, base, gate, usable, camera) if found.lasting else None
     rivals = found.selection.named_rivals
@@ -228,112 +178,21 @@ def _observe(
     return SearchWorkspace(close, sensitivities, noise, settings).redesign(Hypothesis(base), noise)
 
 
-@dataclass(frozen=True, eq=False)
-class _Settled:
-    """An answer: its final values, how likely it is, and all that it leaves unexplained.
-
-    `refused`: the gate refused effects, and nothing but these explains what they explained.
-    """
-
-    selection: Selection
-    fit: Fit
-    bank: FilterBank
-    score: float
-    structures: Sequence[Structure]
-    refused: bool = False
-
-    @property
-    def complete(self) -> bool:
-        """Whether it leaves nothing."""
-        return not (self.structures or self.refused)
-
-    @property
-    def lasting(self) -> bool:
-        """Whether more is left than single pushes: then names may stand for what has none."""
-        return self.refused or not all(one.moment for one in self.structures)
-
-    @cached_property
-    def replayed(self) -> Model:
-        """At the values that replay the stretches best that it was chosen by."""
-        found = self.selection.found
-        if len(found.hypothesis.x):
-            found = _fit_to_replays(found, self.selection.workspace.bank)
-        return found.hypothesis.model
-
-
-def _settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> _Settled:
-    """Names that a user would notice; where they leave something, the others too if they do not."""
-    noticed = drop_idle(selection)
-    found = _settle(noticed, usable, gate)
-    if not found.lasting:
-        return found
-    every = search_unnoticed(selection, seed)
-    if every.found is noticed.found:
-        return found
-    more = _settle(every, usable, gate)
-    return more if more.complete else found
-
-
-def _settle(selection: Selection, usable: UsableRuns, gate: Gate) -> _Settled:
-    """What passes the gate, at its final values on all runs, and all that it leaves unexplained."""
-    selection, whole = gate.judge(selection)
-    settled = _settle_values(selection, usable)
-    fewer = gate.keep_earning(selection) if settled.lasting else selection
-    if fewer.found is not selection.found:
-        settled = _settle_values(fewer, usable)
-    return replace(settled, refused=not whole and settled.complete)
-
-
-def _settle_values(selection: Selection, usable: UsableRuns) -> _Settled:
-    found, bank = _polish(selection, usable.runs)
-    score = selection.workspace.score(found)
-    return _Settled(selection, found, bank, score, find_structure(found, bank))
-
-
-def _choose(one: _Settled, other: _Settled, gate: Gate) -> _Settled:
-    """Of two answers the one that surely replays better; else what is complete, or the likelier.
-
-    Where an answer is not complete, what its likelihood takes for noise is physics. So each replays
-    stretches that took no part, at the values that replay the others best, as it would end.
-    """
-    better = gate.prefers(one.replayed, other.replayed) if gate.runs else None
-    if better is not None:
-        return one if better else other
-    return one if not other.complete and one.score >= other.score else other
-
-
-def _fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
-    """The values that replay best, without effects that these might as well lack."""
-    again = fit_to_replays(found, bank)
-    while len(again.hypothesis.terms) > 1:
-        doubtful = find_doubtful(again)
-        if doubtful is None:
-            break
-        fewer = bank.linearise(again.hypothesis.without(doubtful))
-        again = fit_to_replays(judge(fewer, bank, found.noise), bank)
-    return again
-
-
 def _propose(
-    found: _Settled, base: Model, gate: Gate, usable: UsableRuns, camera: Sequence[Named]
+    found: Answer, base: Model, gate: Gate, usable: UsableRuns, camera: Sequence[Named]
 ) -> ProposedLaw | None:
     """An equation for what is left, where one holds."""
 
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
-        return _polish(replace(found.selection, found=with_law), usable.runs)
+        return polish_selection(replace(found.selection, found=with_law), usable.runs)
 
     whole = found.fit.hypothesis.model
     best = Catalogued(whole, found.replayed if gate.runs else whole)
     return propose_law(found.selection, best, base, gate, usable.runs, polish, camera)
 
 
-def _trace(found: _Settled) -> ForceInTime | None:
+def _trace(found: Answer) -> ForceInTime | None:
     """The force in time that is left; None where nothing is seen of it."""
     if not found.structures:
         return None
     return trace_force(found.fit, found.bank, found.structures)
-
-
-def _polish(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
-    """Fitted once more to all runs under its own noise, with filters that suit it."""
-    return polish(selection.found, runs, selection.reach)

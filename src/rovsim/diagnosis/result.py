@@ -16,10 +16,10 @@ from rovsim.diagnosis.equations.describe import (
     describe_values,
     rounded,
 )
+from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.procedure import Ranked, Selected, TrainDiagnosis
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.ranking import find_std
+from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
 from rovsim.diagnosis.selection.rivals import SURE, Rival
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.uncertainty import correlate

@@ -1,0 +1,110 @@
+"""An answer: what the search selected, past the gate, at its final values, and what it leaves."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Sequence
+
+from rovsim.diagnosis.checks.identifiability import find_doubtful
+from rovsim.diagnosis.checks.residual import Structure
+from rovsim.diagnosis.checks.residual_structure import find_structure
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.usable_runs import UsableRuns
+from rovsim.diagnosis.selection.forward_selection import search_unnoticed
+from rovsim.diagnosis.selection.gate import Gate
+from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
+from rovsim.diagnosis.selection.idle_effects import drop_idle
+from rovsim.diagnosis.selection.replay_fit import fit_to_replays
+from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.dynamics.model import Model
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """An answer: its final values, how likely it is, and all that it leaves unexplained.
+
+    `refused`: the gate refused effects, and nothing but these explains what they explained.
+    """
+
+    selection: Selection
+    fit: Fit
+    bank: FilterBank
+    score: float
+    structures: Sequence[Structure]
+    refused: bool = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether it leaves nothing."""
+        return not (self.structures or self.refused)
+
+    @property
+    def lasting(self) -> bool:
+        """Whether more is left than single pushes: then names may stand for what has none."""
+        return self.refused or not all(one.moment for one in self.structures)
+
+    @cached_property
+    def replayed(self) -> Model:
+        """At the values that replay the stretches best that it was chosen by."""
+        found = self.selection.found
+        if len(found.hypothesis.x):
+            found = refit_to_replays(found, self.selection.workspace.bank)
+        return found.hypothesis.model
+
+
+def settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> Answer:
+    """Names that a user would notice; where they leave something, the others too if they do not."""
+    noticed = drop_idle(selection)
+    found = settle(noticed, usable, gate)
+    if not found.lasting:
+        return found
+    every = search_unnoticed(selection, seed)
+    if every.found is noticed.found:
+        return found
+    more = settle(every, usable, gate)
+    return more if more.complete else found
+
+
+def settle(selection: Selection, usable: UsableRuns, gate: Gate) -> Answer:
+    """What passes the gate, at its final values on all runs, and all that it leaves unexplained."""
+    selection, whole = gate.judge(selection)
+    settled = _settle_values(selection, usable)
+    fewer = gate.keep_earning(selection) if settled.lasting else selection
+    if fewer.found is not selection.found:
+        settled = _settle_values(fewer, usable)
+    return replace(settled, refused=not whole and settled.complete)
+
+
+def _settle_values(selection: Selection, usable: UsableRuns) -> Answer:
+    found, bank = polish_selection(selection, usable.runs)
+    score = selection.workspace.score(found)
+    return Answer(selection, found, bank, score, find_structure(found, bank))
+
+
+def choose(one: Answer, other: Answer, gate: Gate) -> Answer:
+    """Of two answers the one that surely replays better; else what is complete, or the likelier.
+
+    Where an answer is not complete, what its likelihood takes for noise is physics. So each replays
+    stretches that took no part, at the values that replay the others best, as it would end.
+    """
+    better = gate.prefers(one.replayed, other.replayed) if gate.runs else None
+    if better is not None:
+        return one if better else other
+    return one if not other.complete and one.score >= other.score else other
+
+
+def refit_to_replays(found: Fit, bank: FilterBank) -> Fit:
+    """The values that replay best, without effects that these might as well lack."""
+    again = fit_to_replays(found, bank)
+    while len(again.hypothesis.terms) > 1:
+        doubtful = find_doubtful(again)
+        if doubtful is None:
+            break
+        fewer = bank.linearise(again.hypothesis.without(doubtful))
+        again = fit_to_replays(judge(fewer, bank, found.noise), bank)
+    return again
+
+
+def polish_selection(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
+    """Fitted once more to all runs under its own noise, with filters that suit it."""
+    return polish(selection.found, runs, selection.reach)

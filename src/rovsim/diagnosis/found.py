@@ -1,0 +1,65 @@
+"""What was found on the train runs of a campaign."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+from rovsim.diagnosis.checks.common_scale import CommonScale
+from rovsim.diagnosis.checks.residual import Structure
+from rovsim.diagnosis.equations.disturbance import ForceInTime
+from rovsim.diagnosis.equations.proposal import ProposedLaw
+from rovsim.diagnosis.observer.usable_runs import UsableRuns
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.ranking import Ranked, Selected
+from rovsim.diagnosis.selection.rivals import Rival
+from rovsim.dynamics.model import Model
+from rovsim.results.diagnosis import Verdict
+from rovsim.results.fitted import Correlation
+
+
+@dataclass(frozen=True, eq=False)
+class TrainDiagnosis:
+    """What was found on the train runs.
+
+    `usable` runs; `fit` of the base and all selected effects, None where there was too little to
+    judge, and the `correlation` of its values; `structures` that are left, and whether the gate
+    `refused` effects that explain something; `scale` of all forces, where it is unknown;
+    `not_observable` effects that the runs could not show; `proposed`: a law for what is left, where
+    one holds; `disturbance`: the force in time, where none does.
+    """
+
+    base: Model
+    usable: UsableRuns
+    fit: Fit | None = None
+    correlation: Correlation | None = None
+    selected: Sequence[Selected] = ()
+    ranking: Sequence[Ranked] = ()
+    rivals: Sequence[Rival] = ()
+    structures: Sequence[Structure] = ()
+    refused: bool = False
+    scale: CommonScale | None = None
+    not_observable: Sequence[str] = ()
+    proposed: ProposedLaw | None = None
+    disturbance: ForceInTime | None = None
+
+    @property
+    def enough(self) -> bool:
+        """Whether there was enough to judge anything."""
+        return self.fit is not None
+
+    @property
+    def verdict(self) -> Verdict:
+        """One of the four of the contract."""
+        if not self.enough:
+            return "insufficient_data"
+        if self.structures or self.refused:
+            return "unexplained"
+        if self.selected:
+            return "missing_effects"
+        return "insufficient_data" if self.usable.still else "adequate"
+
+    def models(self) -> list[Model]:
+        """The base, then one model more for each selected effect."""
+        found = [self.base]
+        for one in self.selected:
+            found.append((found[-1] + one.term.effect).called(f"+{one.term.id}"))
+        return found
