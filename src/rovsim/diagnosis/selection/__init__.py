@@ -4,8 +4,11 @@ candidates         every effect of the catalogue, from each of its starts
 sensitivities      how each would change the innovations, to first order
 proposals          what each promises, and what chance would seem to gain
 workspace          the runs, the columns, one noise for all; what is fitted already
+prior              what is known of parameters before the runs are looked at
 gauss_newton       the most likely parameters, and their spread
+pruning            without what is not worth its price
 forward_selection  add, refit, swap, prune
+file_first         what the vehicle file explains as well as something rarer
 loose_file         a special effect beside a vehicle file that may be off everywhere
 rivals             where that ended, and what else the effects could be
 smoothed           beside what the camera does

@@ -6,12 +6,14 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection import loose_file
+from rovsim.diagnosis.selection.file_first import add_file, hold_gain, prefer_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED
+from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.proposals import Proposal
+from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.dynamics.model import Model
@@ -24,49 +26,6 @@ PROMISING = 0.5  # of what a term explains: another name may do better than it p
 # first-order predictions is not that of fits (a torpedo's weight, sixth to first order, was best).
 LEVEL = 0.75
 CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
-
-
-def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """Without free parameters that are not worth their price, one at a time."""
-    while len(current.hypothesis.x):
-        smaller = _drop_weakest(workspace, current)
-        if smaller is None:
-            return current
-        trial = workspace.fit(smaller)
-        if workspace.score(trial) < workspace.score(current):
-            return current
-        current = trial
-    return current
-
-
-def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
-    """The hypothesis without its least certain parameter; None if all of them are sure."""
-    h = current.hypothesis
-    certain = ((h.x - h.absence) / np.maximum(current.std, 1e-12)) ** 2
-    for term, own in zip(h.terms, h.columns, strict=True):
-        if own and not term.vanishes:  # it would go as a whole
-            certain[own] = np.max(certain[own])
-    weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
-    if not certain[weakest] < 2.0 * workspace.price:
-        return None
-    return drop_parameters(h, np.arange(len(certain)) == weakest)
-
-
-def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
-    """The hypothesis without some of its free parameters (k,), and without terms that have none.
-
-    An effect that is not absent at its defaults stays or goes as a whole: it goes with the last.
-    """
-    terms = []
-    for term, own in zip(h.terms, h.columns, strict=True):
-        idle = {name for name, k in zip(term.free, own, strict=True) if weak[k]}
-        defaults = {p.name: p.default for p in term.parameters if p.name in idle}
-        left = tuple(name for name in term.free if name not in idle)
-        if not term.free:
-            terms.append(term)  # tried, not fitted: it has nothing to drop
-        elif left and (not idle or term.vanishes):
-            terms.append(replace(term, effect=term.effect.with_values(defaults), free=left))
-    return Hypothesis(h.base, tuple(terms))
 
 
 def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
@@ -85,7 +44,7 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
     Where the vehicle file is off, it is no special effect that the file explains; if nothing else
     is left, several numbers of the file that only matter together.
     """
-    left, off = list_promising(workspace, current), loose_file.is_off(current.hypothesis)
+    left, off = list_promising(workspace, current), is_off(current.hypothesis)
     for _ in range(ROUNDS):
         level = sum(p.gain > LEVEL * left[0].gain for p in left)
         trying = keep_close(left, max(workspace.settings.trials, level))
@@ -128,7 +87,7 @@ def contest(
 
     `swap`: by how much more, in twice the log likelihood.
     """
-    rivals, off = [], loose_file.is_off(current.hypothesis)
+    rivals, off = [], is_off(current.hypothesis)
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_challengers(workspace, term, rest, trials):
@@ -183,37 +142,6 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
     return current
 
 
-def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """Without effects that the vehicle file, where it is off anyway, explains about as well."""
-    terms = current.hypothesis.terms
-    if not any(term.id in STATED for term in terms):
-        return current
-    for term in terms:
-        if loose_file.explains(workspace, current, term.id):
-            rest = workspace.fit(workspace.drop(current, [(term,)])[0])
-            fewer = prune(workspace, add_file(workspace, rest))
-            if _is_as_good(workspace, fewer, current, term):
-                return prefer_file(workspace, fewer)
-    return current
-
-
-def _is_as_good(workspace: SearchWorkspace, fewer: Fit, current: Fit, term: Term) -> bool:
-    """Whether more of the file makes up for a special term, as far as such a term is rare."""
-    if not loose_file.is_off(current.hypothesis):
-        return workspace.score(fewer) > workspace.score(current) - loose_file.FILE_ODDS
-    costs = [loose_file.measure_cost(workspace, one) for one in (fewer, current)]
-    return costs[0] - costs[1] <= loose_file.find_limit(workspace, term)
-
-
-def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """With all that the vehicle file states and that is worth its price."""
-    wanted = loose_file.propose_file(workspace, current)
-    if wanted is None:
-        return current
-    trial = workspace.fit(wanted)
-    return trial if workspace.score(trial) > workspace.score(current) else current
-
-
 def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
     """From the base to the model to which nothing can be added, swapped or taken away.
 
@@ -232,7 +160,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
     workspace = workspace.look_again(current)
     current, _ = contest(workspace, current, 1)
     current = change_mode(workspace, current)
-    current = prefer_file(workspace, current)
+    current = hold_gain(workspace, prefer_file(workspace, current))
     current, rivals = contest(workspace, current, settings.trials)
     return Selection(workspace, current, tuple(rivals))
 

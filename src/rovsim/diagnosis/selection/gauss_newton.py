@@ -12,6 +12,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.selection.prior import Prior
 
 MOST_ITERATIONS = 12
 CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
@@ -54,11 +55,12 @@ class Fit:
 def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf) -> Fit:
     """Fit the free parameters under a given noise, then the noise to what is left.
 
-    `reach`: see `descend`.
+    `reach`, in scales: a prior's standard deviation about the start, which keeps parameters that
+    only act together from running away together.
 
     A model that diverges in spite of the observer's corrections is infinitely unlikely.
     """
-    return judge(descend(start, bank, noise, reach), bank, noise)
+    return judge(descend(start, bank, noise, Prior.around(start.x, reach)), bank, noise)
 
 
 def polish(
@@ -82,14 +84,10 @@ def judge(seen: Linearised, bank: FilterBank, noise: Noise) -> Fit:
 
 
 def descend(
-    start: Hypothesis, evidence: Evidence, noise: Noise, reach: float = np.inf
+    start: Hypothesis, evidence: Evidence, noise: Noise, prior: Prior | None = None
 ) -> Linearised:
-    """Least squares from a hypothesis: where it leads.
-
-    `reach`, in scales: a prior's standard deviation about the start, which keeps parameters that
-    only act together from running away together.
-    """
-    problem = _Problem(evidence, noise, start.x, reach)
+    """Least squares from a hypothesis, beside what is known before: where it leads."""
+    problem = _Problem(evidence, noise, prior or Prior.around(start.x, np.inf))
     seen, trust = evidence.linearise(start), FIRST_TRUST
     if not len(start.x) or not seen.finite:
         return seen
@@ -149,12 +147,11 @@ class _Step(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
-    """Whitened errors, and a prior about where the descent starts."""
+    """Whitened errors, and a prior."""
 
     evidence: Evidence
     noise: Noise
-    start: Array
-    reach: float
+    prior: Prior
 
     def errors(self, wanted: Hypothesis) -> Array:
         """Whitened errors (size,); infinite where the model diverges."""
@@ -165,24 +162,23 @@ class _Problem:
 
     def cost(self, wanted: Hypothesis, target: Array) -> float:
         """Sum of squares of errors, and what the prior says of the hypothesis."""
-        return float(target @ target) + self._prior(wanted.x)
-
-    def _prior(self, x: Array) -> float:
-        return float(np.sum(((x - self.start) / self.reach) ** 2))
+        return float(target @ target) + self.prior.cost(wanted.x)
 
     def expand(self, seen: Linearised) -> _Bowl:
         """The sum of squares to second order about a hypothesis."""
-        x = seen.at.x
         rows = as_rows(self.evidence.whiten(seen.J, self.noise))
         target = self.evidence.whiten(seen.e, self.noise).ravel()
-        H = inner_products(rows) + np.eye(len(rows)) / self.reach**2
-        g = rows @ target + (x - self.start) / self.reach**2
+        H = inner_products(rows) + np.diag(self.prior.weights(seen.at.x))
+        g = rows @ target + self._pull(seen.at.x)
         return _Bowl(seen.at, H, g, self.cost(seen.at, target), len(target), rows)
 
     def shift(self, bowl: _Bowl, step: _Step) -> _Bowl:
         """The same about where a step leads, with the derivatives from where it began."""
-        g = bowl.rows @ step.target + (step.to.x - self.start) / self.reach**2
+        g = bowl.rows @ step.target + self._pull(step.to.x)
         return bowl._replace(at=step.to, g=g, cost=step.cost)
+
+    def _pull(self, x: Array) -> Array:
+        return self.prior.weights(x) * (x - self.prior.about)
 
 
 def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:

@@ -12,13 +12,12 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.forward_selection import drop_parameters
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
-from rovsim.diagnosis.selection.nominal_terms import DRAG, ONE_GAIN, free_terms
+from rovsim.diagnosis.selection.nominal_terms import DRAG, free_terms, mark_gain
+from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
-from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
@@ -78,7 +77,7 @@ def _prune_together(workspace: SearchWorkspace, found: Fit) -> Fit:
     """
     while True:
         weak = _find_weak(found, workspace.price)
-        for fewer in (weak, weak & _mark_gain(found.hypothesis)):
+        for fewer in (weak, weak & mark_gain(found.hypothesis)):
             smaller = _do_without(workspace, found, fewer)
             if smaller is not None:
                 break
@@ -93,12 +92,6 @@ def _do_without(workspace: SearchWorkspace, found: Fit, weak: Array) -> Fit | No
         return None
     smaller = workspace.fit(drop_parameters(found.hypothesis, weak), REACH)
     return smaller if workspace.score(smaller) >= workspace.score(found) else None
-
-
-def _mark_gain(h: Hypothesis) -> Array:
-    """Which free parameter (k,) is the gain of all thrusters."""
-    each = ((term.id, name) for term in h.terms for name in term.free)
-    return np.array([one == (ThrusterGain.id, *ONE_GAIN) for one in each], bool)
 
 
 def _find_weak(found: Fit, price: float) -> Array:

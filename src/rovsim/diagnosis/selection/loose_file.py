@@ -17,11 +17,10 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED, spread_of_file
+from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, spread_of_file
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
-SEVERAL = 3  # effects of the file: one or two may be all that is wrong
 # In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
 # thirty times, against a coefficient of a file that is known to be off.
 FILE_ODDS = 13.8
@@ -38,11 +37,6 @@ class FileNumber(NamedTuple):
     parameter: str
     row: int
     spread: float
-
-
-def is_off(h: Hypothesis) -> bool:
-    """Whether so much was selected of what the vehicle file states that it is off everywhere."""
-    return sum(term.id in STATED for term in h.terms) >= SEVERAL
 
 
 def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:

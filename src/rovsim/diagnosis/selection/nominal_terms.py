@@ -3,17 +3,21 @@
 from typing import Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.observer.hypothesis import Bounds, Term
+from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
+from rovsim.diagnosis.selection.prior import cauchy
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Effect, Parameter
+from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
 DRAG = ("linear_damping", "quadratic_damping")
 PER_AXIS = (*DRAG, "added_mass", "constant_wrench")
 ONE_GAIN = ("all",)  # of all thrusters
 STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "thruster_gain")
+SEVERAL = 3  # effects of the file: one or two may be all that is wrong
 # How far a vehicle file is off, relative to what it states. Added mass: two published sets for a
 # BlueROV2, both from tests in a tank (von Benzon et al. 2022, J. Mar. Sci. Eng. 10, 1898; Wu 2018,
 # Flinders University, of the lighter vehicle with six thrusters), differ by 0.41 in its logarithm,
@@ -23,14 +27,39 @@ STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "thruster_gain
 SHARE = {"added_mass": 0.3, "linear_damping": 0.3, "quadratic_damping": 0.3}
 # Thrusters: assumed, too; a battery of 4 cells gives 12.8 to 16.8 V, the curve is of one voltage.
 GAIN = 0.1
+GAIN_SCALE = next(p.scale for p in ThrusterGain.parameters if p.name in ONE_GAIN)
 # What a file states as zero, the ballast and its place may be off by one of the parameter's scales.
+
+
+def is_off(h: Hypothesis) -> bool:
+    """Whether so much was selected of what the vehicle file states that it is off everywhere."""
+    return sum(term.id in STATED for term in h.terms) >= SEVERAL
+
+
+def mark_gain(h: Hypothesis) -> Array:
+    """Which free parameter (k,) is the gain of all thrusters."""
+    each = ((term.id, name) for term in h.terms for name in term.free)
+    return np.array([one == (ThrusterGain.id, *ONE_GAIN) for one in each], bool)
+
+
+def doubt_gain(h: Hypothesis) -> float:
+    """How far the gain of all thrusters is from the file's, in twice a log likelihood.
+
+    Nothing where the file is not off: a gain may be all that is wrong. Else a factor of all forces
+    and inertia is nearly free, and a gain of 1.6 may stand for a centre of buoyancy 4 mm lower.
+    Tails are Cauchy's, for a gain may have a fault.
+    """
+    gain = mark_gain(h)
+    if not (is_off(h) and gain.any()):
+        return 0.0
+    return float(np.sum(cauchy(((h.x - h.absence)[gain] * GAIN_SCALE / GAIN) ** 2)))
 
 
 def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
     """How far the vehicle file may be off there, in scales of the parameter; 0: not stated."""
-    if effect.id not in STATED or (effect.id == "thruster_gain" and parameter.name not in ONE_GAIN):
+    if effect.id not in STATED or (effect is ThrusterGain and parameter.name not in ONE_GAIN):
         return 0.0
-    if effect.id == "thruster_gain":
+    if effect is ThrusterGain:
         return GAIN / parameter.scale
     bounds = _physical_bounds(base).get(effect.id, {}).get(parameter.name)
     stated = 0.0 if bounds is None else -bounds.low

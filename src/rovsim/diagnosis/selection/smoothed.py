@@ -10,7 +10,7 @@ import numpy as np
 
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.forward_selection import prune
+from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter

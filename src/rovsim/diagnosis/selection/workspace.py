@@ -18,6 +18,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products, project_out, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit
+from rovsim.diagnosis.selection.nominal_terms import doubt_gain
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, rank_proposals
 from rovsim.diagnosis.selection.sensitivities import (
     Sensitivities,
@@ -166,8 +167,9 @@ class SearchWorkspace:
         return (start.key, np.inf) in self._fitted
 
     def score(self, found: Fit) -> float:
-        """Twice the log likelihood, the price of the free parameters paid."""
-        return found.likelihood - self.price * sum(t.choices for t in found.hypothesis.terms)
+        """Twice the log likelihood, the price of the free parameters paid, and an odd gain."""
+        price = self.price * sum(t.choices for t in found.hypothesis.terms)
+        return found.likelihood - price - doubt_gain(found.hypothesis)
 
     def sizes(self, at: Hypothesis) -> Array:
         """Lengths (c,) of the candidates' columns, white, beside the loops of a hypothesis."""

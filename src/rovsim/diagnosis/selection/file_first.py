@@ -1,0 +1,49 @@
+"""What the vehicle file, where it is off anyway, explains as well as something that is rarer."""
+
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.diagnosis.selection import loose_file
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, mark_gain
+from rovsim.diagnosis.selection.pruning import drop_parameters, prune
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+
+
+def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """Without effects that the vehicle file, where it is off anyway, explains about as well."""
+    terms = current.hypothesis.terms
+    if not any(term.id in STATED for term in terms):
+        return current
+    for term in terms:
+        if loose_file.explains(workspace, current, term.id):
+            rest = workspace.fit(workspace.drop(current, [(term,)])[0])
+            fewer = prune(workspace, add_file(workspace, rest))
+            if _is_as_good(workspace, fewer, current, term):
+                return prefer_file(workspace, fewer)
+    return current
+
+
+def _is_as_good(workspace: SearchWorkspace, fewer: Fit, current: Fit, term: Term) -> bool:
+    """Whether more of the file makes up for a special term, as far as such a term is rare."""
+    if not is_off(current.hypothesis):
+        return workspace.score(fewer) > workspace.score(current) - loose_file.FILE_ODDS
+    costs = [loose_file.measure_cost(workspace, one) for one in (fewer, current)]
+    return costs[0] - costs[1] <= loose_file.find_limit(workspace, term)
+
+
+def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """With all that the vehicle file states and that is worth its price."""
+    wanted = loose_file.propose_file(workspace, current)
+    if wanted is None:
+        return current
+    trial = workspace.fit(wanted)
+    return trial if workspace.score(trial) > workspace.score(current) else current
+
+
+def hold_gain(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """With the file's gain of the thrusters, where other numbers of the file explain as much."""
+    gain = mark_gain(current.hypothesis)
+    if not (is_off(current.hypothesis) and gain.any()):
+        return current
+    rest = workspace.fit(drop_parameters(current.hypothesis, gain))
+    other = prune(workspace, add_file(workspace, rest))
+    return other if workspace.score(other) > workspace.score(current) else current

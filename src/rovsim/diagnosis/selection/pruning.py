@@ -1,0 +1,53 @@
+"""Without free parameters that are not worth their price."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+
+
+def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """Without free parameters that are not worth their price, one at a time."""
+    while len(current.hypothesis.x):
+        smaller = _drop_weakest(workspace, current)
+        if smaller is None:
+            return current
+        trial = workspace.fit(smaller)
+        if workspace.score(trial) < workspace.score(current):
+            return current
+        current = trial
+    return current
+
+
+def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
+    """The hypothesis without its least certain parameter; None if all of them are sure."""
+    h = current.hypothesis
+    certain = ((h.x - h.absence) / np.maximum(current.std, 1e-12)) ** 2
+    for term, own in zip(h.terms, h.columns, strict=True):
+        if own and not term.vanishes:  # it would go as a whole
+            certain[own] = np.max(certain[own])
+    weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
+    if not certain[weakest] < 2.0 * workspace.price:
+        return None
+    return drop_parameters(h, np.arange(len(certain)) == weakest)
+
+
+def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
+    """The hypothesis without some of its free parameters (k,), and without terms that have none.
+
+    An effect that is not absent at its defaults stays or goes as a whole: it goes with the last.
+    """
+    terms = []
+    for term, own in zip(h.terms, h.columns, strict=True):
+        idle = {name for name, k in zip(term.free, own, strict=True) if weak[k]}
+        defaults = {p.name: p.default for p in term.parameters if p.name in idle}
+        left = tuple(name for name in term.free if name not in idle)
+        if not term.free:
+            terms.append(term)  # tried, not fitted: it has nothing to drop
+        elif left and (not idle or term.vanishes):
+            terms.append(replace(term, effect=term.effect.with_values(defaults), free=left))
+    return Hypothesis(h.base, tuple(terms))
