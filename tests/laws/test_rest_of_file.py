@@ -1,16 +1,20 @@
-"""What was not found of a vehicle file that is off widens the intervals of what was."""
+"""What was not found of a vehicle file that is off: fitted as well, or in the intervals."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.checks.rest_of_file import include_rest
+from rovsim.diagnosis.checks.whole_file import fit_whole_file, settle_whole_file
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.gauss_newton import fit
-from rovsim.diagnosis.selection.nominal_terms import free_terms
+from rovsim.diagnosis.selection.nominal_terms import doubt_gain, free_terms
+from rovsim.diagnosis.selection.prior import Prior
 from rovsim.dynamics.model_file import EffectEntry
 
 OFF = 0.2  # of each coefficient
@@ -31,9 +35,14 @@ def flown(tmp_path_factory):
     return base, runs, off
 
 
-def fitted(flown, axes, names=COEFFICIENTS):
+@pytest.fixture(scope="module")
+def bank(flown):
     base, runs, _ = flown
-    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    return FilterBank.design(runs, base, FIRST_NOISE)
+
+
+def fitted(bank, axes, names=COEFFICIENTS):
+    base = bank.model
     return fit(Hypothesis(base, free_terms(base, axes, names)), bank, FIRST_NOISE)
 
 
@@ -42,14 +51,15 @@ def miss(found, off):
     z = []
     for term, own in zip(found.hypothesis.terms, found.hypothesis.columns, strict=True):
         for p, k in zip(term.parameters, own, strict=True):
-            z.append((term.effect[p.name] - off[term.id][p.name]) / (found.std[k] * p.scale))
+            truth = off.get(term.id, {}).get(p.name, p.default)
+            z.append((term.effect[p.name] - truth) / (found.std[k] * p.scale))
     return np.array(z)
 
 
-def test_what_the_rest_of_the_file_hides_is_in_the_intervals(flown):
+def test_what_the_rest_of_the_file_hides_is_in_the_intervals(flown, bank):
     """Nothing is fitted of heave, rotations and thrust, which are as wrong."""
     _, runs, off = flown
-    found = fitted(flown, ("surge", "sway"))
+    found = fitted(bank, ("surge", "sway"))
     wider, scale = include_rest(found, runs)
     assert np.abs(miss(found, off)).max() > 2.5
     assert np.abs(miss(wider, off)).max() < 2.5
@@ -57,6 +67,49 @@ def test_what_the_rest_of_the_file_hides_is_in_the_intervals(flown):
     assert "added_mass.surge" in scale.parameters  # heavier, and pushed as much harder
 
 
-def test_one_effect_may_be_all_that_is_wrong(flown):
-    found = fitted(flown, AXES, ("added_mass",))
+def test_the_rest_of_the_file_is_found_beside_what_is_known_of_such_files(flown, bank):
+    _, _, off = flown
+    found = fitted(bank, ("surge", "sway"))
+    whole = fit_whole_file(found, bank)
+    (heave,) = (t.effect["heave"] for t in whole.hypothesis.terms if t.id == "quadratic_damping")
+    assert heave == pytest.approx(off["quadratic_damping"]["heave"], rel=0.5)
+    assert np.abs(miss(whole, off)).max() < 3.0
+    nearest = {"thruster_gain", "net_buoyancy", "buoyancy_center"}
+    assert {term.id for term in whole.hypothesis.terms} == {*COEFFICIENTS, *nearest}
+
+
+def test_of_the_file_only_that_is_named_without_which_a_replay_is_worse(flown, bank):
+    """With the file's gain, all forces are a twentieth too large; so must the restoring ones be."""
+    _, _, off = flown
+    found = fitted(bank, ("surge", "sway"))
+    final, scale = settle_whole_file(fit_whole_file(found, bank), found.hypothesis, bank)
+    assert {term.id for term in final.hypothesis.terms} == {*COEFFICIENTS, "buoyancy_center"}
+    assert np.abs(miss(final, off)).max() < 3.0
+    assert "added_mass.surge" in scale.parameters
+
+
+def test_one_effect_may_be_all_that_is_wrong(flown, bank):
+    found = fitted(bank, AXES, ("added_mass",))
     assert include_rest(found, flown[1]) == (found, None)
+    assert fit_whole_file(found, bank) is None
+
+
+def with_gain(base, gain, *names):
+    terms = free_terms(base, AXES, (*names, "thruster_gain"))
+    terms = [t.at(np.array([gain / 0.1])) if t.id == "thruster_gain" else t for t in terms]
+    return Hypothesis(base, tuple(terms))
+
+
+def test_a_gain_far_from_the_file_is_doubted_beside_a_file_that_is_off(flown):
+    base = flown[0]
+    assert doubt_gain(with_gain(base, 1.6, "added_mass")) == 0.0
+    near, far, fault = (doubt_gain(with_gain(base, g, *COEFFICIENTS)) for g in (1.05, 1.6, 0.1))
+    assert 0.0 < near < 1.0 < far < fault < 12.0  # a fault costs no more than one parameter does
+
+
+@given(x=st.floats(-50.0, 50.0), std=st.floats(0.1, 10.0), faulty=st.booleans())
+def test_a_prior_pulls_as_its_cost_rises(x, std, faulty):
+    prior = Prior(np.array([1.0]), np.array([std]), np.array([faulty]))
+    at, step = np.array([x]), 1e-4
+    slope = (prior.cost(at + step) - prior.cost(at - step)) / (2.0 * step)
+    assert 2.0 * prior.weights(at) * (at - 1.0) == pytest.approx(slope, rel=1e-4, abs=1e-6)

@@ -4,9 +4,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Sequence
 
+from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import find_doubtful
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
+from rovsim.diagnosis.checks.rest_of_file import include_rest
+from rovsim.diagnosis.checks.whole_file import fit_whole_file, settle_whole_file
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
@@ -24,6 +27,7 @@ class Answer:
     """An answer: its final values, how likely it is, and all that it leaves unexplained.
 
     `refused`: the gate refused effects, and nothing but these explains what they explained.
+    `whole`: the same with all of a vehicle file that is off, by which what is left is judged.
     """
 
     selection: Selection
@@ -32,6 +36,7 @@ class Answer:
     score: float
     structures: Sequence[Structure]
     refused: bool = False
+    whole: Fit | None = None
 
     @property
     def complete(self) -> bool:
@@ -48,7 +53,7 @@ class Answer:
         """At the values that replay the stretches best that it was chosen by."""
         found = self.selection.found
         if len(found.hypothesis.x):
-            found = refit_to_replays(found, self.selection.workspace.bank)
+            found = _refit_to_replays(found, self.selection.workspace.bank)
         return found.hypothesis.model
 
 
@@ -77,8 +82,9 @@ def settle(selection: Selection, usable: UsableRuns, gate: Gate) -> Answer:
 
 def _settle_values(selection: Selection, usable: UsableRuns) -> Answer:
     found, bank = polish_selection(selection, usable.runs)
-    score = selection.workspace.score(found)
-    return Answer(selection, found, bank, score, find_structure(found, bank))
+    score, whole = selection.workspace.score(found), fit_whole_file(found, bank)
+    left = find_structure(found if whole is None else whole, bank)
+    return Answer(selection, found, bank, score, left, whole=whole)
 
 
 def choose(one: Answer, other: Answer, gate: Gate) -> Answer:
@@ -93,7 +99,22 @@ def choose(one: Answer, other: Answer, gate: Gate) -> Answer:
     return one if not other.complete and one.score >= other.score else other
 
 
-def refit_to_replays(found: Fit, bank: FilterBank) -> Fit:
+def finish(found: Answer, runs: Sequence[ObservedRun]) -> tuple[Answer, Fit, CommonScale | None]:
+    """At its final values; the fit with intervals that hold all that is not known, and the scale.
+
+    Args:
+        found: the answer.
+        runs: all that it was fitted to.
+    """
+    if found.lasting and len(found.fit.hypothesis.x):
+        found = replace(found, fit=_refit_to_replays(found.fit, found.bank))
+    if found.lasting or found.whole is None:
+        return found, *include_rest(found.fit, runs)
+    fit, scale = settle_whole_file(found.whole, found.fit.hypothesis, found.bank)
+    return replace(found, fit=fit), fit, scale
+
+
+def _refit_to_replays(found: Fit, bank: FilterBank) -> Fit:
     """The values that replay best, without effects that these might as well lack."""
     again = fit_to_replays(found, bank)
     while len(again.hypothesis.terms) > 1:

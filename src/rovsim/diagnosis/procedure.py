@@ -23,13 +23,12 @@ from threadpoolctl import threadpool_limits
 from rovsim.diagnosis.answer import (
     Answer,
     choose,
+    finish,
     polish_selection,
-    refit_to_replays,
     settle,
     settle_noticed,
 )
 from rovsim.diagnosis.checks.observability import list_not_observable
-from rovsim.diagnosis.checks.rest_of_file import include_rest
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
 from rovsim.diagnosis.found import TrainDiagnosis
@@ -104,12 +103,10 @@ def _diagnose(
         seen = seen_through(base, smoothing)
         joint = settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
         found = choose(found, joint, gate)
-    if found.lasting and len(found.fit.hypothesis.x):
-        found = replace(found, fit=refit_to_replays(found.fit, found.bank))
+    found, wider, scale = finish(found, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
     proposed = _propose(found, base, gate, usable, camera) if found.lasting else None
     rivals = found.selection.named_rivals
-    wider, scale = include_rest(found.fit, usable.runs)
     named = [*camera, *name_terms(wider, rivals)]
     if found.fit.noise.drift:
         drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)

@@ -18,12 +18,11 @@ from rovsim.diagnosis.checks.left_open import leave_open
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import DRAG, GAIN, ONE_GAIN
+from rovsim.diagnosis.selection.nominal_terms import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
 INERTIA = ("added_mass", "payload")
 GAIN_NAME = f"{ThrusterGain.id}.{ONE_GAIN[0]}"
-SCALE = next(p.scale for p in ThrusterGain.parameters if p.name in ONE_GAIN)
 UNKNOWN = 0.03  # relative standard deviation: a scale that is known better misleads nobody
 GOES_ALONG = 0.5  # of a value's variance comes from the scale
 
@@ -69,12 +68,12 @@ def _free_gain(found: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
     if opened is None:
         return 0.0, np.zeros(len(found.std))
     told = max(float(opened.told[0, 0]), 0.0)
-    return 1.0 / (told + (SCALE / GAIN) ** 2), opened.along[:, 0]
+    return 1.0 / (told + (GAIN_SCALE / GAIN) ** 2), opened.along[:, 0]
 
 
 def describe_scale(found: Fit, variance: float, along: Array) -> CommonScale | None:
     """The scale where it is unknown: `variance` of the gain, and how parameters (k,) follow it."""
-    names, std = found.hypothesis.parameter_names, SCALE * np.sqrt(variance)
+    names, std = found.hypothesis.parameter_names, GAIN_SCALE * np.sqrt(variance)
     share = variance * along**2 / np.maximum(np.diag(found.covariance), 1e-300)
     moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
     return CommonScale(float(std), tuple(moved)) if std > UNKNOWN and moved else None

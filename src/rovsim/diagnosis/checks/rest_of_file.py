@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim.diagnosis.checks.common_scale import (
     GAIN_NAME,
@@ -24,8 +25,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.loose_file import is_off
-from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, spread_of_file
+from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import ThrusterGain
@@ -41,12 +41,12 @@ def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSc
         runs: those it was fitted to.
     """
     h = found.hypothesis
-    freed = _free_rest(h)
+    freed = free_rest(h)
     further = [name for name in freed.parameter_names if name not in h.parameter_names]
     opened = leave_open(found, freed, runs) if is_off(h) and further else None
     if opened is None:
         return include_scale(found, runs)
-    spread = _list_spreads(h, freed)
+    spread = list_spreads(h, freed)
     rest = solve(opened.told + np.diag(spread**-2.0), np.eye(len(spread)))
     drawn = rest @ opened.drawn
     wider = opened.along @ (rest + np.outer(drawn, drawn)) @ opened.along.T
@@ -58,7 +58,7 @@ def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSc
     return found, describe_scale(found, variance, opened.along @ rest[:, gain] / variance)
 
 
-def _free_rest(h: Hypothesis) -> Hypothesis:
+def free_rest(h: Hypothesis) -> Hypothesis:
     """With all free that the file states; of the thrusters one gain."""
     fitted = set(h.parameter_names)
     for effect in (built_in()[name] for name in STATED):
@@ -74,7 +74,7 @@ def _list_stated(effect: type[Effect]) -> Sequence[str]:
     return [p.name for p in effect.parameters if p.fitted]
 
 
-def _list_spreads(h: Hypothesis, freed: Hypothesis) -> np.ndarray:
+def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
     """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
     known = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
     return np.array(

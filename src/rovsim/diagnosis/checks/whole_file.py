@@ -1,0 +1,120 @@
+"""All of a vehicle file that is off, fitted together with what was selected.
+
+What was selected was fitted as if the rest of the file were right. Where several of its effects
+were selected it is not, and what was left as it was draws the others away: thrust, inertia and
+drag share a factor that little but such numbers fixes. So in the end all that the file states is
+fitted, each number beside what is known of such files (`nominal_terms.py`). Then what is not sure,
+or nobody would miss, is left out again, at the gain that was found: the others take what it did,
+and their intervals stay those of all together.
+"""
+
+from dataclasses import replace
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.stats import chi2
+
+from rovsim.diagnosis.checks.common_scale import CommonScale, describe_scale
+from rovsim.diagnosis.checks.residual import FALSE_ALARM
+from rovsim.diagnosis.checks.rest_of_file import free_rest, list_spreads
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
+from rovsim.diagnosis.observer.windows import score_windows
+from rovsim.diagnosis.selection.gauss_newton import Fit, descend, judge
+from rovsim.diagnosis.selection.nominal_terms import GAIN, GAIN_SCALE, is_off, mark_gain
+from rovsim.diagnosis.selection.prior import Prior
+from rovsim.diagnosis.selection.pruning import drop_parameters
+
+TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
+MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
+
+
+def fit_whole_file(found: Fit, bank: FilterBank) -> Fit | None:
+    """All that the file states, fitted; None where it is not off, or such a model diverges."""
+    if not is_off(found.hypothesis):
+        return None
+    freed = free_rest(found.hypothesis)
+    prior = _know(found.hypothesis, freed)
+    seen = descend(freed, bank, found.noise, prior)
+    if not seen.finite:
+        return None
+    whole = judge(seen, bank, found.noise)
+    rows = as_rows(bank.whiten(seen.J, whole.noise))
+    told = inner_products(rows) + np.diag(prior.weights(seen.at.x))
+    return replace(whole, covariance=solve(told, np.eye(len(rows))))
+
+
+def _know(selected: Hypothesis, freed: Hypothesis) -> Prior:
+    """Of numbers that were not selected, what such files are off by; of a selected gain as well."""
+    new, gain = _mark_new(selected, freed), mark_gain(freed)
+    std = np.full(len(new), np.inf)
+    std[gain] = GAIN / GAIN_SCALE
+    std[new] = list_spreads(selected, freed)
+    return Prior(np.where(gain, freed.absence, freed.x), std, gain & ~new)
+
+
+def _mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
+    known = set(selected.parameter_names)
+    return np.array([name not in known for name in freed.parameter_names], bool)
+
+
+def settle_whole_file(
+    whole: Fit, selected: Hypothesis, bank: FilterBank
+) -> tuple[Fit, CommonScale | None]:
+    """The effects that were selected, others that would be missed, and the common scale.
+
+    Args:
+        whole: all of the file, fitted.
+        selected: what was selected, as it was fitted.
+        bank: that of `whole`.
+    """
+    h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
+    untold = new & (whole.std > TOLD * _know(selected, h).std)
+    owner = np.array([term.id for term in h.terms for _ in term.free])
+    named = {term.id for term in selected.terms}
+    sure = {one for one in set(owner) - named if _is_sure(whole, (owner == one) & ~untold)}
+    gone = untold | ~np.isin(owner, list(named))
+    while left := sorted(sure - named):
+        tried = [_leave_out(whole, gone & ((owner != one) | untold)) for one in left]
+        all_of_it, without, *more = _measure([h, _leave_out(whole, gone), *tried], bank)
+        if without <= (1.0 + MISSED) * all_of_it:
+            break
+        named.add(left[int(np.argmin(more))])
+        gone = untold | ~np.isin(owner, list(named))
+    final = judge(bank.linearise(_leave_out(whole, gone)), bank, whole.noise)
+    covariance = whole.covariance[np.ix_(~gone, ~gone)]
+    gain = int(np.flatnonzero(mark_gain(h))[0])
+    along = whole.covariance[~gone, gain] / whole.covariance[gain, gain]
+    final = replace(final, covariance=covariance)
+    return final, describe_scale(final, float(whole.covariance[gain, gain]), along)
+
+
+def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
+    """Without some parameters (k,); the others take what they did, but for the gain, which stays.
+
+    To first order: the mean of the others once those are known.
+    """
+    h, V = whole.hypothesis, whole.covariance
+    step = np.where(gone, h.absence - h.x, 0.0)
+    given = gone | mark_gain(h)
+    follow = V[np.ix_(~given, given)] @ solve(V[np.ix_(given, given)], step[given])
+    step[~given] = follow
+    return drop_parameters(h.at(h.x + step), gone)
+
+
+def _is_sure(whole: Fit, own: Array) -> bool:
+    """Whether some parameters (k,) are not what the file says, at the gain that was found."""
+    h, V = whole.hypothesis, whole.covariance
+    own = own & ~mark_gain(h)
+    across = V[np.ix_(own, mark_gain(h))]
+    beside = V[np.ix_(own, own)] - across @ across.T / V[np.ix_(mark_gain(h), mark_gain(h))]
+    off = (h.x - h.absence)[own]
+    return bool(off @ solve(beside, off) > chi2.isf(FALSE_ALARM, max(1, own.sum())))
+
+
+def _measure(hypotheses: Sequence[Hypothesis], bank: FilterBank) -> list[float]:
+    """Their errors in 2 s windows; infinite where a model diverges."""
+    errors = score_windows([one.model for one in hypotheses], bank.runs).normalised
+    return [np.inf if error is None else error for error in errors]
