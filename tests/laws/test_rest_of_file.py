@@ -7,14 +7,15 @@ from hypothesis import strategies as st
 
 from flown import observed
 from rovsim import AXES
-from rovsim.diagnosis.checks.rest_of_file import include_rest
+from rovsim.diagnosis.checks.rest_of_file import free_rest, include_rest, list_spreads
 from rovsim.diagnosis.checks.whole_file import fit_whole_file, settle_whole_file
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain, free_terms
 from rovsim.diagnosis.selection.prior import Prior
+from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model_file import EffectEntry
 
 OFF = 0.2  # of each coefficient
@@ -105,6 +106,15 @@ def test_a_gain_far_from_the_file_is_doubted_beside_a_file_that_is_off(flown):
     assert doubt_gain(with_gain(base, 1.6, "added_mass")) == 0.0
     near, far, fault = (doubt_gain(with_gain(base, g, *COEFFICIENTS)) for g in (1.05, 1.6, 0.1))
     assert 0.0 < near < 1.0 < far < fault < 12.0  # a fault costs no more than one parameter does
+
+
+@pytest.mark.parametrize(("some", "each"), [(("t2", "t5"), 2), (("t2", "t5", "t6"), 8)])
+def test_where_thrusters_differ_none_is_taken_for_known(flown, some, each):
+    h = Hypothesis(flown[0], (Term(ThrusterGain(), some),))
+    freed = free_rest(h)
+    (gains,) = (term.free for term in freed.terms if term.id == "thruster_gain")
+    assert len(gains) == each + 1  # that of all
+    assert np.all(list_spreads(h, freed) > 0.0)
 
 
 @given(x=st.floats(-50.0, 50.0), std=st.floats(0.1, 10.0), faulty=st.booleans())

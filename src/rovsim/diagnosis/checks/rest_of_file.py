@@ -25,10 +25,17 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file
+from rovsim.diagnosis.selection.nominal_terms import (
+    GAIN,
+    ONE_GAIN,
+    SEVERAL,
+    STATED,
+    is_off,
+    spread_of_file,
+)
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.dynamics.effects.base import Effect, Parameter
+from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 
 def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
@@ -59,28 +66,31 @@ def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSc
 
 
 def free_rest(h: Hypothesis) -> Hypothesis:
-    """With all free that the file states; of the thrusters one gain."""
+    """With all free that the file states; each thruster's own gain where several differ."""
     fitted = set(h.parameter_names)
     for effect in (built_in()[name] for name in STATED):
-        left = tuple(k for k in _list_stated(effect) if f"{effect.id}.{k}" not in fitted)
+        left = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in fitted)
         if left:
             h = h.with_term(Term(effect(), left))
     return h
 
 
-def _list_stated(effect: type[Effect]) -> Sequence[str]:
-    if effect is ThrusterGain:
-        return ONE_GAIN
-    return [p.name for p in effect.parameters if p.fitted]
+def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
+    if effect is not ThrusterGain:
+        return [p.name for p in effect.parameters if p.fitted]
+    own = THRUSTERS[: h.base.vehicle.thruster_count]
+    selected = sum(f"{ThrusterGain.id}.{name}" in h.parameter_names for name in own)
+    return (*ONE_GAIN, *own) if selected >= SEVERAL else ONE_GAIN
 
 
 def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
     """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
+
+    def spread(effect: type[Effect], parameter: Parameter) -> float:
+        if effect is ThrusterGain:
+            return GAIN / parameter.scale
+        return spread_of_file(h.base, effect, parameter)
+
     known = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
-    return np.array(
-        [
-            spread_of_file(h.base, *one)
-            for name, one in zip(freed.parameter_names, known, strict=True)
-            if name not in h.parameter_names
-        ]
-    )
+    each = zip(freed.parameter_names, known, strict=True)
+    return np.array([spread(*one) for name, one in each if name not in h.parameter_names])
