@@ -94,7 +94,7 @@ def _list_joint(found: TrainDiagnosis) -> list[list[str]]:
     if found.fit is None:
         return []
     scaled = set(found.scale.parameters) if found.scale else set()
-    return [g for g in group_joint_parameters(found.fit) if not set(g) <= scaled]
+    return [g for g in group_joint_parameters(found.fit) if len(set(g) - scaled) > 1]
 
 
 def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:

@@ -26,6 +26,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit, descend, judge
 from rovsim.diagnosis.selection.nominal_terms import GAIN, GAIN_SCALE, is_off, mark_gain
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.diagnosis.selection.pruning import drop_parameters
+from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
 MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
@@ -84,11 +85,17 @@ def settle_whole_file(
         named.add(left[int(np.argmin(more))])
         gone = untold | ~np.isin(owner, list(named))
     final = judge(bank.linearise(_leave_out(whole, gone)), bank, whole.noise)
-    covariance = whole.covariance[np.ix_(~gone, ~gone)]
-    gain = int(np.flatnonzero(mark_gain(h))[0])
-    along = whole.covariance[~gone, gain] / whole.covariance[gain, gain]
-    final = replace(final, covariance=covariance)
-    return final, describe_scale(final, float(whole.covariance[gain, gain]), along)
+    final = replace(final, covariance=whole.covariance[np.ix_(~gone, ~gone)])
+    gain = _share_gains(h)
+    variance = float(gain @ whole.covariance @ gain)
+    return final, describe_scale(final, variance, whole.covariance[~gone] @ gain / variance)
+
+
+def _share_gains(h: Hypothesis) -> Array:
+    """What each parameter (k,) has in the mean gain of the thrusters."""
+    own = [f"{ThrusterGain.id}.{name}" for name in THRUSTERS]
+    single = np.isin(h.parameter_names, own) / max(1, h.base.vehicle.thruster_count)
+    return np.where(mark_gain(h), 1.0, single)
 
 
 def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
