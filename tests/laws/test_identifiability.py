@@ -1,18 +1,22 @@
 """Values known only together, from covariances made up for the purpose."""
 
 import numpy as np
+import pytest
 
 from rovsim import AXES
-from rovsim.diagnosis.advice import advise
+from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
 from rovsim.diagnosis.checks.identifiability import find_doubtful, group_joint_parameters
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.evidence import Linearised
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
+from rovsim.diagnosis.selection.ranking import Named, Selected, doubt_lead
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.clocks import InputDelay
+from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 
@@ -72,3 +76,17 @@ def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     reveals = built_in()["onboard_control"].revealed_by
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
     assert advise(found, [], [], built_in()).startswith("Nothing is needed")
+
+
+@pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])
+def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(delay, doubted):
+    smooths = Named(Term(PoseFilter(cutoff=6.0), ("cutoff",)), {"cutoff": 0.1}, 1.0)
+    late = Named(Term(InputDelay(delay=delay), ("delay",)), {"delay": 1e-3}, 1.0)
+    (named,) = doubt_lead([late])
+    assert (named.probability is None) == doubted
+    selected = [Selected(one.term, one.std, one.probability, 0.5) for one in (smooths, named)]
+    found = TrainDiagnosis(
+        fit(alike()).hypothesis.base, UsableRuns((), (), (), (), 60.0), fit(alike()),
+        selected=selected,
+    )  # fmt: skip
+    assert (LOOKS_AHEAD in advise(found, [], [], built_in())) == doubted

@@ -3,12 +3,19 @@
 from typing import Sequence
 
 from rovsim.diagnosis.found import TrainDiagnosis
+from rovsim.diagnosis.selection.ranking import leads
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.pose_filter import PoseFilter
 
 FIX_SCALE = (
     "To fix the common scale of thrust, inertia and drag, measure one force. Either measure the "
     "pull on a spring balance at a steady command (for the force curve of the vehicle file), or "
     "how far a known weight heels the vehicle (for its centre of buoyancy)."
+)
+
+LOOKS_AHEAD = (
+    "A negative input_delay beside a pose_filter is what software leaves that smooths forwards and "
+    "backwards, and so without delay: export the poses unsmoothed, and diagnose these."
 )
 
 
@@ -32,6 +39,9 @@ def advise(
             f"only {found.usable.seconds:.0f} s could be used."
         )
     parts = []
+    smoothed = any(isinstance(one.term.effect, PoseFilter) for one in found.selected)
+    if smoothed and any(leads(one) for one in found.selected):
+        parts.append(LOOKS_AHEAD)
     if groups:
         names = " and ".join(groups[0])
         parts.append(

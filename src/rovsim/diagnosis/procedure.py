@@ -45,6 +45,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
     Named,
+    doubt_lead,
     name_drift,
     name_smoothing,
     name_terms,
@@ -107,7 +108,8 @@ def _diagnose(
     camera = [name_smoothing(smoothing)] if smoothing else []
     proposed = _propose(found, base, gate, usable, camera) if found.lasting else None
     rivals = found.selection.named_rivals
-    named = [*camera, *name_terms(wider, rivals)]
+    terms = name_terms(wider, rivals)
+    named = [*camera, *(doubt_lead(terms) if camera else terms)]
     if found.fit.noise.drift:
         drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
         if drift.sure:

@@ -1,6 +1,6 @@
 """What was found, in order: each selected effect's worth, and every effect by itself."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Sequence
 
 import numpy as np
@@ -14,6 +14,7 @@ from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.rivals import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
@@ -74,6 +75,16 @@ def name_smoothing(smoothing: Smoothing) -> Named:
     """What the camera does, as an effect; white noise was tried in its place."""
     term = Term(PoseFilter(cutoff=smoothing.cutoff), ("cutoff",))
     return Named(term, {"cutoff": smoothing.std}, _odds(smoothing.gain))
+
+
+def leads(one: Named) -> bool:
+    """Whether it says that the vehicle answers before it is told."""
+    return isinstance(one.term.effect, InputDelay) and one.term.effect["delay"] < 0.0
+
+
+def doubt_lead(named: Sequence[Named]) -> list[Named]:
+    """The same beside a camera that smooths: its filter may look ahead, and that was not tried."""
+    return [replace(one, probability=None) if leads(one) else one for one in named]
 
 
 def name_drift(drift: DriftFit) -> Named:
