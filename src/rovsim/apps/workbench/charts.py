@@ -11,7 +11,7 @@ from rovsim.reporting.figures.palette import SHADE, Look, looks
 
 Options = dict[str, Any]  # of ECharts, plain and deep
 
-POINTS = 1000  # a curve shows at most; a screen is not wider
+POINTS = 800  # a curve shows at most: each takes its time to send and to draw
 INK, SOFT, LINE, MARK = "#1a1a1a", "#555555", "#d9d9d9", "#D55E00"
 TALL, SHORT, GAP, TOP, ICONS = 104, 56, 36, 40, 12  # px: panels, what lies between, legend; icons
 LOW, WIDTH = "/low end of the band", "/width of the band"  # ids of series, as a csv names them
