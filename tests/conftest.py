@@ -10,9 +10,10 @@ from sketches import draw_few
 
 os.environ.setdefault("ROVSIM_CACHE", str(Path(__file__).parents[1] / ".pytest_cache" / "rovsim"))
 
-# The matrices are small: waiting for its siblings costs a BLAS thread more than it computes. Read
-# when NumPy and torch are loaded, so it stands before every import of them; jobs inherit it.
-for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+# The matrices are small: waiting for its siblings costs a thread more than it computes, and the
+# other cores have tests of their own. Read when NumPy, Numba and torch are loaded, so it stands
+# before every import of them; jobs inherit it.
+for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(threads, "1")
 
 # No deadline: the first call may compile, and nothing here is a timed test.
