@@ -78,7 +78,9 @@ def diagnose(
     usable = select_usable(train)
     if not usable.enough:
         return TrainDiagnosis(base, usable)
-    with threadpool_limits(1, "blas"):  # matrices here are too small for several threads to help
+    one_thread = threadpool_limits(1, "blas")  # matrices are too small for several to help
+    # models that diverge on the way are refused by what is not finite
+    with one_thread, np.errstate(over="ignore", invalid="ignore"):
         return _diagnose(base, usable, settings, catalogue, seed, stage)
 
 

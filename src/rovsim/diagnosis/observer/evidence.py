@@ -57,8 +57,7 @@ def linearise(at: Hypothesis, errors: Errors) -> Linearised:
     moved = [at.at(x + step).model for step in steps]
     sizes = np.array([step.sum() for step in steps])[:, None, None]
     found = errors([at.model, *moved])
-    with np.errstate(invalid="ignore"):  # of a model that diverged: not finite, and refused so
-        return Linearised(at, [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found])
+    return Linearised(at, [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found])
 
 
 def _step_inward(at: Hypothesis, x: Array, i: int) -> Array:

@@ -123,8 +123,7 @@ def _columns(
     if not candidate.absent:
         each = zip(seen.e, absent, seen.J, strict=True)
         columns = [np.concatenate([(there - without)[None], J]) for there, without, J in each]
-    with np.errstate(over="ignore"):  # of a model that diverged: infinite, and left out so
-        return [own.astype(np.float32) for own in columns]  # six digits are enough for columns
+    return [own.astype(np.float32) for own in columns]  # six digits are enough for columns
 
 
 def fit_remaining_noise(
