@@ -26,7 +26,6 @@ from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import (
-    GAIN,
     ONE_GAIN,
     SEVERAL,
     STATED,
@@ -34,7 +33,7 @@ from rovsim.diagnosis.selection.nominal_terms import (
     spread_of_file,
 )
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Effect, Parameter
+from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 
@@ -85,12 +84,7 @@ def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
 
 def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
     """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
-
-    def spread(effect: type[Effect], parameter: Parameter) -> float:
-        if effect is ThrusterGain:
-            return GAIN / parameter.scale
-        return spread_of_file(h.base, effect, parameter)
-
     known = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
     each = zip(freed.parameter_names, known, strict=True)
-    return np.array([spread(*one) for name, one in each if name not in h.parameter_names])
+    new = [one for name, one in each if name not in h.parameter_names]
+    return np.array([spread_of_file(h.base, *one) for one in new])

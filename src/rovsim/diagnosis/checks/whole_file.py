@@ -20,7 +20,7 @@ from rovsim.diagnosis.checks.residual import FALSE_ALARM
 from rovsim.diagnosis.checks.rest_of_file import free_rest, list_spreads
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
+from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit, descend, judge
 from rovsim.diagnosis.selection.nominal_terms import GAIN, GAIN_SCALE, is_off, mark_gain
@@ -39,12 +39,7 @@ def fit_whole_file(found: Fit, bank: FilterBank) -> Fit | None:
     freed = free_rest(found.hypothesis)
     prior = _know(found.hypothesis, freed)
     seen = descend(freed, bank, found.noise, prior)
-    if not seen.finite:
-        return None
-    whole = judge(seen, bank, found.noise)
-    rows = as_rows(bank.whiten(seen.J, whole.noise))
-    told = inner_products(rows) + np.diag(prior.weights(seen.at.x))
-    return replace(whole, covariance=solve(told, np.eye(len(rows))))
+    return judge(seen, bank, found.noise, prior) if seen.finite else None
 
 
 def _know(selected: Hypothesis, freed: Hypothesis) -> Prior:

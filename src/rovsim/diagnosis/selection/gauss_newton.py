@@ -73,14 +73,16 @@ def polish(
     return found, bank
 
 
-def judge(seen: Linearised, bank: FilterBank, noise: Noise) -> Fit:
-    """A hypothesis as it stands, the noise fitted to what it leaves."""
+def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None) -> Fit:
+    """A hypothesis as it stands, the noise fitted to what it leaves, beside what was known."""
     if not seen.finite:
         unsure = np.full((len(seen.at.x), len(seen.at.x)), np.inf)
         return Fit(seen, noise, -np.inf, unsure)
     own, likelihood = bank.fit_noise(seen.e, noise)
-    rows = as_rows(bank.whiten(seen.J, own))
-    return Fit(seen, own, likelihood, solve(inner_products(rows), np.eye(len(rows))))
+    told = inner_products(as_rows(bank.whiten(seen.J, own)))
+    if prior is not None:
+        told = told + np.diag(prior.weights(seen.at.x))
+    return Fit(seen, own, likelihood, solve(told, np.eye(len(told))))
 
 
 def descend(

@@ -17,7 +17,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, spread_of_file
+from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
@@ -43,11 +43,13 @@ def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:
     """All that the vehicle file can be wrong about."""
     base, found = workspace.sensitivities.base_model, []
     for block in workspace.sensitivities.blocks:
-        if not block.candidate.absent or block.candidate.effect.id not in STATED:
+        effect = block.candidate.effect
+        if not block.candidate.absent or effect.id not in STATED:
             continue
         each = zip(block.derivatives, block.candidate.term().parameters, strict=True)
         for column, parameter in each:
-            if spread := spread_of_file(base, block.candidate.effect, parameter):
+            if effect is not ThrusterGain or parameter.name in ONE_GAIN:  # one thruster's: a fault
+                spread = spread_of_file(base, effect, parameter)
                 found.append(FileNumber(block.candidate, parameter.name, 1 + column, spread))
     return found
 

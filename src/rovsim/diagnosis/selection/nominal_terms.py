@@ -49,16 +49,14 @@ def doubt_gain(h: Hypothesis) -> float:
     and inertia is nearly free, and a gain of 1.6 may stand for a centre of buoyancy 4 mm lower.
     Tails are Cauchy's, for a gain may have a fault.
     """
-    gain = mark_gain(h)
-    if not (is_off(h) and gain.any()):
+    if not is_off(h):
         return 0.0
-    return float(np.sum(cauchy(((h.x - h.absence)[gain] * GAIN_SCALE / GAIN) ** 2)))
+    away = (h.x - h.absence)[mark_gain(h)] * GAIN_SCALE / GAIN
+    return float(np.sum(cauchy(away**2)))
 
 
 def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
-    """How far the vehicle file may be off there, in scales of the parameter; 0: not stated."""
-    if effect.id not in STATED or (effect is ThrusterGain and parameter.name not in ONE_GAIN):
-        return 0.0
+    """How far the vehicle file may be off in what it states there, in scales of the parameter."""
     if effect is ThrusterGain:
         return GAIN / parameter.scale
     bounds = _physical_bounds(base).get(effect.id, {}).get(parameter.name)
