@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Callable, Literal, Sequence
 
 import numpy as np
+import scipy.sparse
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
@@ -207,13 +208,16 @@ class ThrustPath:
         pieces = np.union1d(edges, arrival[(arrival > edges[0]) & (arrival < edges[-1])])
         middle = 0.5 * (pieces[1:] + pieces[:-1])
         if between == "held" and self._is_steady(lines):  # once for each line, not each piece
-            thrust = self.at(lines, start, duration).each(lambda x: x[_latest(arrival, middle)])
+            thrust, source = self.at(lines, start, duration), _latest(arrival, middle)
         else:
             value = _between(arrival, lines.value, middle, between)
             thrust = self.at(replace(lines, time=middle, value=value), start, duration)
-        width, first = np.diff(pieces)[:, None], np.searchsorted(pieces, edges[:-1])
-        long = np.diff(edges)[:, None]
-        return thrust.each(lambda x: np.add.reduceat(x * width, first, axis=0) / long)
+            source = np.arange(len(middle))
+        bounds = np.searchsorted(pieces, edges)
+        share = np.diff(pieces) / np.repeat(np.diff(edges), np.diff(bounds))
+        shape = len(edges) - 1, int(source.max(initial=-1)) + 1
+        mean = scipy.sparse.csr_array((share, source, bounds), shape)
+        return thrust.each(lambda x: mean @ x[: shape[1]])
 
     def at(self, lines: Commands, start: float, duration: float) -> Thrust:
         """Static thrust that each line makes by itself, at its time.

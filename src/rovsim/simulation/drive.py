@@ -5,6 +5,7 @@ from typing import Callable, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.sparse import csr_array
 
 from rovsim.core.remade import Recent
 from rovsim.core.run import Commands
@@ -68,13 +69,13 @@ class Actuation(NamedTuple):
         A force that is held over a long step loses when within it it acted; a line with the same
         first moment does not.
         """
-        first, whole = np.cumsum(count) - count, count[:, None]
-        number = np.arange(int(count.sum())) - np.repeat(first, count)
+        bounds = np.append(0, np.cumsum(count))
+        number = np.arange(bounds[-1])
+        share = 1.0 / np.repeat(count, count)
         # a line r c over -1/2 < c < 1/2 has the first moment r / 12
-        apart = 12.0 * ((number + 0.5) / np.repeat(count, count) - 0.5)[:, None]
-        mean = [np.add.reduceat(x, first, axis=0) / whole for x in self]
-        growth = [np.add.reduceat(apart * x, first, axis=0) / whole for x in self]
-        return Actuation(*mean), Actuation(*growth)
+        apart = 12.0 * ((number - np.repeat(bounds[:-1], count) + 0.5) * share - 0.5)
+        mean, growth = (csr_array((w, number, bounds)) for w in (share, apart * share))
+        return Actuation(*(mean @ x for x in self)), Actuation(*(growth @ x for x in self))
 
 
 @dataclass(frozen=True, eq=False)

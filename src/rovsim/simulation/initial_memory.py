@@ -1,6 +1,6 @@
 """What the water remembers of a measured motion, where a model has a fluid memory."""
 
-from typing import Iterable, Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -38,13 +38,24 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
 
 
 def remembered_at(
-    models: Sequence[Model], motions: Iterable[Motion], edges: Array, steps: Array
+    models: Sequence[Model], see: Callable[[Model], Motion], edges: Array, steps: Array
 ) -> Array:
     """What the water remembers (m, w, 6) at some steps (w,) of a grid; empty if it never does.
 
-    `motions` are the same run, true as each model sees it; `edges` (k+1,) s those of the grid.
+    `see`: the run's true motion as a model sees it; `edges` (k+1,) s those of the grid. Models that
+    see and forget alike remember the same, and it is found once.
     """
     if not any(m.body.forgets for m in models):
         return NO_MEMORY
-    rows = [measured_memory(m, run, edges) for m, run in zip(models, motions, strict=True)]
-    return np.stack([r[steps] if r.size else np.zeros((len(steps), 6)) for r in rows])
+    found: dict[tuple, Array] = {}
+    for m in models:
+        key = _name_memory(m)
+        if key not in found:
+            whole = measured_memory(m, see(m), edges)
+            found[key] = whole[steps] if whole.size else np.zeros((len(steps), 6))
+    return np.stack([found[_name_memory(m)] for m in models])
+
+
+def _name_memory(model: Model) -> tuple:
+    """All of a model that its memory of a motion depends on."""
+    return model.mocap_view.key, model.body.forgets, model.body.current.tobytes()

@@ -129,7 +129,7 @@ def simulate(
     first = np.array([s[0] for s in starts], np.int64)
     steps = np.array([s[1] for s in starts], np.int64) * grid.stride
     state = np.array([s[2] for s in starts]).reshape(1, -1, 13)
-    memory = remembered_at([model], [motion], grid.edges, first)
+    memory = remembered_at([model], lambda m: motion, grid.edges, first)
     drive = drive_by_log(model, motion, grid, settings)
     if disturbed is not None:
         drive = drive.pushed(disturbed @ model.body.M.T)

@@ -141,5 +141,4 @@ def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts
 
 def recall(models: Sequence[Model], run: ObservedRun, edges: Array, steps: Array) -> Array:
     """What the water remembers (m, s, 6) at steps (s,) of a grid; empty if it never does."""
-    true = (as_true(m, run.motion) for m in models)
-    return remembered_at(models, true, edges, steps)
+    return remembered_at(models, lambda m: as_true(m, run.motion), edges, steps)
