@@ -23,9 +23,9 @@ from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import explain_model, several, significant, title
 from rovsim.reporting.words import published_errors, terminal
 from rovsim.reporting.words.speed import timing_sentences
-from rovsim.reporting.words.verdict import explain, part_sentences
+from rovsim.reporting.words.verdict import apart_sentences, explain, part_sentences
 from rovsim.results.comparison import Comparison
-from rovsim.results.diagnosis import DiagnosisErrors, LookedAt, Unexplained
+from rovsim.results.diagnosis import DiagnosisErrors, LookedAt, RivalEffect, Unexplained
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.fitted import FittedEffect, FittedValue
 from rovsim.results.pitfalls import Pitfalls
@@ -143,6 +143,23 @@ def test_the_verdict_says_what_how_much_how_sure_and_what_is_open(html):
         "Nothing can be said about roll and pitch",
     ):
         assert words in html
+
+
+def test_what_nobody_would_argue_about_is_said_once(content):
+    found = content["diagnosis"]
+    first, second, *_ = (one.effect for one in found.selected)
+    rivals = tuple(
+        RivalEffect(effect=name, instead_of=instead, deficit=deficit)
+        for name, instead, deficit in (
+            ("lift", first, 90.0), ("current", first, 300.0), ("payload", second, 100.0),
+        )
+    )  # fmt: skip
+    said = apart_sentences(found.model_copy(update={"rivals": rivals, "indistinguishable": ()}))
+    told = [sentence for sentence in said if "next best" in sentence]
+    assert told == [
+        "The next best explanations are each more than a million times less likely: lift instead "
+        f"of {first} and payload instead of {second}."
+    ]
 
 
 def test_terminal_and_page_say_the_same(content):

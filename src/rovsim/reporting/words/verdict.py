@@ -131,18 +131,46 @@ def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
 
 def apart_sentences(found: Diagnosis) -> list[str]:
     """Which effects the runs cannot tell apart, and how far behind the next names are."""
-    alike = found.indistinguishable
-    sentences = [f"These runs cannot tell {listed(group)} apart." for group in alike]
+    sentences = [
+        f"These runs cannot tell {listed(group)} apart." for group in found.indistinguishable
+    ]
     sentences += [
         f"Known only together, not one by one: {', '.join(group)}."
         for group in found.known_together
     ]
+    return sentences + _runner_up_sentences(_list_runners_up(found))
+
+
+def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
+    """Of each selected effect the next best name, but for those that cannot be told from it."""
+    best = []
     for one in found.selected:
         rivals = [r for r in found.rivals if r.instead_of == one.effect]
-        taken = {name for group in alike if one.effect in group for name in group}
+        alike = (group for group in found.indistinguishable if one.effect in group)
+        taken = {name for group in alike for name in group}
         behind = [r for r in rivals if r.effect not in taken]
         if behind:
-            sentences.append(_runner_up(min(behind, key=lambda r: or_nan(r.deficit))))
+            best.append(min(behind, key=lambda r: or_nan(r.deficit)))
+    return best
+
+
+def _runner_up_sentences(best: Sequence[RivalEffect]) -> list[str]:
+    """How far behind the next names are; one sentence for all that nobody would argue about."""
+    odds = [(r, math.exp(min(0.5 * or_nan(r.deficit), 700.0))) for r in best]
+    near = [(r, significant(times, 2)) for r, times in odds if times <= MANY]
+    far = [r for r, times in odds if times > MANY]
+    if len(far) == 1:
+        near, far = [*near, (far[0], "more than a million")], []
+    sentences = [
+        f"The next best explanation instead of {r.instead_of} is {r.effect}: {times} times less "
+        "likely."
+        for r, times in near
+    ]
+    if far:
+        pairs = listed([f"{r.effect} instead of {r.instead_of}" for r in far])
+        sentences.append(
+            f"The next best explanations are each more than a million times less likely: {pairs}."
+        )
     return sentences
 
 
@@ -157,13 +185,6 @@ def scale_sentences(scale: ScaleOfForces | None) -> list[str]:
         f"and drag would move in the same way. The factor acts on values of {owners}; their "
         "intervals include it."
     ]
-
-
-def _runner_up(rival: RivalEffect) -> str:
-    odds = math.exp(min(0.5 * or_nan(rival.deficit), 700.0))
-    times = "more than a million" if odds > MANY else f"{significant(odds, 2)}"
-    name, instead = rival.effect, rival.instead_of
-    return f"The next best explanation instead of {instead} is {name}: {times} times less likely."
 
 
 def unexplained_sentences(found: Diagnosis) -> list[str]:
