@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.checks.rest_of_file import free_rest, include_rest, list_spreads
-from rovsim.diagnosis.checks.whole_file import fit_whole_file, settle_whole_file
+from rovsim.diagnosis.checks.whole_file import fit_whole_file, is_right_elsewhere, settle_whole_file
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -87,6 +87,20 @@ def test_of_the_file_only_that_is_named_without_which_a_replay_is_worse(flown, b
     assert {term.id for term in final.hypothesis.terms} == {*COEFFICIENTS, "buoyancy_center"}
     assert np.abs(miss(final, off)).max() < 3.0
     assert "added_mass.surge" in scale.parameters
+
+
+def test_a_file_may_be_right_but_for_what_was_selected(flown, bank, tmp_path):
+    _, _, off = flown
+    found = fitted(bank, ("surge", "sway"))
+    assert not is_right_elsewhere(fit_whole_file(found, bank), found.hypothesis)
+    some = tuple(
+        EffectEntry(effect=name, parameters={axis: off[name][axis] for axis in ("surge", "sway")})
+        for name in COEFFICIENTS
+    )
+    base, runs = observed(tmp_path, duration=20.0, effects=some)
+    other = FilterBank.design(runs, base, FIRST_NOISE)
+    found = fitted(other, ("surge", "sway"))
+    assert is_right_elsewhere(fit_whole_file(found, other), found.hypothesis)
 
 
 def test_one_effect_may_be_all_that_is_wrong(flown, bank):

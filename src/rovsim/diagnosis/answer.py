@@ -4,12 +4,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Sequence
 
-from rovsim.diagnosis.checks.common_scale import CommonScale
+from rovsim.diagnosis.checks.common_scale import CommonScale, include_scale
 from rovsim.diagnosis.checks.identifiability import find_doubtful
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
-from rovsim.diagnosis.checks.whole_file import fit_whole_file, settle_whole_file
+from rovsim.diagnosis.checks.whole_file import (
+    fit_whole_file,
+    is_right_elsewhere,
+    settle_whole_file,
+)
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
@@ -110,6 +114,8 @@ def finish(found: Answer, runs: Sequence[ObservedRun]) -> tuple[Answer, Fit, Com
         found = replace(found, fit=_refit_to_replays(found.fit, found.bank))
     if found.lasting or found.whole is None:
         return found, *include_rest(found.fit, runs)
+    if is_right_elsewhere(found.whole, found.fit.hypothesis):
+        return found, *include_scale(found.fit, runs)
     fit, scale = settle_whole_file(found.whole, found.fit.hypothesis, found.bank)
     return replace(found, fit=fit), fit, scale
 

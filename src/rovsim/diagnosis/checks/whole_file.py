@@ -6,6 +6,12 @@ drag share a factor that little but such numbers fixes. So in the end all that t
 fitted, each number beside what is known of such files (`nominal_terms.py`). Then what is not sure,
 or nobody would miss, is left out again, at the gain that was found: the others take what it did,
 and their intervals stay those of all together.
+
+A file may also be wrong in a few things alone. Where the runs find all other numbers to be what the
+file says, far closer than such files are known to be, it is right elsewhere, and the others stand
+as they were selected. That is asked of all of them at once: Savage and Dickey's ratio of densities
+(Dickey 1971, Ann. Math. Stat. 42, 204), how much likelier the file's values are after the runs than
+before.
 """
 
 from dataclasses import replace
@@ -29,6 +35,7 @@ from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
+RIGHT = 6.0  # twice the logarithm of odds of 20 to 1, that all of the rest is right
 MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
 
 
@@ -54,6 +61,19 @@ def _know(selected: Hypothesis, freed: Hypothesis) -> Prior:
 def _mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
     known = set(selected.parameter_names)
     return np.array([name not in known for name in freed.parameter_names], bool)
+
+
+def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
+    """Whether the runs find the rest of a file right, beside what was selected of it.
+
+    Args:
+        whole: all of the file, fitted.
+        selected: what was selected, as it was fitted.
+    """
+    h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
+    V, off = whole.covariance[np.ix_(new, new)], (h.x - h.absence)[new]
+    told = 2.0 * np.sum(np.log(_know(selected, h).std[new])) - np.linalg.slogdet(V)[1]
+    return bool(told - off @ solve(V, off) > RIGHT)
 
 
 def settle_whole_file(
