@@ -4,7 +4,6 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2
 
-from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.selection.gauss_newton import Fit
 
 ALIKE = 0.95  # correlation; each would be three times as sure if the other were known
@@ -34,8 +33,6 @@ def find_doubtful(found: Fit) -> int | None:
     chances = np.zeros(len(h.terms))
     for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
         if own and term.id not in together:
-            change = (h.x - h.absence)[own]
-            distance = change @ solve(found.covariance[np.ix_(own, own)], change)
-            chances[i] = chi2.sf(distance, len(own))
+            chances[i] = chi2.sf(found.distance(own), len(own))
     likeliest = int(np.argmax(chances))
     return likeliest if chances[likeliest] > DOUBT else None

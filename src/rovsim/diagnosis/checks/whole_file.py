@@ -71,9 +71,9 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
         selected: what was selected, as it was fitted.
     """
     h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
-    V, off = whole.covariance[np.ix_(new, new)], (h.x - h.absence)[new]
+    V = whole.covariance[np.ix_(new, new)]
     told = 2.0 * np.sum(np.log(_know(selected, h).std[new])) - np.linalg.slogdet(V)[1]
-    return bool(told - off @ solve(V, off) > RIGHT)
+    return bool(told - whole.distance(new) > RIGHT)
 
 
 def settle_whole_file(

@@ -32,7 +32,7 @@ from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS, SearchWorkspace
 from rovsim.dynamics.effects.law import TERMS
 
 TRIED = 5  # terms that are fitted before one is added
@@ -92,9 +92,21 @@ class LawSearch:
 
     def judge(self, form: Form, h: Hypothesis) -> Judged:
         """A law, fitted with all else."""
-        fitted = self.selection.fit(form.follow(h))
-        more = (self.price - self.workspace.price) * get_law(fitted.hypothesis).choices
-        return Judged(form, fitted, self.workspace.score(fitted) - more)
+        return self._judge(form, self.selection.fit(form.follow(h)))
+
+    def challenge(self, form: Form, h: Hypothesis, current: Judged) -> Judged | None:
+        """The same, but None as soon as it surely does not come near what is there."""
+        start = form.follow(h)
+        wanted = current.score + self._ask(start)
+        fitted = self.selection.challenge(start, current.fit, wanted)
+        return None if fitted is None else self._judge(form, fitted)
+
+    def _judge(self, form: Form, fitted: Fit) -> Judged:
+        return Judged(form, fitted, self.workspace.score(fitted) - self._ask(fitted.hypothesis))
+
+    def _ask(self, h: Hypothesis) -> float:
+        """What the numbers of a law cost more than those of the catalogue."""
+        return (self.price - self.workspace.price) * get_law(h).choices
 
     def is_worth(self, more: Judged, less: Fit, score: float) -> bool:
         """Whether it gains more than chance would, and users would see it in some axis' windows."""
@@ -154,13 +166,26 @@ class LawSearch:
         current = grown
         while True:
             h, form = current.fit.hypothesis, current.form
-            fewer = [(form, h.without(i)) for i, t in enumerate(h.terms) if t.effect.listed]
-            tried = [self.judge(*one) for one in (*fewer, *form.simplify(h))]
-            best = max(tried, key=lambda one: one.score, default=None)
+            fewer = [(form, h.without(i)) for i in self._list_idle(current.fit)]
+            less = (*fewer, *form.simplify(h))
+            tried = [self.challenge(*one, current) for one in less]
+            best = max(filter(None, tried), key=lambda one: one.score, default=None)
             if best is None or best.score < current.score:
                 return current
             # rivals of a term that went are rivals of nothing
             current = replace(best, rivals=current.rivals if best.form is form else ())
+
+    def _list_idle(self, found: Fit) -> list[int]:
+        """Effects of the catalogue that to first order are not needed: others surely stay."""
+        h, price = found.hypothesis, self.workspace.price
+        return [
+            i
+            for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True))
+            if term.effect.listed
+            and not (
+                term.vanishes and own and found.distance(own) > HOPELESS + 2.0 * price * len(own)
+            )
+        ]
 
 
 def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, Known]:

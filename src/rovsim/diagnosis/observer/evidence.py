@@ -50,14 +50,33 @@ class Evidence(Protocol):
         """Errors (..., 6, n) of all runs, each worth the same."""
 
 
-def linearise(at: Hypothesis, errors: Errors) -> Linearised:
-    """Differences of the errors (m, 6, n) of each run that `errors` returns for m models."""
+def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -> Linearised:
+    """Differences of the errors (m, 6, n) of each run that `errors` returns for m models.
+
+    `known`: derivatives of another hypothesis, which stand for those to the same parameters. Those
+    of a law are its own: its terms move up as others go.
+    """
     x = at.x
-    steps = [_step_inward(at, x, i) for i in range(len(x))]
+    taken = {} if known is None else _take(at, known)
+    new = [i for i in range(len(x)) if i not in taken]
+    steps = [_step_inward(at, x, i) for i in new]
     moved = [at.at(x + step).model for step in steps]
     sizes = np.array([step.sum() for step in steps])[:, None, None]
     found = errors([at.model, *moved])
-    return Linearised(at, [f[0] for f in found], [(f[1:] - f[0]) / sizes for f in found])
+    J = [np.empty((len(x), *f.shape[1:])) for f in found]
+    for k, f in enumerate(found):
+        J[k][new] = (f[1:] - f[0]) / sizes
+        for i, of_runs in taken.items():
+            J[k][i] = of_runs[k]
+    return Linearised(at, [f[0] for f in found], J)
+
+
+def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
+    """Derivatives of each run to parameters of the catalogue that both have, by where they go."""
+    listed = [term.effect.listed for term in known.at.terms for _ in term.free]
+    rows = {name: k for k, name in enumerate(known.at.parameter_names) if listed[k]}
+    each = enumerate(at.parameter_names)
+    return {i: [J[rows[name]] for J in known.J] for i, name in each if name in rows}
 
 
 def _step_inward(at: Hypothesis, x: Array, i: int) -> Array:

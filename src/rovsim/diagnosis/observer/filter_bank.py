@@ -183,6 +183,9 @@ class FilterBank:
         each = zip(e, self.runs, self.tunings, self.tune(noise), strict=True)
         return [whiten_run(*one) for one in each]
 
-    def linearise(self, at: Hypothesis) -> Linearised:
-        """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters."""
-        return linearise(at, self.evaluate)
+    def linearise(self, at: Hypothesis, known: Linearised | None = None) -> Linearised:
+        """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters.
+
+        `known`: derivatives of another hypothesis, which stand for those to the same parameters.
+        """
+        return linearise(at, self.evaluate, known)

@@ -15,7 +15,7 @@ from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.rivals import Rival, Selection
-from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS, Removed, SearchWorkspace
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
@@ -93,7 +93,9 @@ def contest(
         for p in find_challengers(workspace, term, rest, trials):
             deficit, trial = rest.loss - workspace.price * term.choices - p.gain, None
             if deficit < 0.0 or _explains(workspace, p) > PROMISING * rest.loss:
-                trial = workspace.fit(rest.hypothesis.with_term(p.term))
+                start, deficit = rest.hypothesis.with_term(p.term), HOPELESS
+                trial = workspace.challenge(start, current, workspace.score(current))
+            if trial is not None:
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -swap and not (
                     off and loose_file.explains(workspace, trial, p.term.id)

@@ -18,13 +18,12 @@ from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
 # In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
 # thirty times, against a coefficient of a file that is known to be off.
 FILE_ODDS = 13.8
-ARGUABLE = 100.0  # in twice the log likelihood: beyond it no file makes up for the difference
 
 
 class FileNumber(NamedTuple):
@@ -96,11 +95,11 @@ def weigh(
 ) -> float:
     """How much less likely the other term's fit is, beside a file that is off if it is.
 
-    Both of the file: `deficit`, what is known of the two fits as they are.
+    Both of the file, or hopeless: `deficit`, what is known of the two fits as they are.
     """
     (current, term), (trial, rival) = own, other
     both = term.id in STATED and rival.id in STATED
-    if both or not is_off(current.hypothesis) or deficit > ARGUABLE:
+    if both or not is_off(current.hypothesis) or deficit >= HOPELESS:
         return deficit
     more = measure_cost(workspace, trial) - measure_cost(workspace, current)
     return more + find_limit(workspace, rival) - find_limit(workspace, term)

@@ -15,8 +15,8 @@ SURE = 6.0  # twice a log likelihood: odds of 20 to 1
 class Rival:
     """An effect that could stand in for a selected one, and by how much it is less likely.
 
-    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1. `fit` with it in
-    the other's place, where it was refitted.
+    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1; at least that much
+    where its fit was given up. `fit` with it in the other's place, where it was refitted.
     """
 
     effect: str
@@ -42,6 +42,13 @@ class Selection:
     def fit(self, start: Hypothesis) -> Fit:
         """Fit another hypothesis as this one was found."""
         return self.workspace.fit(start, self.reach)
+
+    def challenge(self, start: Hypothesis, current: Fit, score: float) -> Fit | None:
+        """The same, but None as soon as it surely does not come near a score.
+
+        `current`: a fit whose derivatives it may begin with.
+        """
+        return self.workspace.challenge(start, current, score, self.reach)
 
     @property
     def named_rivals(self) -> list[Rival]:

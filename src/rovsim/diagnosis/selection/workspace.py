@@ -17,7 +17,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products, project_out, solve
 from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.selection.gauss_newton import Fit, fit
+from rovsim.diagnosis.selection.gauss_newton import Fit, fit, fit_or_give_up
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, rank_proposals
 from rovsim.diagnosis.selection.sensitivities import (
@@ -34,6 +34,7 @@ from rovsim.dynamics.model import Model
 CHANGED = 0.1
 # Of a column's own square, in six digits: what free parameters leave less of is theirs.
 EXPLAINED = 1e-6
+HOPELESS = 100.0  # twice the log likelihood: what is less likely by e^50 need not be known better
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +72,7 @@ class SearchWorkspace:
     noise: Noise
     settings: SearchSettings
     _fitted: dict[tuple, Fit] = field(default_factory=dict)
+    _given_up: dict[tuple, float] = field(default_factory=dict)
     _proposed: dict[tuple, list[Proposal]] = field(default_factory=dict)
     _removed: dict[tuple, list[Removed]] = field(default_factory=dict)
     _beside: dict[tuple, Sensitivities] = field(default_factory=dict)
@@ -162,14 +164,34 @@ class SearchWorkspace:
             self._fitted[key] = fit(start, self.bank, self.noise, reach)
         return self._fitted[key]
 
+    def challenge(
+        self, start: Hypothesis, current: Fit, score: float, reach: float = np.inf
+    ) -> Fit | None:
+        """The same, but None as soon as it surely scores `HOPELESS` less than that.
+
+        `current`: a fit whose derivatives it may begin with.
+        """
+        key, least = (start.key, reach), score - HOPELESS + self._ask(start)
+        if key not in self._fitted and least < self._given_up.get(key, np.inf):
+            first = self.bank.linearise(start, current.seen)
+            found = fit_or_give_up(first, self.bank, self.noise, least, reach)
+            if found is None:
+                self._given_up[key] = least
+            else:
+                self._fitted[key] = found
+        return self._fitted.get(key)
+
     def has_fitted(self, start: Hypothesis) -> bool:
         """Whether that start was fitted already, without a `reach`."""
         return (start.key, np.inf) in self._fitted
 
     def score(self, found: Fit) -> float:
         """Twice the log likelihood, the price of the free parameters paid, and an odd gain."""
-        price = self.price * sum(t.choices for t in found.hypothesis.terms)
-        return found.likelihood - price - doubt_gain(found.hypothesis)
+        return found.likelihood - self._ask(found.hypothesis)
+
+    def _ask(self, at: Hypothesis) -> float:
+        """What a hypothesis costs, in twice the log likelihood."""
+        return self.price * sum(t.choices for t in at.terms) + doubt_gain(at)
 
     def sizes(self, at: Hypothesis) -> Array:
         """Lengths (c,) of the candidates' columns, white, beside the loops of a hypothesis."""
