@@ -89,10 +89,15 @@ def test_of_the_file_only_that_is_named_without_which_a_replay_is_worse(flown, b
     assert "added_mass.surge" in scale.parameters
 
 
-def test_a_file_may_be_right_but_for_what_was_selected(flown, bank, tmp_path):
-    _, _, off = flown
-    found = fitted(bank, ("surge", "sway"))
+@pytest.mark.parametrize("axes", [("surge", "sway"), ("surge", "sway", "heave", "yaw"), AXES])
+def test_a_file_that_is_off_everywhere_is_not_right_elsewhere(bank, axes):
+    """Its ballast is where it says, which tells nothing of drag."""
+    found = fitted(bank, axes)
     assert not is_right_elsewhere(fit_whole_file(found, bank), found.hypothesis)
+
+
+def test_a_file_may_be_right_but_for_what_was_selected(flown, tmp_path):
+    _, _, off = flown
     some = tuple(
         EffectEntry(effect=name, parameters={axis: off[name][axis] for axis in ("surge", "sway")})
         for name in COEFFICIENTS

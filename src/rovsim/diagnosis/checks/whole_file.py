@@ -7,11 +7,12 @@ fitted, each number beside what is known of such files (`nominal_terms.py`). The
 or nobody would miss, is left out again, at the gain that was found: the others take what it did,
 and their intervals stay those of all together.
 
-A file may also be wrong in a few things alone. Where the runs find all other numbers to be what the
-file says, far closer than such files are known to be, it is right elsewhere, and the others stand
-as they were selected. That is asked of all of them at once: Savage and Dickey's ratio of densities
+A file may also be wrong in a few things alone. Where the runs find all other drag and added mass to
+be what the file says, far closer than such files are known to be, it is right elsewhere, and what
+was selected stands. That is asked of all of them at once: Savage and Dickey's ratio of densities
 (Dickey 1971, Ann. Math. Stat. 42, 204), how much likelier the file's values are after the runs than
-before.
+before. What a file states as zero, as the ballast's place, is right in most files, and tells
+nothing of the others.
 """
 
 from dataclasses import replace
@@ -29,7 +30,13 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit, descend, judge
-from rovsim.diagnosis.selection.nominal_terms import GAIN, GAIN_SCALE, is_off, mark_gain
+from rovsim.diagnosis.selection.nominal_terms import (
+    GAIN,
+    GAIN_SCALE,
+    is_off,
+    mark_gain,
+    share_of_file,
+)
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
@@ -71,9 +78,17 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
         selected: what was selected, as it was fitted.
     """
     h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
-    V = whole.covariance[np.ix_(new, new)]
-    told = 2.0 * np.sum(np.log(_know(selected, h).std[new])) - np.linalg.slogdet(V)[1]
-    return bool(told - whole.distance(new) > RIGHT)
+    each = [(type(t.effect), p) for t in h.terms for p in t.parameters]
+    share = np.array([share_of_file(h.base, *one) for one in each])
+    asked = new & (share > 0.0)
+    known, usual, count = _know(selected, h).std[asked], share[asked], int(asked.sum())
+    to_file = solve(whole.covariance[np.ix_(asked, asked)], np.eye(count))
+    pull = to_file @ (h.x - h.absence)[asked]
+    told = to_file - np.diag(known**-2.0)
+    likelier = np.linalg.slogdet(np.eye(count) + usual[:, None] * told * usual)[1]
+    likelier -= pull @ solve(told + np.diag(usual**-2.0), pull)
+    surely_off = count and whole.distance(asked) > chi2.isf(FALSE_ALARM, count)
+    return bool(likelier > RIGHT and not surely_off)
 
 
 def settle_whole_file(

@@ -59,9 +59,14 @@ def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> f
     """How far the vehicle file may be off in what it states there, in scales of the parameter."""
     if effect is ThrusterGain:
         return GAIN / parameter.scale
+    return max(1.0, share_of_file(base, effect, parameter))
+
+
+def share_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
+    """How far such files are off, in proportion to what they state there, in scales; 0: nothing."""
     bounds = _physical_bounds(base).get(effect.id, {}).get(parameter.name)
     stated = 0.0 if bounds is None else -bounds.low
-    return max(1.0, SHARE.get(effect.id, 0.0) * stated / parameter.scale)
+    return SHARE.get(effect.id, 0.0) * stated / parameter.scale
 
 
 def free_terms(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple[Term, ...]:
