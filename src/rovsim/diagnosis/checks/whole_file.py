@@ -84,7 +84,7 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
     known, usual, count = _know(selected, h).std[asked], share[asked], int(asked.sum())
     to_file = solve(whole.covariance[np.ix_(asked, asked)], np.eye(count))
     pull = to_file @ (h.x - h.absence)[asked]
-    told = to_file - np.diag(known**-2.0)
+    told = to_file - np.diag(known**-2.0)  # by the runs: the fit knew the file as well
     likelier = np.linalg.slogdet(np.eye(count) + usual[:, None] * told * usual)[1]
     likelier -= pull @ solve(told + np.diag(usual**-2.0), pull)
     surely_off = count and whole.distance(asked) > chi2.isf(FALSE_ALARM, count)
