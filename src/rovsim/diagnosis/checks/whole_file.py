@@ -12,7 +12,9 @@ be what the file says, far closer than such files are known to be, it is right e
 was selected stands. That is asked of all of them at once: Savage and Dickey's ratio of densities
 (Dickey 1971, Ann. Math. Stat. 42, 204), how much likelier the file's values are after the runs than
 before. What a file states as zero, as the ballast's place, is right in most files, and tells
-nothing of the others.
+nothing of the others. The more was selected, the less is it likely that just the rest is right: as
+many numbers may be wrong as there are, each count as likely before, and all sets of one count alike
+(Scott & Berger 2010, Ann. Stat. 38, 2587).
 """
 
 from dataclasses import replace
@@ -20,6 +22,7 @@ from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.special import comb
 from scipy.stats import chi2
 
 from rovsim.diagnosis.checks.common_scale import CommonScale, describe_scale
@@ -80,15 +83,16 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
     h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
     each = [(type(t.effect), p) for t in h.terms for p in t.parameters]
     share = np.array([share_of_file(h.base, *one) for one in each])
-    asked = new & (share > 0.0)
-    known, usual, count = _know(selected, h).std[asked], share[asked], int(asked.sum())
-    to_file = solve(whole.covariance[np.ix_(asked, asked)], np.eye(count))
-    pull = to_file @ (h.x - h.absence)[asked]
-    told = to_file - np.diag(known**-2.0)  # by the runs: the fit knew the file as well
-    likelier = np.linalg.slogdet(np.eye(count) + usual[:, None] * told * usual)[1]
+    asked, of = new & (share > 0.0), int(np.sum(share > 0.0))
+    if not asked.any() or whole.distance(asked) > chi2.isf(FALSE_ALARM, asked.sum()):
+        return False
+    known, usual, one = _know(selected, h).std[asked], share[asked], np.eye(asked.sum())
+    in_all = solve(whole.covariance[np.ix_(asked, asked)], one)
+    pull = in_all @ (h.x - h.absence)[asked]
+    told = in_all - np.diag(known**-2.0)  # by the runs: the fit knew the file as well
+    likelier = np.linalg.slogdet(one + usual[:, None] * told * usual)[1]
     likelier -= pull @ solve(told + np.diag(usual**-2.0), pull)
-    surely_off = count and whole.distance(asked) > chi2.isf(FALSE_ALARM, count)
-    return bool(likelier > RIGHT and not surely_off)
+    return bool(likelier - 2.0 * np.log((of + 1) * comb(of, asked.sum())) > RIGHT)
 
 
 def settle_whole_file(
