@@ -47,13 +47,12 @@ def remembered_at(
     """
     if not any(m.body.forgets for m in models):
         return NO_MEMORY
-    found: dict[tuple, Array] = {}
-    for m in models:
-        key = _name_memory(m)
-        if key not in found:
-            whole = measured_memory(m, see(m), edges)
-            found[key] = whole[steps] if whole.size else np.zeros((len(steps), 6))
-    return np.stack([found[_name_memory(m)] for m in models])
+    keys = [_name_memory(m) for m in models]
+    whole = {
+        k: measured_memory(m, see(m), edges)
+        for k, m in dict(zip(keys, models, strict=True)).items()
+    }
+    return np.stack([whole[k][steps] if whole[k].size else np.zeros((len(steps), 6)) for k in keys])
 
 
 def _name_memory(model: Model) -> tuple:

@@ -42,10 +42,10 @@ from rovsim.diagnosis.selection.nominal_terms import (
 )
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.diagnosis.selection.pruning import drop_parameters
+from rovsim.diagnosis.selection.rivals import SURE
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
-RIGHT = 6.0  # twice the logarithm of odds of 20 to 1, that all of the rest is right
 MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
 
 
@@ -92,7 +92,7 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
     told = in_all - np.diag(known**-2.0)  # by the runs: the fit knew the file as well
     likelier = np.linalg.slogdet(one + usual[:, None] * told * usual)[1]
     likelier -= pull @ solve(told + np.diag(usual**-2.0), pull)
-    return bool(likelier - 2.0 * np.log((of + 1) * comb(of, asked.sum())) > RIGHT)
+    return bool(likelier - 2.0 * np.log((of + 1) * comb(of, asked.sum())) > SURE)
 
 
 def settle_whole_file(

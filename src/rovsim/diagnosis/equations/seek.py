@@ -177,15 +177,13 @@ class LawSearch:
 
     def _list_idle(self, found: Fit) -> list[int]:
         """Effects of the catalogue that to first order are not needed: others surely stay."""
-        h, price = found.hypothesis, self.workspace.price
-        return [
-            i
-            for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True))
-            if term.effect.listed
-            and not (
-                term.vanishes and own and found.distance(own) > HOPELESS + 2.0 * price * len(own)
-            )
-        ]
+        h, idle = found.hypothesis, []
+        for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
+            most = HOPELESS + 2.0 * self.workspace.price * len(own)
+            stays = own and term.vanishes and found.distance(own) > most
+            if term.effect.listed and not stays:
+                idle.append(i)
+        return idle
 
 
 def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, Known]:
