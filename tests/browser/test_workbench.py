@@ -434,6 +434,8 @@ def test_a_campaign_is_found_by_walking_through_folders(tab, campaign, tmp_path)
     for number in range(MOST):  # a crowd that comes before it by name
         (own.parent / f"run {number}").mkdir()
         (own.parent / f"a{number}").mkdir()
+    tab.go("compare")  # read, and so among those opened last
+    page.get_by_role("heading", name="Compare").wait_for()
     tab.go("open")
     page.get_by_role("button", name="/", exact=True).click()
     for parent, part in itertools.pairwise(own.parts):

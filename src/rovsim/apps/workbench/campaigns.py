@@ -40,22 +40,23 @@ class Browser:
 
     def show(self) -> None:
         """Draw it."""
-        self.way = ui.row().classes("bins way")
-        self.part = ui.input("Only names with", on_change=self._list).classes("control")
-        self.part.props("outlined dense clearable")
+        self.top = ui.column().classes("folders")
         self.area = ui.column().classes("effects folders")
         self._go(self.folder)
 
     def _go(self, folder: Path) -> None:
         self.folder = folder
-        self.part.value = ""
-        self._list()
         listing = look(folder)
-        self.way.clear()
-        with self.way:
-            for path in (*listing.parents, listing.folder):
-                name = shown(path) if path == path.parent else shown(Path(path.name))
-                ui.button(name, on_click=lambda _, p=path: self._go(p)).props("flat no-caps")
+        self.top.clear()
+        with self.top:
+            with ui.row().classes("bins way"):
+                for path in (*listing.parents, listing.folder):
+                    name = shown(path) if path == path.parent else shown(Path(path.name))
+                    _button(name, lambda _, p=path: self._go(p))
+            # another field for each folder: one that is emptied may take back what is typed already
+            self.part = ui.input("Only names with", on_change=self._list).classes("control")
+            self.part.props("outlined dense clearable")
+        self._list()
 
     def _list(self) -> None:
         listing = look(self.folder, self.part.value or "")
