@@ -40,12 +40,11 @@ class Browser:
 
     def show(self) -> None:
         """Draw it."""
-        self.top = ui.column().classes("folders")
+        self.top = ui.column()
         self.area = ui.column().classes("effects folders")
         self._go(self.folder)
 
     def _go(self, folder: Path) -> None:
-        self.folder = folder
         listing = look(folder)
         self.top.clear()
         with self.top:
@@ -54,12 +53,14 @@ class Browser:
                     name = shown(path) if path == path.parent else shown(Path(path.name))
                     _button(name, lambda _, p=path: self._go(p))
             # another field for each folder: one that is emptied may take back what is typed already
-            self.part = ui.input("Only names with", on_change=self._list).classes("control")
-            self.part.props("outlined dense clearable")
-        self._list()
+            part = ui.input(
+                "Only names with",
+                on_change=lambda typed: self._list(look(listing.folder, typed.value or "")),
+            )
+            part.classes("control").props("outlined dense clearable")
+        self._list(listing)
 
-    def _list(self) -> None:
-        listing = look(self.folder, self.part.value or "")
+    def _list(self, listing: Listing) -> None:
         if listing == self.listing:  # a button that is about to be clicked stays
             return
         self.listing = listing
