@@ -193,7 +193,7 @@ def _propose(
 
 
 def _trace(found: Answer) -> ForceInTime | None:
-    """The force in time that is left; None where nothing is seen of it."""
-    if not found.structures:
+    """The force in time that is left; None where nothing is seen of it, or no filter holds."""
+    if not found.structures or not found.fit.seen.finite:
         return None
     return trace_force(found.fit, found.bank, found.structures)

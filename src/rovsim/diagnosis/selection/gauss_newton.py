@@ -99,11 +99,22 @@ def fit_or_give_up(
 def polish(
     found: Fit, runs: Sequence[ObservedRun], reach: float = np.inf
 ) -> tuple[Fit, FilterBank]:
-    """Fitted once more to these runs under its own noise, with filters that suit it."""
-    for _ in range(POLISHED):
+    """Fitted once more to these runs under its own noise, with filters that suit it.
+
+    As far as filters under that noise hold the model.
+    """
+
+    def again(found: Fit) -> tuple[Fit, FilterBank]:
         bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
-        found = fit(found.hypothesis, bank, found.noise, reach)
-    return found, bank
+        return fit(found.hypothesis, bank, found.noise, reach), bank
+
+    polished = again(found)
+    for _ in range(1, POLISHED):
+        finer = again(polished[0])
+        if not np.isfinite(finer[0].likelihood):
+            break
+        polished = finer
+    return polished
 
 
 def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None) -> Fit:
