@@ -11,8 +11,11 @@ from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 
 def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """Without free parameters that are not worth their price, one at a time."""
-    while len(current.hypothesis.x):
+    """Without free parameters that are not worth their price, one at a time.
+
+    A hypothesis that could not be fitted stays: nothing is known of what its parameters are worth.
+    """
+    while len(current.hypothesis.x) and np.isfinite(current.likelihood):
         smaller = _drop_weakest(workspace, current)
         if smaller is None:
             return current

@@ -133,6 +133,10 @@ class SearchWorkspace:
             noise = fit_remaining_noise(columns, at, noise, rounds=1)
         return SearchWorkspace(bank, columns, noise, self.settings, _beside=beside)
 
+    def look_at(self, bank: FilterBank, noise: Noise) -> "SearchWorkspace":
+        """The same prices, for fits to other runs; candidates are still judged by its own."""
+        return SearchWorkspace(bank, self.sensitivities, noise, self.settings)
+
     def _look_beside(self, at: Hypothesis) -> Sensitivities:
         """The candidates' columns beside the loops of a hypothesis; made once for these loops."""
         loops = _list_loops(at.model)

@@ -1,0 +1,49 @@
+"""What a search leaves out again, and what it cannot judge."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.selection.pruning import prune
+from rovsim.dynamics.effects.constant_wrench import ConstantWrench
+from rovsim.dynamics.model import nominal
+from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
+
+PRICE = 11.5  # of about 300 columns
+
+
+class Wald:
+    """A workspace whose likelihood falls by half of what a lost parameter is from zero, squared."""
+
+    price = PRICE
+
+    def __init__(self, z: dict[str, float], likelihood: float) -> None:
+        self.z, self.likelihood = z, likelihood
+
+    def fit(self, h: Hypothesis) -> SimpleNamespace:
+        left = [name for term in h.terms for name in term.free]
+        gone = sum(self.z[name] ** 2 for name in self.z if name not in left)
+        std = np.array([abs(x) / self.z[name] for x, name in zip(h.x, left, strict=True)])
+        return SimpleNamespace(hypothesis=h, std=std, likelihood=self.likelihood - gone)
+
+    def score(self, found: SimpleNamespace) -> float:
+        return found.likelihood - PRICE * len(found.hypothesis.x)
+
+
+@pytest.mark.parametrize(
+    ("z", "likelihood", "left"),
+    [
+        ({"surge": 2.3}, 100.0, []),
+        ({"surge": 5.0}, 100.0, ["surge"]),
+        ({"surge": 5.0, "sway": 2.3}, 100.0, ["surge"]),
+        ({"surge": 2.3}, -np.inf, ["surge"]),  # it could not be fitted: nothing is known of it
+    ],
+)
+def test_a_parameter_stays_that_is_worth_its_price(z, likelihood, left):
+    term = Term(ConstantWrench(**dict.fromkeys(z, 1.0)), tuple(z))
+    workspace = Wald(z, likelihood)
+    start = workspace.fit(Hypothesis(nominal(load_vehicle(default_vehicle())), (term,)))
+    kept = prune(workspace, start).hypothesis
+    assert [name for one in kept.terms for name in one.free] == left
