@@ -15,7 +15,7 @@ PRICE = 11.5  # of about 300 columns
 
 
 class Wald:
-    """A workspace whose likelihood falls by half of what a lost parameter is from zero, squared."""
+    """A workspace where a lost parameter costs the square of its standard deviations from zero."""
 
     price = PRICE
 
