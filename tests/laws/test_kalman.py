@@ -166,30 +166,45 @@ def test_a_noise_that_cannot_be_ends_no_search(level, reading):
     assert not cost(usual._replace(level=level, reading=reading)) < cost(usual)
 
 
-def test_the_noise_of_made_innovations_is_found():
-    true = Noise(np.full(6, 0.04), np.full(6, 1.0), np.full(6, 1.5e-3))
-    motions = [AxisMotion(1.0)] * 6
-
-    def tuned(noise):
-        axes = enumerate(motions)
-        filters = tuple(design_filter(False, H, own, noise.of_axis(i)) for i, own in axes)
-        return Tuning(filters, np.full(6, H))
-
-    start = Noise(np.full(6, 0.1), np.full(6, 0.5), np.full(6, 5e-4))
-    found = tuned(start)
-    y = rung(tuned(true).filters[0], H, 0.04, 1.0, 1.5e-3, 20000, 7)
-    e = np.array([innovations(f, y) for f in found.filters])
-    kept = np.arange(20000) > 100
+def observed(start, y):
+    """Innovations of readings y (n,) on every axis, found with filters that suit a noise."""
+    n, motions = len(y), [AxisMotion(1.0)] * 6
+    axes = enumerate(motions)
+    found = Tuning(
+        tuple(design_filter(POSE, H, own, start.of_axis(i)) for i, own in axes), np.full(6, H)
+    )
     run = SimpleNamespace(
         axis_periods=np.full(6, H),
         reading_kinds=np.full(6, POSE),
-        shown=np.ones((20000, 6), bool),
+        shown=np.ones((n, 6), bool),
         motion=SimpleNamespace(binned=False),
-        rows=np.array([[0, 20000]]),
-        settled=kept,
+        rows=np.array([[0, n]]),
+        settled=np.arange(n) > 100,
         group=1,
     )
-    noise, _ = fit_noise([e], [run], [found], motions, start)
+    return [np.array([innovations(f, y) for f in found.filters])], [run], [found], motions
+
+
+def test_the_noise_of_made_innovations_is_found():
+    true = AxisNoise(0.04, 1.0, 1.5e-3)
+    y = rung(design_filter(POSE, H, AxisMotion(1.0), true), H, *true[:3], 20000, 7)
+    start = Noise(np.full(6, 0.1), np.full(6, 0.5), np.full(6, 5e-4))
+    noise, _ = fit_noise(*observed(start, y), start)
     np.testing.assert_allclose(noise.reading, true.reading, rtol=0.03)
     np.testing.assert_allclose(noise.level, true.level, rtol=0.25)
     assert np.all((noise.memory > 0.6) & (noise.memory < 1.7))
+
+
+@pytest.mark.parametrize("colour", [False, True])
+def test_beside_slow_errors_some_noise_is_left_from_frame_to_frame(colour):
+    """Without any no filter can be told from another: what it forgets it would have to know."""
+    slow, lasting = 2e-4, 0.1
+    motion = design_filter(POSE, H, AxisMotion(1.0), AxisNoise(0.01, 1.0, 1e-4))
+    keep = np.exp(-H / lasting)
+    drawn = np.random.default_rng(8).normal(size=8000)
+    errors = lfilter([slow * np.sqrt(1.0 - keep**2)], [1.0, -keep], drawn)
+    y = rung(motion, H, 0.01, 1.0, 0.0, 8000, 7) + errors
+    sixfold = (np.full(6, one) for one in (0.03, 0.5, 1e-4, slow, lasting))
+    start = Noise(*sixfold)
+    noise, _ = fit_noise(*observed(start, y), start, colour)
+    assert np.all(noise.reading > 0.05 * noise.colour)

@@ -120,25 +120,20 @@ class _AxisInnovations:
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
     """The noise of one axis, its slow error as given, and what it costs."""
-    slow = np.array(start[3:])
+    slow = start[3:]
 
     def cost(x: Array) -> float:
-        noise = np.concatenate([np.exp(x), slow])
-        return _memory_prior(noise[1]) + axis.cost(noise)
+        return _cost(axis, AxisNoise(*np.exp(x), *slow))
 
     x, found = _descend(cost, np.log(start[:3]))
-    level, memory, reading = np.exp(x)
-    fitted = start._replace(level=level, memory=memory, reading=reading)
-    return fitted, found + _colour_prior(start, axis.single)
+    return AxisNoise(*np.exp(x), *slow), found
 
 
 def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
     """The noise of one axis with a slow error of the readings, where that is more likely."""
 
     def cost(x: Array) -> float:
-        noise = AxisNoise(*np.exp(x))
-        prior = _memory_prior(noise.memory) + _colour_prior(noise, axis.single)
-        return prior + axis.cost(np.exp(x))
+        return _cost(axis, AxisNoise(*np.exp(x)))
 
     first = white if white.colour else white._replace(colour=white.reading, colour_memory=0.5)
     x, found = _descend(cost, np.log(first))
@@ -147,6 +142,12 @@ def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple
     if 2.0 * (known - found) < COLOURED:
         return white, known
     return AxisNoise(*np.exp(x)), found
+
+
+def _cost(axis: _AxisInnovations, noise: AxisNoise) -> float:
+    """Negative log likelihood of a noise, and of its priors."""
+    prior = _memory_prior(noise.memory) + _colour_prior(noise, axis.single)
+    return prior + axis.cost(np.array(noise))
 
 
 def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float]:
