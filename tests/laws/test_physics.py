@@ -87,7 +87,7 @@ def test_a_body_that_cannot_exist_is_refused():
     with pytest.raises(BadInput, match="positive definite"):
         _ = model(AddedMass(surge=-25.0)).body.M
     with pytest.raises(BadInput, match="eigenvalue"):
-        packed([Body(gravity=9.82)])
+        packed(Body(gravity=9.82))
 
 
 def path(world, start, seconds=2.0, step=0.01, commands=None):

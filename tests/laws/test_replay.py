@@ -20,7 +20,7 @@ from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.engine.compiled import engine
 from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import Inputs, Jobs, Place
+from rovsim.dynamics.engine.types import Constants, Inputs, Jobs, Place
 from rovsim.dynamics.model import zero_acceleration
 from rovsim.evaluation.scored import score
 from rovsim.evaluation.scores import rms, subtract
@@ -70,8 +70,9 @@ def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
     jobs, inputs = arrange(bodies, states, steps)
     out = np.empty((len(jobs.first) * steps, 13))
     how(
-        engine([]).integrate, jobs, h * np.arange(steps + 1), 1, packed(bodies), inputs,
-        np.empty((len(bodies), 0)), None, Place(np.full((3, 2), np.nan), np.ones(3)), out,
+        engine([]).integrate, jobs, h * np.arange(steps + 1), 1,
+        Constants.stacked([packed(body) for body in bodies]), inputs, np.empty((len(bodies), 0)),
+        None, Place(np.full((3, 2), np.nan), np.ones(3)), out,
     )  # fmt: skip
     return out.reshape(-1, steps, 13)
 

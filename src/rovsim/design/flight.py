@@ -66,7 +66,7 @@ def predict(commands: Commands, start: Array, chances: Chances, around: Surround
     models = list(chances.models)
     drives = Drives(commands, around.edges, around.replay.commands).of(models)
     pushed = [
-        drive.pushed(push @ model.body.M.T)
+        drive.pushed(push @ model.M.T)
         for drive, push, model in zip(drives, chances.pushes, models, strict=True)
     ]
     states = np.tile(start, (len(models), 1, 1))

@@ -75,7 +75,7 @@ class ModelPilot:
 
     @cached_property
     def _inertia(self) -> Array:
-        return np.diag(self.authority.model.body.M)
+        return np.diag(self.authority.model.M)
 
     @cached_property
     def _stiffness(self) -> Array:

@@ -124,5 +124,5 @@ def extend(base: Model, effects: Sequence[Effect]) -> Model:
         BadInput: values no model can have.
     """
     model = base.with_effects((*base.effects, *effects)).called("new")
-    _ = model.body.M  # refuse a model that cannot move
+    _ = model.M  # refuse a model that cannot move
     return model

@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Callable, Literal, Sequence
 
 import numpy as np
-import scipy.sparse
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
@@ -25,6 +24,7 @@ from rovsim.dynamics.effects.base import (
     Strength,
     Wrench,
 )
+from rovsim.dynamics.step_cuts import StepCuts, latest
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
 Between = Literal["held", "linear"]
@@ -181,43 +181,42 @@ class ThrustPath:
             after.append(state)
         return force, after
 
-    def over_steps(self, commands: Commands, edges: Array, between: Between = "held") -> Thrust:
+    def over_steps(
+        self, commands: Commands, edges: Array, between: Between = "held",
+        cuts: StepCuts | None = None,
+    ) -> Thrust:  # fmt: skip
         """Mean thrust over each step between `edges` (k+1,), s on the MoCap clock.
 
         Before the first line its command holds, after the last one too. The mean is exact for held
-        commands wherever a line falls inside a step.
+        commands wherever a line falls inside a step. `cuts`: of these steps, if they are kept.
         """
         start, duration = commands.recording(edges)
         arrival = start + self.arrival(commands.time - start)  # clocks agree at the start
         lines = replace(commands, time=arrival)
         some = [edges[k : k + AT_ONCE + 1] for k in range(0, len(edges) - 1, AT_ONCE)]
         static = Thrust.joined(
-            [self.arrived(lines.within(e[0], e[-1]), e, start, duration, between) for e in some]
+            [
+                self.arrived(lines.within(e[0], e[-1]), e, start, duration, between, cuts)
+                for e in some
+            ]
         )
         force, _ = self.respond(static.force, float(edges[1] - edges[0]), None)
         return replace(static, force=force)
 
     def arrived(
-        self, lines: Commands, edges: Array, start: float, duration: float, between: Between
-    ) -> Thrust:
+        self, lines: Commands, edges: Array, start: float, duration: float, between: Between,
+        cuts: StepCuts | None = None,
+    ) -> Thrust:  # fmt: skip
         """Static mean thrust over each step, of lines by the time at which they take effect.
 
-        `start` s and `duration` s are those of the recording.
+        `start` s and `duration` s are those of the recording; `cuts` as of `over_steps`.
         """
-        arrival = lines.time
-        pieces = np.union1d(edges, arrival[(arrival > edges[0]) & (arrival < edges[-1])])
-        middle = 0.5 * (pieces[1:] + pieces[:-1])
-        if between == "held" and self._is_steady(lines):  # once for each line, not each piece
-            thrust, source = self.at(lines, start, duration), _latest(arrival, middle)
-        else:
-            value = _between(arrival, lines.value, middle, between)
-            thrust = self.at(replace(lines, time=middle, value=value), start, duration)
-            source = np.arange(len(middle))
-        bounds = np.searchsorted(pieces, edges)
-        share = np.diff(pieces) / np.repeat(np.diff(edges), np.diff(bounds))
-        shape = len(edges) - 1, int(source.max(initial=-1)) + 1
-        mean = scipy.sparse.csr_array((share, source, bounds), shape)
-        return thrust.each(lambda x: mean @ x[: shape[1]])
+        steady = between == "held" and self._is_steady(lines)  # once for each line, not each piece
+        cut = (cuts or StepCuts()).at(lines.time, edges, steady)
+        if not steady:
+            value = _between(lines.time, lines.value, cut.middle, between)
+            lines = replace(lines, time=cut.middle, value=value)
+        return self.at(lines, start, duration).each(cut.average)
 
     def at(self, lines: Commands, start: float, duration: float) -> Thrust:
         """Static thrust that each line makes by itself, at its time.
@@ -266,13 +265,8 @@ def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
     if not len(time):
         return np.zeros((len(at), value.shape[1]))
     if between == "held":
-        return value[_latest(time, at)]
+        return value[latest(time, at)]
     return np.stack([np.interp(at, time, column) for column in value.T], axis=1)
-
-
-def _latest(time: Array, at: Array) -> Array:
-    """The line (m,) that holds at each instant; before the first one, that."""
-    return np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)
 
 
 def _logged(lines: Commands, name: str) -> Array:

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass, field
 from math import inf
-from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from numpy.typing import ArrayLike
 
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.engine.types import Constants
@@ -141,34 +141,34 @@ class Body:
         return bool(self.waterplane.any() or self.products.size or self.lifting.size)
 
 
-def packed(bodies: Sequence[Body]) -> Constants:
-    """Constants of several parameter sets of one vehicle, stacked for the engine."""
+def packed(body: Body) -> Constants:
+    """Constants of one parameter set for the engine."""
 
-    def stack(value) -> Array:
-        return np.ascontiguousarray(np.stack([np.asarray(value(b), dtype=float) for b in bodies]))
+    def alone(value: ArrayLike) -> Array:
+        return np.array([value], dtype=float)
 
     return Constants(
-        M_RB=stack(lambda b: b.M_RB),
-        M_A=stack(lambda b: b.M_A),
-        M_inv=stack(lambda b: b.M_inv),
-        linear=stack(lambda b: b.linear),
-        quadratic=stack(lambda b: b.quadratic),
-        heaviness=stack(lambda b: b.weight - b.buoyancy),
-        righting=stack(lambda b: b.weight_moment - b.buoyancy * b.center_of_buoyancy),
-        current=stack(lambda b: b.current),
-        advance=stack(lambda b: b.advance),
-        coupled=stack(lambda b: np.any(b.coupling)),
-        coupling=stack(lambda b: b.coupling),
-        memory=stack(lambda b: b.memory),
-        forgets=stack(lambda b: b.forgets),
-        B=stack(lambda b: b.B),
-        directions=np.ascontiguousarray(bodies[0].directions, dtype=float),
-        further=stack(lambda b: b.goes_further),
-        waterplane=stack(lambda b: b.waterplane),
-        products=stack(lambda b: b.products),
-        factors=np.ascontiguousarray(bodies[0].factors),
-        surfaces=np.ascontiguousarray(bodies[0].surfaces),
-        lifting=stack(lambda b: b.lifting),
-        free=stack(lambda b: b.free),
-        places=np.ascontiguousarray(bodies[0].places, dtype=float),
+        M_RB=alone(body.M_RB),
+        M_A=alone(body.M_A),
+        M_inv=alone(body.M_inv),
+        linear=alone(body.linear),
+        quadratic=alone(body.quadratic),
+        heaviness=alone(body.weight - body.buoyancy),
+        righting=alone(body.weight_moment - body.buoyancy * body.center_of_buoyancy),
+        current=alone(body.current),
+        advance=alone(body.advance),
+        coupled=alone(np.any(body.coupling)),
+        coupling=alone(body.coupling),
+        memory=alone(body.memory),
+        forgets=alone(body.forgets),
+        B=alone(body.B),
+        directions=np.ascontiguousarray(body.directions, dtype=float),
+        further=alone(body.goes_further),
+        waterplane=alone(body.waterplane),
+        products=alone(body.products),
+        factors=np.ascontiguousarray(body.factors),
+        surfaces=np.ascontiguousarray(body.surfaces),
+        lifting=alone(body.lifting),
+        free=alone(body.free),
+        places=np.ascontiguousarray(body.places, dtype=float),
     )

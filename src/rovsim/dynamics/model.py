@@ -81,9 +81,18 @@ class Model:
         return self.body.possible
 
     @cached_property
+    def M(self) -> Array:
+        """Total inertia (6, 6).
+
+        Raises:
+            BadInput: see `Body.M`.
+        """
+        return self.body.M
+
+    @cached_property
     def constants(self) -> Constants:
-        """The same, packed for the engine."""
-        constants = packed([self.body])
+        """The constants of the equation of motion, packed for the engine."""
+        constants = packed(self.body)
         return constants._replace(M_inv=0.0 * constants.M_inv) if self.inert else constants
 
     @cached_property
@@ -96,7 +105,7 @@ class Model:
         """Wrench (k, 6) of thruster forces (k, n), and of loops that took demands (k, 6)."""
         wrench = force @ self.body.B.T
         for loop in self.thrust_path.autopilots:
-            wrench = wrench + loop.asked(demand, np.diag(self.body.M))
+            wrench = wrench + loop.asked(demand, np.diag(self.M))
         return wrench
 
     @cached_property

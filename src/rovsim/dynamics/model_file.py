@@ -182,7 +182,7 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     known = catalogue.on(vehicle)
     added = build_effects(file.effects, known)
     model = Model(path.stem, vehicle, (*vehicle.effects(), *added), residual)
-    _ = model.body.M  # refuse a model that cannot move
+    _ = model.M  # refuse a model that cannot move
     if file.uncertainty is None or residual is not None:
         return model
     return with_uncertainty(model, file.uncertainty, known)

@@ -55,7 +55,7 @@ def balance_forces(
         parts[name] = parts.get(name, 0.0) + force - before
         before = force
     missing = np.full((len(motion.time), 6), np.nan)
-    missing[found.index] = blank(motion.measured, found.a_res @ model.body.M.T, np.nan)
+    missing[found.index] = blank(motion.measured, found.a_res @ model.M.T, np.nan)
     return Budget(model.name, motion.run.id, motion.time, parts, missing)
 
 
@@ -98,4 +98,4 @@ def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
 
 def _force(model: Model, motion: Motion, drive: Drive) -> Array:
     """M nu_dot (n, 6) of a model at the measured states."""
-    return accelerate_as_measured(model, motion, drive) @ model.body.M.T
+    return accelerate_as_measured(model, motion, drive) @ model.M.T

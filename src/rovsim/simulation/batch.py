@@ -13,7 +13,6 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
-from rovsim.dynamics.body import packed
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.engine.compiled import engine
@@ -100,7 +99,7 @@ class Batch:
         slots = _slots(models, candidates)
         self.engine = engine(slots)
         self._parameters = np.stack([_slotted(m, slots) for m in models])
-        self._constants = _constants(models)
+        self._constants = Constants.stacked([m.constants for m in models])
         self._place = Place(
             np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
         )
@@ -236,15 +235,6 @@ def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
         values = np.zeros(len(cls.parameters)) if used is None else used.values
         parts += [np.array([float(used is not None)]), values]
     return np.concatenate(parts)
-
-
-def _constants(models: Sequence[Model]) -> Constants:
-    """Constants of all models; those of one are kept with it."""
-    if len(models) == 1:
-        return models[0].constants
-    constants = packed([m.body for m in models])
-    constants.M_inv[[m.inert for m in models]] = 0.0
-    return constants
 
 
 def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:

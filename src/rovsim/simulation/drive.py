@@ -11,6 +11,7 @@ from rovsim.core.remade import Recent
 from rovsim.core.run import Commands
 from rovsim.dynamics.actuation import Between, Thrust
 from rovsim.dynamics.model import Model
+from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
@@ -160,6 +161,7 @@ class Drives:
         kept: Recent | None = None,
     ) -> None:
         self._given = commands, edges, between
+        self._cuts = StepCuts()
         self._parts = parts
         self._kept = Recent(KEPT) if kept is None else kept
         self._own = object()  # of its keys: no other run has it
@@ -172,7 +174,7 @@ class Drives:
         path = model.thrust_path
         key = (self._own, id(model.vehicle), *path.key)
         loops = [loop.values.tobytes() for loop in path.autopilots]
-        inertia = model.body.M.tobytes() if loops else b""
+        inertia = model.M.tobytes() if loops else b""
         whole = (*key, *loops, inertia, model.body.B.tobytes())
         return self._kept.get(whole, lambda: self._drive(model, key))
 
@@ -184,7 +186,7 @@ class Drives:
 
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:
         """Over the steps; where they are joined, also what each grows by."""
-        found = Actuation.by(model, model.thrust_path.over_steps(*self._given))
+        found = Actuation.by(model, model.thrust_path.over_steps(*self._given, self._cuts))
         return (found,) if self._parts is None else found.joined(self._parts)
 
 

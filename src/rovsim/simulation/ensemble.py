@@ -75,7 +75,7 @@ class Ensemble:
         """
         pushes = self.noise.level * self._drawn
         after = [
-            member.step(state, command, dt, member.model.body.M @ push)
+            member.step(state, command, dt, member.model.M @ push)
             for member, state, push in zip(self.members, states, pushes, strict=True)
         ]
         fade = np.exp(-dt / self.noise.memory)

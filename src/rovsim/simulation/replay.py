@@ -132,7 +132,7 @@ def simulate(
     memory = remembered_at([model], lambda m: motion, grid.edges, first)
     drive = drive_by_log(model, motion, grid, settings)
     if disturbed is not None:
-        drive = drive.pushed(disturbed @ model.body.M.T)
+        drive = drive.pushed(disturbed @ model.M.T)
     batch, known = Batch([model], motion.site), find_measured(motion.measured)
     begins = carry(batch, [drive], Starts(state, first, steps, memory), grid.time, known)
     return batch.trajectories([drive], begins, grid.time, grid.stride)[0]

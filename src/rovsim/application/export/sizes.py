@@ -104,7 +104,7 @@ def _rms(left: Left, motions: Sequence[Motion]) -> tuple[float, ...]:
 def _force(left: Left, motion: Motion) -> Array:
     """The force (n, 6) that is left out, at the states of a motion."""
     before, after = (_accelerate(model, motion) for model in (left.before, left.after))
-    force = (before - after) @ left.before.body.M.T
+    force = (before - after) @ left.before.M.T
     if left.missing is not None:
         force = force + left.missing(left.before, motion.state)
     return np.asarray(force)

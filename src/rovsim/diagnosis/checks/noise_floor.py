@@ -84,7 +84,7 @@ class _PerfectModel:
         pushed = draws.disturb(np.diff(run.grid), DRAWS)
         if self.noise.drift:
             pushed += self._drift(run, self.noise.drift.rate)
-        return np.asarray(pushed @ self.model.body.M.T)
+        return np.asarray(pushed @ self.model.M.T)
 
     def _drift(self, run: ObservedRun, rate: float) -> Array:
         """Accelerations (draws, k, 6) by a current that wanders, over the integration steps."""

@@ -65,7 +65,7 @@ def trace_force(
     axes = tuple(a for a in AXES if a in residuals and a in named)
     if not axes:
         return None
-    M, memory = found.hypothesis.model.body.M, found.noise.memory
+    M, memory = found.hypothesis.model.M, found.noise.memory
     forces = []
     for k, run in enumerate(bank.runs):
         a = np.zeros((len(run.time), 6))

@@ -134,7 +134,7 @@ def _measure(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> tuple[tuple[f
     bare, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
     each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
     whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
-    sizes = np.sqrt(np.mean(np.sum((each @ bare.body.M.T) ** 2, axis=2), axis=1))
+    sizes = np.sqrt(np.mean(np.sum((each @ bare.M.T) ** 2, axis=2), axis=1))
     return tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.level))]
 
 

@@ -45,7 +45,7 @@ def observe(
     drives = run.drives.of(models)
     if pushed is not None:
         drives = [
-            drive.pushed(_between(run, own) @ model.body.M.T)
+            drive.pushed(_between(run, own) @ model.M.T)
             for drive, own, model in zip(drives, pushed, models, strict=True)
         ]
     e = serve_all(models, run).innovations(drives, starts, seen)

@@ -120,13 +120,13 @@ class _AxisInnovations:
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
     """The noise of one axis, its slow error as given, and what it costs."""
-    slow = start[3:]
 
-    def cost(x: Array) -> float:
-        return _cost(axis, AxisNoise(*np.exp(x), *slow))
+    def at(x: Array) -> AxisNoise:
+        level, memory, reading = np.exp(x)
+        return start._replace(level=level, memory=memory, reading=reading)
 
-    x, found = _descend(cost, np.log(start[:3]))
-    return AxisNoise(*np.exp(x), *slow), found
+    x, found = _descend(lambda x: _cost(axis, at(x)), np.log(start[:3]))
+    return at(x), found
 
 
 def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:

@@ -153,5 +153,5 @@ class Windows:
         first, at = self.run.at[a], self.run.at[a : b + 1]
         if not self.run.motion.binned:
             return nu[at[1:] - first]
-        way = cumulative_simpson(nu, x=self.run.grid[first : at[-1] + 1], axis=0, initial=0.0)
+        way = cumulative_simpson(nu, dx=self.run.grid[1] - self.run.grid[0], axis=0, initial=0.0)
         return np.asarray(np.diff(way[at - first], axis=0) / np.diff(self.run.grid[at])[:, None])

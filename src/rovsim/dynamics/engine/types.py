@@ -1,6 +1,6 @@
 """What the compiled engine passes around. SI units, body axes FRD at CO, world NED, float64."""
 
-from typing import NamedTuple
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -90,6 +90,17 @@ class Constants(NamedTuple):
     lifting: Array
     free: Array
     places: Array
+
+    @staticmethod
+    def stacked(sets: "Sequence[Constants]") -> "Constants":
+        """Those of several sets of one vehicle; what has no first axis m is the first one's."""
+        first, several = sets[0], [name for name in Constants._fields if name not in OF_VEHICLE]
+        return first._replace(
+            **{name: np.concatenate([getattr(one, name) for one in sets]) for name in several}
+        )
+
+
+OF_VEHICLE = ("directions", "factors", "surfaces", "places")  # the same in all its parameter sets
 
 
 class Inputs(NamedTuple):
