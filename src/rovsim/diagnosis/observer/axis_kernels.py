@@ -107,7 +107,8 @@ def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_me
         F[0, 0], F[0, 1] = moved[1, 1], h
         C[1] = -0.5 * h  # the mean over a bin is the velocity at its middle
     else:
-        F[0, :3], F[1, :3] = moved[0], moved[1]
+        for j in range(3):  # a row at once would compile the message of shapes that differ
+            F[0, j], F[1, j] = moved[0, j], moved[1, j]
     add_to_diagonal(Q, SOLVABLE * r)
     Q[disturbed, disturbed] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
     if n == 4:
@@ -240,8 +241,10 @@ def convolve(a, b):
 
 
 @njit(nogil=True, **FROM_PYTHON)
-def negative_log_likelihood(noise, kind, h, moved, poles, forgets, e, spans, kept, shown):
-    """Of innovations e (n,) of one run under a noise (5,), up to a constant.
+def misfit(noise, kind, h, moved, poles, forgets, e, spans, kept, shown):
+    """Sum of squares over their variance, its logarithm, and the number of those that count.
+
+    Of innovations e (n,) of one run under a noise (5,).
 
     Args:
         noise: as `AxisNoise`.
@@ -260,4 +263,4 @@ def negative_log_likelihood(noise, kind, h, moved, poles, forgets, e, spans, kep
     )
     b, a = convolve(own_forgets, poles), convolve(forgets, own_poles)
     squares, count = sum_of_squares(b, a, e, spans, kept, shown)
-    return 0.5 * (squares / variance + count * np.log(variance))
+    return squares / variance, np.log(variance), count

@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
-from rovsim.diagnosis.observer.axis_kernels import negative_log_likelihood
+from rovsim.diagnosis.observer.axis_kernels import misfit
 from rovsim.diagnosis.observer.kalman import AxisFilter, AxisMotion, AxisNoise
 from rovsim.diagnosis.observer.noise import Noise, Tuning
 from rovsim.diagnosis.observer.observed_run import ObservedRun
@@ -22,6 +22,7 @@ MEMORY_SPREAD = 0.7  # of log T: a factor of two either way
 # A slow error of calibrated cameras is no larger than their noise from frame to frame, and lasts as
 # long as the vehicle takes to leave the place where the calibration errs.
 TYPICAL_COLOUR, COLOUR_SPREAD = 0.5, 0.7  # s, and of its log
+FAINTEST = 1e-12  # of the variance at first: an axis on which nothing at all happens
 COLOURED = 12.0  # in twice the log likelihood: two more numbers, and sure of it on six axes
 
 
@@ -99,10 +100,26 @@ class _AxisInnovations:
         """Square root of the number of frames in a reading: how much noisier one frame is."""
         return float(np.sqrt(self.runs[0].group))
 
-    def cost(self, noise: Array) -> float:
-        """Negative log likelihood of a noise (5,), up to a constant; infinite where it has none."""
-        found = sum(negative_log_likelihood(noise, *known) for known in self._known)
-        return float(found) / self.draws if np.isfinite(found) else np.inf
+    def cost(self, noise: AxisNoise) -> float:
+        """Negative log likelihood of a noise, up to a constant; infinite where it has none."""
+        squares, logs, _ = self._misfit(noise)
+        return _finite(0.5 * (squares + logs) / self.draws)
+
+    def scaled(self, noise: AxisNoise) -> tuple[AxisNoise, float]:
+        """The likeliest multiple of a noise without a slow error, and its cost."""
+        squares, logs, count = self._misfit(noise)
+        size = max(squares / count, FAINTEST)  # of the variance; all of the noise makes it alike
+        cost = _finite(0.5 * (squares / size + count * np.log(size) + logs) / self.draws)
+        by = float(np.sqrt(size))
+        return noise._replace(level=by * noise.level, reading=by * noise.reading), cost
+
+    def _misfit(self, noise: AxisNoise) -> tuple[float, float, int]:
+        """Sum of squares over their variance, sum of its logarithm, and how many innovations."""
+        values, found = np.array(noise), [0.0, 0.0, 0]
+        for known in self._known:
+            squares, log, count = misfit(values, *known)
+            found = [found[0] + squares, found[1] + count * log, found[2] + count]
+        return found[0], found[1], found[2]
 
     @cached_property
     def _known(self) -> list[tuple]:
@@ -120,6 +137,8 @@ class _AxisInnovations:
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
     """The noise of one axis, its slow error as given, and what it costs."""
+    if start.colour == 0.0:
+        return _fit_white(axis, start)
 
     def at(x: Array) -> AxisNoise:
         level, memory, reading = np.exp(x)
@@ -127,6 +146,20 @@ def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, floa
 
     x, found = _descend(lambda x: _cost(axis, at(x)), np.log(start[:3]))
     return at(x), found
+
+
+def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
+    """The noise of one axis without a slow error, and what it costs; how large it is, is known."""
+
+    def at(x: Array) -> tuple[AxisNoise, float]:
+        memory, ratio = np.exp(x)
+        noise = start._replace(level=ratio * start.reading, memory=memory)
+        scaled, cost = axis.scaled(noise)
+        return scaled, _memory_prior(memory) + cost
+
+    first = np.log([start.memory, start.level / start.reading])
+    x, found = _descend(lambda x: at(x)[1], first)
+    return at(x)[0], found
 
 
 def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
@@ -147,7 +180,11 @@ def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple
 def _cost(axis: _AxisInnovations, noise: AxisNoise) -> float:
     """Negative log likelihood of a noise, and of its priors."""
     prior = _memory_prior(noise.memory) + _colour_prior(noise, axis.single)
-    return prior + axis.cost(np.array(noise))
+    return prior + axis.cost(noise)
+
+
+def _finite(cost: float) -> float:
+    return float(cost) if np.isfinite(cost) else np.inf
 
 
 def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float]:
