@@ -64,6 +64,14 @@ def add_to_diagonal(A, value):
 
 
 @njit(**INTERNAL)
+def put_rows(A, B, count):
+    """The first rows of B (n, k) into those of A; a slice would compile an error message for 2 s."""
+    for i in range(count):
+        for j in range(B.shape[1]):
+            A[i, j] = B[i, j]
+
+
+@njit(**INTERNAL)
 def invert(A):
     """Inverse of A (n, n), which is lost, by Gauss-Jordan elimination with partial pivoting."""
     n = len(A)
@@ -107,8 +115,7 @@ def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_me
         F[0, 0], F[0, 1] = moved[1, 1], h
         C[1] = -0.5 * h  # the mean over a bin is the velocity at its middle
     else:
-        for j in range(3):  # a row at once would compile the message of shapes that differ
-            F[0, j], F[1, j] = moved[0, j], moved[1, j]
+        put_rows(F, moved, 2)
     add_to_diagonal(Q, SOLVABLE * r)
     Q[disturbed, disturbed] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
     if n == 4:
