@@ -65,7 +65,7 @@ def add_to_diagonal(A, value):
 
 @njit(**INTERNAL)
 def put_rows(A, B, count):
-    """The first rows of B (n, k) into those of A; a slice would compile an error message for 2 s."""
+    """The first rows of B (n, k) into those of A: of a slice Numba compiles its error, for 2 s."""
     for i in range(count):
         for j in range(B.shape[1]):
             A[i, j] = B[i, j]
