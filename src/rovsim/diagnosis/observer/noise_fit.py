@@ -113,13 +113,13 @@ class _AxisInnovations:
         by = float(np.sqrt(size))
         return noise._replace(level=by * noise.level, reading=by * noise.reading), cost
 
-    def _misfit(self, noise: AxisNoise) -> tuple[float, float, int]:
+    def _misfit(self, noise: AxisNoise) -> tuple[float, float, float]:
         """Sum of squares over their variance, sum of its logarithm, and how many innovations."""
-        values, found = np.array(noise), [0.0, 0.0, 0]
+        values, squares, logs, count = np.array(noise), 0.0, 0.0, 0.0
         for known in self._known:
-            squares, log, count = misfit(values, *known)
-            found = [found[0] + squares, found[1] + count * log, found[2] + count]
-        return found[0], found[1], found[2]
+            own, log, more = misfit(values, *known)
+            squares, logs, count = squares + own, logs + more * log, count + more
+        return squares, logs, count
 
     @cached_property
     def _known(self) -> list[tuple]:
