@@ -4,6 +4,8 @@ CORES ?= 2
 SUITE ?= quick
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
+# compiled once, not anew in each of the hundred processes of a workflow or of the tests
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help setup study thesis test test-ui fuzz kills crowd commands soak test-slurm wheel-test walk ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
