@@ -10,7 +10,7 @@ from typing import Iterable, Iterator, Mapping, Sequence
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics import effects
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.base import Effect, Wrench
 from rovsim.dynamics.effects.user_files import check_effects, read_effects
 from rovsim.dynamics.vehicle import Vehicle
 
@@ -30,6 +30,11 @@ class Catalogue(Mapping[str, type[Effect]]):
 
     def __len__(self) -> int:
         return len(self._by_id)
+
+    @property
+    def wrenches(self) -> tuple[type[Wrench], ...]:
+        """Those that an engine is compiled for."""
+        return tuple(cls for cls in self.values() if issubclass(cls, Wrench))
 
     def on(self, vehicle: Vehicle) -> "Catalogue":
         """The same effects with the parameters and starts that they have on a vehicle."""

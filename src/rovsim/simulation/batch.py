@@ -220,7 +220,7 @@ def _slots(models: Sequence[Model], candidates: Sequence[type[Wrench]]) -> list[
     for model in models:
         most |= Counter(type(wrench) for wrench in model.wrenches)
     if most:
-        most |= Counter(cls for cls in built_in().values() if issubclass(cls, Wrench))
+        most |= Counter(built_in().wrenches)
     return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]
 
 

@@ -232,7 +232,6 @@ def prepare_run(
         kept: where its drives are kept, perhaps with those of other runs.
     """
     grid = StepGrid.over(motion, settings.step)
-    wrenches = tuple(c for c in catalogue.values() if issubclass(c, Wrench))
     found = (_step_bins if motion.binned else _step_samples)(stage, motion, grid)
     fine = np.linspace(found.edges[0], found.edges[-1], int(found.parts.sum()) + 1)
     drives = Drives(motion.commands, fine, settings.commands, found.parts, kept)
@@ -240,8 +239,8 @@ def prepare_run(
     if not motion.binned:
         replayed = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
     return ObservedRun(
-        **vars(found), motion=motion, drives=drives, replay_drives=replayed, wrenches=wrenches,
-        free=free,
+        **vars(found), motion=motion, drives=drives, replay_drives=replayed,
+        wrenches=catalogue.wrenches, free=free,
     )  # fmt: skip
 
 
