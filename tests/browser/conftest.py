@@ -87,22 +87,32 @@ def flight() -> Designed:
     return Designed(known, "time_s,t1\n0.00,1500\n", picture)
 
 
+@pytest.fixture(scope="session")
+def profile(chromium):
+    """One for all tests, as a user has: scripts that were loaded and compiled once stay so."""
+    with chromium.new_context() as context:
+        yield context
+
+
 @pytest.fixture
-def tab(chromium, workbench):
+def tab(profile, workbench):
     """A tab of a desk's size; in the end there is nothing to complain about."""
-    yield from _tab(chromium, workbench[0], DESK)
+    yield from _tab(profile, workbench[0], DESK)
 
 
 @pytest.fixture
-def phone(chromium, workbench):
+def phone(profile, workbench):
     """The same on a phone."""
-    yield from _tab(chromium, workbench[0], PHONE)
+    yield from _tab(profile, workbench[0], PHONE)
 
 
-def _tab(chromium, address, size):
-    page = chromium.new_page(viewport={"width": size[0], "height": size[1]})
+def _tab(profile, address, size):
+    page = profile.new_page()
+    page.set_viewport_size({"width": size[0], "height": size[1]})
     page.set_default_timeout(60_000)
     found = Tab(page, address)
     yield found
+    page.evaluate("localStorage.clear()")  # what one test remembered is not the next one's
     page.close()
+    profile.clear_cookies()
     assert found.complaints == []

@@ -146,6 +146,7 @@ def test_an_unknown_model_names_the_nearest(capsys, campaign, tmp_path):
     assert "Did you mean 'nominal'" in text
 
 
+@pytest.mark.usefixtures("few_figures")
 def test_compare_writes_the_contract(campaign, tmp_path, capsys):
     words = [f"campaign={campaign}", "model=[nominal,zero_acceleration]", f"out={tmp_path}"]
     main(["compare", *words, "--json"])
