@@ -2,6 +2,8 @@
 
 import pytest
 
+from rovsim.reporting.figures import kind
+
 REPORTING = "rovsim.reporting"
 
 
@@ -15,5 +17,5 @@ def few(data) -> list[str]:
 def draw_few(patch: pytest.MonkeyPatch) -> None:
     """Let `compare` and `diagnose` draw one figure of each kind, in this process."""
     patch.setattr(f"{REPORTING}.report_data.ReportData.figures", property(few))
-    patch.setattr(f"{REPORTING}.html.folder.PER_RUN", ("velocities",))
+    patch.setattr(f"{REPORTING}.html.folder.list_run_figures", lambda: [kind("velocities")])
     patch.setattr("rovsim.core.second_process.usable_cores", lambda: 1)

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from rovsim import AXES
+from rovsim.evaluation.budget import Budget
 from rovsim.evaluation.error_conditions.conditions import SPEEDS, THROUGHOUT, Blocks, Condition
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.findings import explain
@@ -46,6 +47,7 @@ def _study(
     rng = np.random.default_rng(seed)
     motion = _motion(duration, rng)
     ladder = _ladder(models, rng)
+    found_missing = Diagnosis.model_validate(diagnosis(ladder))
     found = {
         **motion,
         "predicted_nu": {m: motion["nu"] + _drift(m, motion, rng) for m in models},
@@ -56,12 +58,13 @@ def _study(
         "growth": Growth.model_validate(_growth(models, rng)),
         "timing": Timing.model_validate(_timing(models, rng)),
         "ladder": Ladder.model_validate(ladder),
-        "diagnosis": Diagnosis.model_validate(diagnosis(ladder)),
+        "diagnosis": found_missing,
+        "disturbance": found_missing.unexplained.disturbance,
         "quality": {
             run: Quality.model_validate(_quality(run, split, rng)) for run, split in runs.items()
         },
         "where": where(models, duration, seed),
-        **_forces(motion, rng),
+        "budget": _budget(motion, rng),
     }
     tests = [run for run, split in runs.items() if split == "test"]
     return found | {"published_errors": published_errors(found["comparison"], tests, seed)}
@@ -110,12 +113,12 @@ def where(models: tuple[str, ...], seconds: float, seed: int) -> ErrorConditions
     return list_conditions(found)
 
 
-def _forces(motion: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
+def _budget(motion: dict[str, Any], rng: np.random.Generator) -> Budget:
     names = ("weight and buoyancy", "Coriolis", "quadratic damping", "thrusters", "+lift")
     parts = {n: motion["nu"] * rng.uniform(-20, 20, 6) for n in names}
     parts["+current"] = 1e-3 * motion["nu"]
     missing = np.where(motion["usable"][:, None], 3 * motion["nu_dot"], np.nan)
-    return {"parts": parts, "missing": missing}
+    return Budget("nominal", "3dof-2", motion["time"], parts, missing)
 
 
 def _level(model: str) -> float:

@@ -2,6 +2,9 @@
 
 import copy
 import inspect
+import subprocess
+import sys
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -11,7 +14,7 @@ from rovsim.core.errors import BadInput
 from rovsim.reporting.figures import SECTIONS, kind, kinds
 from rovsim.reporting.figures.series import averaged
 from rovsim.reporting.figures.style import save, styled
-from rovsim.reporting.report_data import ONCE, PER_RUN
+from rovsim.reporting.report_data import ReportData, RunData, list_run_figures, list_study_figures
 from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
@@ -25,9 +28,13 @@ EVERY = pytest.mark.parametrize("name", sorted(kinds()))
 
 def drawn(name, content):
     """The figure, from the parts of a study that its `draw` asks for."""
-    draw = kind(name).draw
-    wanted = inspect.signature(draw).parameters
-    return draw(**{key: value for key, value in content.items() if key in wanted})
+    wanted = kind(name)
+    return wanted.draw(**{key: value for key, value in content.items() if key in wanted.takes})
+
+
+def unfolded(content):
+    """The same with all arrays in sight."""
+    return {**content, "budget": vars(content["budget"])}
 
 
 @styled()
@@ -39,14 +46,14 @@ def show(figure):
 @EVERY
 def test_it_is_drawn_the_same_every_time_and_changes_nothing(name, tmp_path):
     content = study()
-    before = copy.deepcopy(content)
+    before = copy.deepcopy(unfolded(content))
     for folder in ("one", "two"):
         save(drawn(name, content), tmp_path / folder, name)
     for ending in ("pdf", "png"):
         one, two = (tmp_path / folder / f"{name}.{ending}" for folder in ("one", "two"))
         assert len(one.read_bytes()) > 3000
         assert one.read_bytes() == two.read_bytes()
-    np.testing.assert_equal(content, before)
+    np.testing.assert_equal(unfolded(content), before)
 
 
 @EVERY
@@ -54,7 +61,26 @@ def test_it_says_where_it_belongs_and_what_it_shows(name):
     found = kind(name)
     assert found.section in SECTIONS
     assert found.caption.endswith(".")
-    assert (name in ONCE) != (name in PER_RUN)
+    assert (found in list_study_figures()) != (found in list_run_figures())
+    of_study = {*(field.name for field in fields(ReportData)), *vars(ReportData)}
+    assert set(found.needs) <= (of_study if found in list_study_figures() else vars(RunData).keys())
+
+
+@EVERY
+def test_what_is_read_of_it_is_what_it_declares(name):
+    found, module = kind(name), sys.modules[kind(name).draw.__module__]
+    assert (found.section, found.caption) == (module.SECTION, module.CAPTION)
+    assert found.place == getattr(module, "PLACE", 1)
+    parameters = inspect.signature(found.draw).parameters.values()
+    assert found.takes == tuple(one.name for one in parameters)
+    assert found.needs == tuple(one.name for one in parameters if one.default is one.empty)
+
+
+def test_a_list_of_them_takes_no_matplotlib():
+    look = (
+        "import sys, rovsim.reporting.figures as f; f.kinds(); print('matplotlib' in sys.modules)"
+    )
+    assert subprocess.check_output([sys.executable, "-c", look], text=True).split() == ["False"]
 
 
 @EVERY
@@ -65,7 +91,8 @@ def test_it_takes_any_models(name, models):
 
 EMPTY = {
     "comparison": Comparison(models={}), "growth": Growth(models={}), "ladder": Ladder(steps=()),
-    "timing": Timing(inference={}), "quality": {}, "where": ErrorConditions(models={}), "parts": {},
+    "timing": Timing(inference={}), "quality": {}, "where": ErrorConditions(models={}),
+    "disturbance": None,
     "published_errors": PublishedErrors(runs=(), without_published=(), models={}, cells=()),
     "diagnosis": study()["diagnosis"].model_copy(update={"selected": (), "ranking": ()}),
 }  # fmt: skip
@@ -75,8 +102,10 @@ EMPTY = {
 def test_nothing_measured_is_said_not_crashed(name):
     content = study()
     content |= EMPTY
-    for key in ("nu", "nu_dot", "eta", "missing"):
+    for key in ("nu", "nu_dot", "eta"):
         content[key] = np.full_like(content[key], np.nan)
+    budget = content["budget"]
+    content["budget"] = replace(budget, parts={}, missing=np.full_like(budget.missing, np.nan))
     show(drawn(name, content))
 
 

@@ -15,6 +15,7 @@ from rovsim.application.settings import compose
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
+from rovsim.reporting.figures import kind
 
 ROOT = Path(__file__).parents[2]
 KTH = ROOT / "campaigns" / "kth_tank_2025"
@@ -62,13 +63,13 @@ def test_every_run_is_held_out_once_and_learners_have_runs_to_learn_from(folder)
         *physics, "knn_3dof", "knn_6dof", "effects+knn_3dof", "effects+knn_6dof"
     ]  # fmt: skip
     assert found.published == folder / "published.csv"
-    assert "against_published" in found.once
+    assert kind("against_published") in found.figures
 
 
 def test_a_study_without_folds_has_none(folder):
     found = LeaveOneRunOut(Study({"campaign": str(folder)}))
     assert (found.runs, found.published, found.targets) == ([], None, [])
-    assert "against_published" not in found.once
+    assert kind("against_published") not in found.figures
 
 
 def test_what_folds_lack_is_said(folder):

@@ -408,7 +408,7 @@ def test_of_many_runs_it_says_which_are_drawn(content):
 def test_what_is_known_says_which_figures_there_are(content):
     assert ReportData().figures == []
     early = ReportData(where=content["where"], quality=content["quality"])
-    assert early.figures == ["excitation", "where", "where_map"]
+    assert early.figures == ["where", "where_map", "excitation"]
     pushed = content["diagnosis"]
     assert ReportData(diagnosis=pushed).figures == ["ranking", "disturbance"]
     calm = pushed.unexplained.model_copy(update={"disturbance": None})

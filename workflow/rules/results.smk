@@ -1,7 +1,8 @@
-from rovsim.reporting.report_data import ONCE, PER_RUN
+from rovsim.reporting.report_data import list_run_figures
 
 # Only where somebody published errors of the same runs.
 PUBLISHED_ERRORS = [f"{R}/published_errors.json"] if folds.published else []
+FIGURES = [figure.name for figure in folds.figures]
 
 
 rule compare:
@@ -30,11 +31,11 @@ rule compare:
 
 
 # One rule a figure, so that each has its own caption and re-runs on its own edits.
-for figure in folds.once:
+for figure in folds.figures:
 
     rule:
         name:
-            f"figure_{figure}"
+            f"figure_{figure.name}"
         input:
             comparison=f"{R}/comparison.json",
             ladder=f"{R}/ladder.json",
@@ -43,53 +44,55 @@ for figure in folds.once:
             where=f"{R}/where.json",
             diagnosis=f"{R}/diagnosis.json",
             published_errors=(
-                PUBLISHED_ERRORS if ONCE[figure] == "published_errors" else []
+                PUBLISHED_ERRORS if "published_errors" in figure.needs else []
             ),
             quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
         output:
             png=report(
-                f"{R}/figures/{figure}.png",
-                caption=f"../report/{figure}.rst",
+                f"{R}/figures/{figure.name}.png",
+                caption="../report/figure.rst",
                 category="Study",
-                labels={"figure": figure},
+                labels={"figure": figure.name},
             ),
-            pdf=f"{R}/figures/{figure}.pdf",
+            pdf=f"{R}/figures/{figure.name}.pdf",
         log:
-            f"{R}/logs/figures/{figure}.log",
+            f"{R}/logs/figures/{figure.name}.log",
         benchmark:
-            f"{R}/benchmarks/figures/{figure}.tsv"
+            f"{R}/benchmarks/figures/{figure.name}.tsv"
         params:
-            figure=figure,
+            figure=figure.name,
+            caption=figure.caption,
             runs=study.runs(),
-            code=code_of("figure_of_study", f"rovsim.reporting.figures.{figure}"),
+            code=code_of("figure_of_study", f"rovsim.reporting.figures.{figure.name}"),
         script:
             "../scripts/figure_of_study.py"
 
 
-for figure in PER_RUN:
+for figure in list_run_figures():
 
     rule:
         name:
-            f"figure_{figure}"
+            f"figure_{figure.name}"
         input:
             motion=f"{R}/motions/{{run}}.npz",
             replays=expand(f"{R}/replay/{{model}}/{{{{run}}}}.npz", model=study.drawn),
-            budget=[f"{R}/budget/{{run}}.npz"] if figure == "budget" else [],
+            budget=[f"{R}/budget/{{run}}.npz"] if "budget" in figure.needs else [],
         output:
             png=report(
-                f"{R}/figures/{figure}-{{run}}.png",
-                caption=f"../report/{figure}.rst",
+                f"{R}/figures/{figure.name}-{{run}}.png",
+                caption="../report/figure.rst",
                 category="Runs",
-                labels={"figure": figure, "run": "{run}"},
+                labels={"figure": figure.name, "run": "{run}"},
             ),
-            pdf=f"{R}/figures/{figure}-{{run}}.pdf",
+            pdf=f"{R}/figures/{figure.name}-{{run}}.pdf",
         log:
-            f"{R}/logs/figures/{figure}-{{run}}.log",
+            f"{R}/logs/figures/{figure.name}-{{run}}.log",
         benchmark:
-            f"{R}/benchmarks/figures/{figure}-{{run}}.tsv"
+            f"{R}/benchmarks/figures/{figure.name}-{{run}}.tsv"
         params:
-            figure=figure,
-            code=code_of("figure_of_run", f"rovsim.reporting.figures.{figure}"),
+            figure=figure.name,
+            caption=figure.caption,
+            code=code_of("figure_of_run", f"rovsim.reporting.figures.{figure.name}"),
         script:
             "../scripts/figure_of_run.py"
 
@@ -126,9 +129,7 @@ rule report:
         published_errors=PUBLISHED_ERRORS,
         pitfalls=[f"{R}/pitfalls.json"] if folds.pitfalls else [],
         quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
-        figures=expand(
-            f"{R}/figures/{{name}}.png", name=[*folds.once, *study.figures()]
-        ),
+        figures=expand(f"{R}/figures/{{name}}.png", name=[*FIGURES, *study.figures()]),
     output:
         report(f"{R}/report.html", caption="../report/report.rst", category="Study"),
     log:
@@ -150,7 +151,7 @@ rule track:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
         diagnosis=f"{R}/diagnosis.json",
-        figures=expand(f"{R}/figures/{{name}}.png", name=folds.once),
+        figures=expand(f"{R}/figures/{{name}}.png", name=FIGURES),
         report=f"{R}/report.html",
         models=expand(f"{R}/models/{{model}}/model.yaml", model=study.files),
     output:

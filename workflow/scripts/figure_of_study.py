@@ -1,13 +1,14 @@
 """Draw one figure of the study."""
 
-from rovsim.application.pipeline.drawing import STUDY, draw_study
+from rovsim.application.pipeline.drawing import draw_study
 from rovsim.application.snakemake_job import job
+from rovsim.reporting.html.report import CONTENTS
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         draw_study(
             figure=rule.params.figure,
-            contents=rule.contents(*STUDY),
+            contents=rule.contents("growth", *CONTENTS),
             quality=dict(zip(rule.params.runs, rule.paths("quality"), strict=True)),
             out=rule.output("png"),
         )

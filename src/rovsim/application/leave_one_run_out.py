@@ -9,7 +9,8 @@ from rovsim.core.errors import BadInput
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign
-from rovsim.reporting.report_data import ONCE
+from rovsim.reporting.figures import Kind
+from rovsim.reporting.report_data import list_study_figures
 from rovsim.results.ladder import EFFECTS
 
 
@@ -76,10 +77,10 @@ class LeaveOneRunOut:
         return self.study.settings.folds.pitfalls
 
     @property
-    def once(self) -> list[str]:
-        """Figures that the study draws once; that of published errors only where there are any."""
-        lacking = "" if self.published else "published_errors"
-        return [name for name, content in ONCE.items() if content != lacking]
+    def figures(self) -> list[Kind]:
+        """Figures that the study draws once; of published errors only where there are any."""
+        found = list_study_figures()
+        return [one for one in found if self.published or "published_errors" not in one.needs]
 
     @property
     def targets(self) -> list[str]:

@@ -18,7 +18,7 @@ from rovsim.dynamics.vehicle import vehicle_file
 from rovsim.learning.learner import LearnerSettings, learner, learner_settings
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
-from rovsim.reporting.report_data import PER_RUN
+from rovsim.reporting.report_data import list_run_figures
 from rovsim.results.ladder import EFFECTS
 from rovsim.simulation.synthetic_tank.description import SEALED, VEHICLE, describe, own_vehicle
 
@@ -244,4 +244,5 @@ class Study:
 
     def figures(self) -> list[str]:
         """Figures of single runs, as `figure-run`."""
-        return [f"{figure}-{run}" for run in self.runs("test") for figure in PER_RUN]
+        figures = list_run_figures()
+        return [f"{figure.name}-{run}" for run in self.runs("test") for figure in figures]

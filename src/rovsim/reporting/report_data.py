@@ -1,8 +1,8 @@
-"""What figures and reports draw from: measured and predicted, by run and model, and all results."""
+"""What figures and reports show: measured and predicted, by run and model, and all results."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Mapping, Sequence, TypeVar
+from typing import TYPE_CHECKING, Mapping, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,12 +10,13 @@ from numpy import ndarray as Array
 from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.figures import Kind, kind, kinds
 from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
 from rovsim.results.budget import BudgetTotals
 from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
-from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Ladder, Step
@@ -24,6 +25,9 @@ from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.quality import Quality
 from rovsim.results.timing import Timing
 from rovsim.simulation.prediction import Band, Replay
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 R = TypeVar("R", bound=Result)
 
@@ -78,76 +82,138 @@ class ReportData:
         )
 
     @property
+    def disturbance(self) -> Disturbance | None:
+        """The force in time that follows no law."""
+        return self.diagnosis.unexplained.disturbance if self.diagnosis else None
+
+    @property
     def figures(self) -> list[str]:
         """Figures of what is known, of those that are drawn once."""
-        known = [name for name, result in ONCE.items() if getattr(self, result)]
-        pushed = self.diagnosis is not None and self.diagnosis.unexplained.disturbance is not None
-        return [name for name in known if name != "disturbance" or pushed]
+        return [
+            figure.name
+            for figure in list_study_figures()
+            if all(getattr(self, name) for name in figure.needs)
+        ]
 
-    def predicted(
-        self, run: str, horizon: str, name: str, models: Sequence[str]
-    ) -> dict[str, Array]:
-        """One predicted quantity by model."""
-        return {
-            model: getattr(self.replays[model][run].horizons[horizon], name)
-            for model in models
-            if run in self.replays.get(model, {})
-        }
+    def draw(self, figure: str, run: str = "") -> "Figure":
+        """A figure of what is known, or of one run of it.
 
-    def banded(self, run: str, models: Sequence[str]) -> dict[str, Array]:
+        Raises:
+            BadInput: there is no such figure.
+        """
+        asked = kind(figure)
+        content = RunData(self, run) if run else self
+        given = {name: getattr(content, name) for name in asked.takes if hasattr(content, name)}
+        return asked.draw(**given)
+
+
+@dataclass(frozen=True, eq=False)
+class RunData:
+    """What is known of one run: measured, and by model what it predicts."""
+
+    known: ReportData
+    run: str
+
+    @property
+    def time(self) -> Array:
+        """Of the samples (n,), s."""
+        return self._motion.time
+
+    @property
+    def usable(self) -> Array:
+        """Which samples (n,) may be used."""
+        return self._motion.usable
+
+    @property
+    def nu(self) -> Array:
+        """Measured velocity (n, 6); NaN on axes that nobody measured."""
+        return blank(self._motion.measured, self._motion.nu, np.nan)
+
+    @property
+    def nu_dot(self) -> Array:
+        """Measured acceleration (n, 6); NaN on axes that nobody measured."""
+        return blank(self._motion.measured, self._motion.nu_dot, np.nan)
+
+    @property
+    def eta(self) -> Array:
+        """Measured position (n, 3), NED; NaN where nobody measured it."""
+        motion, place = self._motion, self._motion.eta[:, :3]
+        if motion.measured is not None and not motion.measured.coordinates.all():
+            return np.full_like(place, np.nan)
+        return place
+
+    @property
+    def tank(self) -> Array | None:
+        """Walls (3, 2) of the tank, NED, if they are known."""
+        walls = self._motion.site.tank
+        return walls if np.isfinite(walls).all() else None
+
+    @property
+    def predicted_nu(self) -> dict[str, Array]:
+        """Velocity (n, 6) by model, in 2 s windows."""
+        return self._predicted(HORIZON, "nu")
+
+    @property
+    def predicted_nu_dot(self) -> dict[str, Array]:
+        """Acceleration (n, 6) by model, in 2 s windows."""
+        return self._predicted(HORIZON, "nu_dot")
+
+    @property
+    def predicted_eta(self) -> dict[str, Array]:
+        """Pose (n, 6) by model, in open loop."""
+        return self._predicted(OPEN_LOOP, "eta")
+
+    @property
+    def bands(self) -> dict[str, Array]:
         """Bands (2, n, 6) of the velocity by model, of those that have one."""
-        each = {model: self.bands[model][run] for model in models if model in self.bands}
+        each = {model: by_run.get(self.run) for model, by_run in self.known.bands.items()}
         return {model: band.nu for model, band in each.items() if band is not None}
 
+    @property
+    def budget(self) -> Budget | None:
+        """Forces of one model."""
+        return self.known.budgets.get(self.run)
 
-# Figures drawn once, from the results of those names; and those drawn for every run.
-ONCE = {
-    "ranking": "diagnosis",
-    "disturbance": "diagnosis",
-    "error_by_axis": "comparison",
-    "error_growth": "growth",
-    "ladder": "ladder",
-    "inference_time": "timing",
-    "excitation": "quality",
-    "where": "where",
-    "where_map": "where",
-    "against_published": "published_errors",
+    @property
+    def _motion(self) -> Motion:
+        return self.known.motions[self.run]
+
+    def _predicted(self, horizon: str, name: str) -> dict[str, Array]:
+        return {
+            model: getattr(by_run[self.run].horizons[horizon], name)
+            for model, by_run in self.known.replays.items()
+            if self.run in by_run
+        }
+
+
+# How models were replayed for what a figure shows of them.
+REPLAYED = {
+    "predicted_nu": f"{HORIZON} s windows",
+    "predicted_nu_dot": f"{HORIZON} s windows",
+    "predicted_eta": "open loop",
 }
-PER_RUN = ("budget", "velocities", "residual_series", "path_3d")
 
 
-def select_arguments(
-    figure: str, data: ReportData, run: str = "", models: Sequence[str] = ()
-) -> dict[str, object]:
-    """Keyword arguments of a figure's `draw`."""
-    if figure in ONCE:
-        return {ONCE[figure]: getattr(data, ONCE[figure])}
-    if figure == "budget":
-        budget = data.budgets[run]
-        return {"time": budget.time, "parts": budget.parts, "missing": budget.missing}
-    motion = data.motions[run]
-    common = {"time": motion.time, "usable": motion.usable}
-    if figure == "velocities":
-        nu = data.predicted(run, HORIZON, "nu", models)
-        measured = blank(motion.measured, motion.nu, np.nan)
-        return {**common, "nu": measured, "predicted_nu": nu, "bands": data.banded(run, models)}
-    if figure == "residual_series":
-        nu_dot = data.predicted(run, HORIZON, "nu_dot", models)
-        measured = blank(motion.measured, motion.nu_dot, np.nan)
-        return {**common, "nu_dot": measured, "predicted_nu_dot": nu_dot}
-    eta = data.predicted(run, OPEN_LOOP, "eta", models)
-    tank = motion.site.tank if np.isfinite(motion.site.tank).all() else None
-    place = motion.eta[:, :3]
-    if motion.measured is not None and not motion.measured.coordinates.all():
-        place = np.full_like(place, np.nan)
-    return {**common, "eta": place, "predicted_eta": eta, "tank": tank}
+def list_study_figures() -> list[Kind]:
+    """Figures that are drawn once."""
+    return [figure for figure in kinds().values() if not _is_of_run(figure)]
+
+
+def list_run_figures() -> list[Kind]:
+    """Figures that are drawn for each run."""
+    return [figure for figure in kinds().values() if _is_of_run(figure)]
+
+
+def _is_of_run(figure: Kind) -> bool:
+    return set(figure.needs) <= vars(RunData).keys()
 
 
 def describe(figure: str, run: str, data: ReportData | None = None) -> str:
     """What a figure of one run shows, in a few words."""
     if not run:
         return ""
-    if figure == "budget":
-        model = data.budgets[run].model if data and run in data.budgets else ""
-        return f"run {run}, model {title(model)}" if model else f"run {run}"
-    return f"run {run}, {'open loop' if figure == 'path_3d' else f'{HORIZON} s windows'}"
+    asked = kind(figure).needs
+    words = [f"run {run}", *dict.fromkeys(REPLAYED[name] for name in asked if name in REPLAYED)]
+    if "budget" in asked and data and (budget := data.budgets.get(run)):
+        words.append(f"model {title(budget.model)}")
+    return ", ".join(words)

@@ -4,8 +4,9 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.reporting.figures import kinds
 from rovsim.reporting.html import report
-from rovsim.reporting.report_data import ONCE, ReportData, describe
+from rovsim.reporting.report_data import ReportData, describe
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.results.comparison import Comparison
 from rovsim.results.ladder import Ladder
@@ -37,5 +38,5 @@ def write_report(
 
 def _read_picture(path: Path) -> report.Picture:
     """A figure's file is called by the figure, or by figure-run."""
-    name, _, run = (path.stem, "", "") if path.stem in ONCE else path.stem.partition("-")
+    name, _, run = (path.stem, "", "") if path.stem in kinds() else path.stem.partition("-")
     return report.Picture.read(path, name, describe(name, run), run)

@@ -16,7 +16,7 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
-from rovsim.reporting.report_data import PER_RUN, ReportData, select_arguments
+from rovsim.reporting.report_data import ReportData, list_run_figures
 from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import title
 from rovsim.reporting.words.verdict import explain
@@ -37,7 +37,8 @@ class Figures:
     @property
     def figures(self) -> list[str]:
         """Names of the figures there are; those of one run take `run` as well."""
-        return self.data.figures + (list(PER_RUN) if self.data.replays else [])
+        of_runs = list_run_figures() if self.data.replays else []
+        return [*self.data.figures, *(figure.name for figure in of_runs)]
 
     def figure(self, name: str, run: str = "") -> Figure:
         """A figure, in the thesis style: 150 mm wide, 9 pt.
@@ -49,11 +50,9 @@ class Figures:
         Raises:
             BadInput: there is no such figure.
         """
-        drawn = kind(name)
-        if name in PER_RUN:
+        if kind(name) in list_run_figures():
             run = run or next(iter(self.data.motions))
-        arguments = select_arguments(name, self.data, run, list(self.data.replays))
-        return html.displayed(drawn.draw(**arguments))
+        return html.displayed(self.data.draw(name, run))
 
     def save(self, name: str, folder: str | Path, run: str = "") -> list[Path]:
         """Write a figure as PDF and PNG; the same figure, the same bytes.

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
+from rovsim.evaluation.budget import Budget
 from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.panels import plot_all, six_panels
@@ -35,8 +36,9 @@ ADDED = (Look("#CC79A7", "-"), Look("#56B4E9", "-"), Look("#CC79A7", (0, (4, 1.5
 
 
 @styled()
-def draw(*, time: Array, parts: Mapping[str, Array], missing: Array) -> Figure:
-    """Draw parts {name: (n, 6)} in N, N m and the missing force (n, 6) over `time` (n,) s."""
+def draw(*, budget: Budget) -> Figure:
+    """Draw a model's parts and the missing force over time."""
+    time, parts, missing = budget.time, budget.parts, budget.missing
     known = np.isfinite(missing).any(axis=1)
     names = _largest(parts, known)
     curves = {"missing": _smoothed(time, missing), **{n: parts[n] for n in names}}

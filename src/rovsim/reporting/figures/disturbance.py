@@ -14,9 +14,10 @@ from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import short
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Diagnosis, Disturbance, ForceOfRun, Push
+from rovsim.results.diagnosis import Disturbance, ForceOfRun, Push
 
 SECTION = "verdict"
+PLACE = 2
 CAPTION = (
     "What pushes and follows no law: the smooth force that is left, as colour on the path seen "
     "from above, and in time; a circle marks the strongest moments."
@@ -26,9 +27,9 @@ BETWEEN = 0.2  # s: lines of a force are as far apart
 
 
 @styled()
-def draw(*, diagnosis: Diagnosis) -> Figure:
-    """Draw `unexplained.disturbance`, a row a run: its path, and the axis where most of it acts."""
-    force = diagnosis.unexplained.disturbance
+def draw(*, disturbance: Disturbance | None) -> Figure:
+    """Draw a force, a row a run: its path, and the axis where most of it acts."""
+    force = disturbance
     if force is None or not force.runs:
         figure = sheet(50)
         nothing(figure.subplots(), "no disturbance was found")

@@ -16,6 +16,7 @@ from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import listed, title
 
 SECTION = "compare"
+PLACE = 4
 CAPTION = (
     "Measured and simulated path of the vehicle in the tank, to scale and with up pointing up; "
     "a circle marks the start, a square the end. In open loop nothing corrects a model: small "

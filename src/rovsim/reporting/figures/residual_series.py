@@ -14,9 +14,10 @@ from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.results.error_conditions import BLOCK
 
 SECTION = "compare"
+PLACE = 3
 CAPTION = (
-    f"Acceleration residual, measured minus simulated, over time, one panel per axis; means over "
-    f"{BLOCK:g} s, which noise does not hide. A perfect model would leave only a little noise "
+    "Acceleration residual, measured minus simulated, over time, one panel per axis; means over "
+    "short times, which noise does not hide. A perfect model would leave only a little noise "
     "around zero."
 )
 LETTERS = ("Δu̇", "Δv̇", "Δẇ", "Δṗ", "Δq̇", "Δṙ")
@@ -40,6 +41,7 @@ def draw(
     style = looks(curves)
     figure, axes = six_panels(LETTERS, ACCELERATION_UNITS)
     remarks = plot_all(axes, time[part], curves, style) if curves else ["No model was given."]
+    remarks.append(f"Means over {BLOCK:g} s.")
     for axis in axes:
         axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     if part.stop - part.start < len(time):

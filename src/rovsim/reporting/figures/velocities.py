@@ -16,6 +16,7 @@ from rovsim.reporting.wording import title
 from rovsim.simulation.prediction import LEVEL
 
 SECTION = "compare"
+PLACE = 2
 NO_BANDS: Mapping[str, Array] = MappingProxyType({})
 CAPTION = (
     "Measured and simulated body velocity over time, one panel per axis. A shaded band holds 90 % "

@@ -6,10 +6,9 @@ from typing import Iterable, Mapping, Sequence
 
 from rovsim.core.progress import counted
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import report
-from rovsim.reporting.report_data import PER_RUN, ReportData, describe, select_arguments
+from rovsim.reporting.report_data import ReportData, describe, list_run_figures
 
 Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once
 
@@ -42,15 +41,14 @@ def draw(out: Path, data: ReportData, drawn: Iterable[Drawn] = ()) -> list[Drawn
     """All figures of what is known; those that are not yet `drawn` go into `out`/figures."""
     known = {one.wanted: one for one in drawn}
     wanted = [(figure, "") for figure in data.figures]
-    wanted += [(figure, run) for run in data.drawn for figure in PER_RUN]
+    wanted += [(figure.name, run) for run in data.drawn for figure in list_run_figures()]
     left = [one for one in wanted if one not in known]
     known |= {one: _draw(out, *one, data) for one in counted(left, "drawing")}
     return [known[one] for one in wanted]
 
 
 def _draw(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
-    drawn = kind(figure).draw(**select_arguments(figure, data, run, list(data.replays)))
-    paths = save(drawn, out / "figures", f"{figure}-{run}" if run else figure)
+    paths = save(data.draw(figure, run), out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
     picture = report.Picture.read(png, figure, describe(figure, run, data), run)
     return Drawn((figure, run), picture, paths)
