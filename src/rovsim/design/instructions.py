@@ -8,15 +8,9 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.design.search import Tried
 from rovsim.design.settings import FlightLimits
-from rovsim.design.sticks import IDLE, NUMBERS, SWELL, Swing
+from rovsim.design.sticks import IDLE, NUMBERS, SWELL, USUAL, Swing
 from rovsim.results.experiment import Start
 
-USUAL = {
-    "zigzag": "Ahead, and the helm over to the other side every 5 s",
-    "steps": "One axis after the other: ahead, rest, back, rest, each as long",
-    "multisine": "All axes at once, swings of 20 s to 2 s on top of one another",
-    "prbs": "All axes at once, each full over to a side that changes at random, every second",
-}
 SHARP = 0.5  # of `Swing.square`: beyond, the stick is rather held at its ends
 
 
@@ -69,6 +63,6 @@ def _swing(axis: str, swing: Swing) -> str:
 def _usual(flight: Tried) -> Sequence[str]:
     plane, other = flight.amplitude or (0.0, 0.0)
     return [
-        f"{USUAL[flight.name]}; {100 * plane:.0f} % of a full stick in surge, sway and yaw, "
+        f"{USUAL[flight.name].words}; {100 * plane:.0f} % of a full stick in surge, sway and yaw, "
         f"{100 * other:.0f} % in heave, roll and pitch."
     ]

@@ -99,8 +99,8 @@ def try_usual(where: Range, seed: int) -> dict[str, list[Tried]]:
     """The usual manoeuvres, each at all amplitudes, those that tell most first."""
     found, t = {}, ticks(where.around.seconds)
     levels = list(product(IN_PLANE, OUT_OF_PLANE))
-    for name, move in USUAL.items():
-        full = move(t, where.axes, np.random.default_rng(seed))
+    for name, usual in USUAL.items():
+        full = usual.move(t, where.axes, np.random.default_rng(seed))
         scales = [np.where(np.isin(np.arange(6), VERTICAL), b, a) for a, b in levels]
         tried = where.try_all([full * s for s in scales], [where.envelope.longest] * len(levels))
         named = [

@@ -64,7 +64,11 @@ def move_sticks(x: Array, axes: Array, seconds: float) -> Array:
     return found
 
 
-Manoeuvre = Callable[[Array, Array, np.random.Generator], Array]  # times, axes -> sticks
+class Usual(NamedTuple):
+    """A manoeuvre: times (n,) s, axes (j,) -> sticks (n, 6), and what a pilot is told."""
+
+    move: Callable[[Array, Array, np.random.Generator], Array]
+    words: str
 
 
 def _zigzag(t: Array, axes: Array, random: np.random.Generator) -> Array:
@@ -111,9 +115,14 @@ def _prbs(t: Array, axes: Array, random: np.random.Generator) -> Array:
     return found
 
 
-USUAL: Mapping[str, Manoeuvre] = {
-    "zigzag": _zigzag,
-    "steps": _steps,
-    "multisine": _multisine,
-    "prbs": _prbs,
+USUAL: Mapping[str, Usual] = {
+    "zigzag": Usual(_zigzag, "Ahead, and the helm over to the other side every 5 s"),
+    "steps": Usual(_steps, "One axis after the other: ahead, rest, back, rest, each as long"),
+    "multisine": Usual(
+        _multisine, "All axes at once, swings of 20 s to 2 s on top of one another"
+    ),
+    "prbs": Usual(
+        _prbs,
+        "All axes at once, each full over to a side that changes at random, every second",
+    ),
 }
