@@ -11,16 +11,24 @@ import pytest
 
 from recordings import write_campaign, write_lines
 from rovsim.application.leave_one_run_out import LeaveOneRunOut
+from rovsim.application.pipeline.held_out import measure_pitfalls_by_run
+from rovsim.application.sections import SimulationSettings
 from rovsim.application.settings import compose
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
+from rovsim.core.remade import ReadAgain
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.recording import read_run
+from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.reporting.figures import kind
+from rovsim.simulation.settings import ReplaySettings
 
 ROOT = Path(__file__).parents[2]
 KTH = ROOT / "campaigns" / "kth_tank_2025"
 NAMES = "u_m_s,v_m_s,w_m_s,p_rad_s,q_rad_s,r_rad_s"
 SURGE = "time_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad," + NAMES + ",surge"
+QUICK = SignalSettings()
 CONTROLS = {"one": "3dof", "two": "6dof", "three": "6dof"}
 
 
@@ -64,6 +72,22 @@ def test_every_run_is_held_out_once_and_learners_have_runs_to_learn_from(folder)
     ]  # fmt: skip
     assert found.published == folder / "published.csv"
     assert kind("against_published") in found.figures
+
+
+def test_a_run_held_out_is_not_learned_from(folder, monkeypatch):
+    """Also where runs are read from their files each time they are asked for."""
+    campaign = load_campaign(folder)
+    motions = ReadAgain([*campaign.runs], lambda run: clean(read_run(campaign, run.id)[0], QUICK))
+    asked = {}
+
+    def noted(model, train, test, *rest):
+        asked[test.run.id] = [motion.run.id for motion in train]
+        return {}
+
+    monkeypatch.setattr("rovsim.application.pipeline.held_out.measure_pitfalls", noted)
+    settings = SimulationSettings(signals=QUICK, replay=ReplaySettings())
+    measure_pitfalls_by_run(motions, [None] * 3, {}, settings)
+    assert asked == {run: [one for one in CONTROLS if one != run] for run in CONTROLS}
 
 
 def test_a_study_without_folds_has_none(folder):
