@@ -1,10 +1,13 @@
 """The tank hides a truth in raw exports; reading and replaying them must give it back."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import log, multiply
+from rovsim.core.schema import checked
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import nominal
@@ -202,6 +205,38 @@ def test_nothing_of_the_users_is_overwritten(tmp_path):
     with pytest.raises(BadInput, match="no tank wrote"):
         make_campaign(TankSettings(duration=2.0), tmp_path / "raw", built_in())
     assert (tmp_path / "raw" / "thesis.tex").exists()
+
+
+def test_a_tank_made_again_replaces_its_recordings_and_nothing_else(tmp_path, monkeypatch):
+    old = RUN.model_copy(update={"id": "old"})
+    make_campaign(TankSettings(runs=(old,), duration=2.0), tmp_path / "raw", built_in())
+    (tmp_path / "raw" / "notes.md").write_text("years of work")
+    monkeypatch.chdir(tmp_path / "raw")
+    make_campaign(TankSettings(runs=(RUN,), duration=2.0), Path("."), built_in())
+    names = {"6dof-1_6D.tsv", "6dof-1_commands.csv", "campaign.yaml", "notes.md", SEALED}
+    assert {path.name for path in (tmp_path / "raw").iterdir()} == names
+    assert list(tmp_path.iterdir()) == [tmp_path / "raw"]
+    assert load_campaign(tmp_path / "raw").runs[0].id == "6dof-1"
+
+
+@pytest.mark.parametrize(("rate", "log", "step"), [(120.0, 50.0, 0.001), (100.0, 50.0, 0.02)])
+def test_frames_and_commands_come_at_their_rates(tmp_path, rate, log, step):
+    camera, still = Camera(rate=rate, bursts_per_minute=0.0), Log(rate=log, missing=0.0)
+    _, recording, *_ = recorded(tmp_path, camera=camera, log=still, step=step, duration=3.0)
+    assert np.diff(recording.time) == pytest.approx(1.0 / rate, abs=2e-5)
+    assert np.diff(recording.commands.time) == pytest.approx(1.0 / log, abs=2e-4)
+
+
+@pytest.mark.parametrize(("change", "said"), [
+    ({"camera": {"rate": 29.97}}, "small common multiple"),
+    ({"runs": [RUN.model_dump(), RUN.model_dump()]}, "different id"),
+    ({"runs": [RUN.model_dump() | {"id": "../x"}]}, "file name"),
+])  # fmt: skip
+def test_what_no_campaign_can_hold_is_refused_before_a_flight(tmp_path, change, said, monkeypatch):
+    monkeypatch.setattr("rovsim.simulation.synthetic_tank.campaign.fly_run", None)
+    with pytest.raises(BadInput, match=said):
+        make_campaign(checked(TankSettings, change, "tank"), tmp_path / "raw", built_in())
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_vehicle_that_is_swept_away_is_an_error_and_leaves_nothing(tmp_path):

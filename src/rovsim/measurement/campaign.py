@@ -5,6 +5,7 @@ import re
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Sequence
 
 import numpy as np
 
@@ -86,11 +87,11 @@ def load_campaign(path: Path) -> Campaign:
     Raises:
         BadInput: a key, a value or a recording is wrong or missing.
     """
-    file = _campaign_file(Path(path).expanduser()).absolute()
+    file = _campaign_file(Path(os.path.expanduser(path))).absolute()
     plain = read_yaml(file)
     check_answered(plain, file)
     content = checked(CampaignFile, plain, file)
-    _check_ids(content.runs, file)
+    check_ids(content.runs, file)
     _check_axes(content.mocap, file)
     _check_commands(content, file)
     fields = dict(content) | {"runs": tuple(content.runs), "folder": _folder(content.folder, file)}
@@ -111,7 +112,12 @@ def _campaign_file(path: Path) -> Path:
     return file
 
 
-def _check_ids(runs: list[Run], file: Path) -> None:
+def check_ids(runs: Sequence[Run], where: Path | str) -> None:
+    """Refuse runs that some file systems could not tell apart.
+
+    Raises:
+        BadInput: names both.
+    """
     seen: dict[str, str] = {}
     for place, run in enumerate(runs):
         # some file systems see neither case nor Unicode form
@@ -119,7 +125,7 @@ def _check_ids(runs: list[Run], file: Path) -> None:
         if key in seen:
             raise BadInput(
                 f"'runs.{place}.id' is {run.id!r}, and an earlier run is {seen[key]!r}",
-                where=file,
+                where=where,
                 expected="a different id for each run (case does not count)",
                 remedy="Rename one of them.",
             )
@@ -148,6 +154,20 @@ def _check_commands(content: CampaignFile, file: Path) -> None:
             expected="'commands' with format, kind and columns",
             remedy="Add it, or write 'commands: none' in each run in which nothing was commanded.",
         )
+    if log is not None and log.axes and not log.per_axis:
+        raise BadInput(
+            f"'commands.axes' with 'commands.kind: {log.kind}', which is per thruster",
+            where=file,
+            expected="axes of what is commanded per axis: kind demand or wrench",
+            remedy="Leave 'axes' out, or correct 'kind'.",
+        )
+    if log is not None and log.auxiliary and log.format != "csv":
+        raise BadInput(
+            f"'commands.auxiliary' with 'commands.format: {log.format}'",
+            where=file,
+            expected="further columns of a csv; no other format has any",
+            remedy="Leave it out; the battery's voltage is read from a log by itself.",
+        )
     if log is not None and log.per_axis and len(log.axis_numbers) != len(log.columns):
         raise BadInput(
             f"'commands.columns' names {len(log.columns)} columns for kind {log.kind}",
@@ -173,7 +193,8 @@ def _folder(text: str, file: Path) -> Path:
         return found
 
     pattern = r"\$(?:\{(?P<name>\w+)(?::-(?P<default>[^}]*))?\}|(?P<bare>\w+))"
-    return Path(os.path.normpath(file.parent / Path(re.sub(pattern, value, text)).expanduser()))
+    named = os.path.expanduser(re.sub(pattern, value, text))
+    return Path(os.path.normpath(file.parent / named))
 
 
 def _check_files(campaign: Campaign) -> None:

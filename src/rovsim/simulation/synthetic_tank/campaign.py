@@ -1,4 +1,4 @@
-"""A whole synthetic campaign: a folder that appears complete or not at all."""
+"""A whole synthetic campaign: its recordings appear complete or not at all."""
 
 import os
 import shutil
@@ -8,18 +8,22 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from rovsim.core.errors import BadInput
+from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import write_text
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.core.yaml_files import write_yaml
+from rovsim.core.schema import checked
+from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import build_effects
 from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.measurement.campaign import check_ids
 from rovsim.simulation.synthetic_tank.description import (
     SEALED,
     VEHICLE,
+    SealedTruth,
+    commands_file,
     describe,
     motion_file,
     own_vehicle,
@@ -55,6 +59,8 @@ def make_campaign(
 ) -> None:
     """Fly all runs and write the campaign to the folder `out`.
 
+    What else is in the folder stays; of an earlier campaign of a tank the recordings go.
+
     Args:
         settings: what it is made of.
         out: a folder that is new, empty or an earlier tank campaign.
@@ -63,20 +69,55 @@ def make_campaign(
         unlisted: hidden physics that the catalogue does not know.
 
     Raises:
-        BadInput: `out` holds something that is not a tank campaign.
+        BadInput: `out` holds something that is not a tank campaign, or the name of the campaign or
+            of a run cannot be a file's.
         LeftTank: the hidden effects are stronger than the pilot.
     """
+    out = Path(os.path.abspath(out))  # '.' has neither name nor parent
     _refuse_other_files(out)
+    check_ids(describe(settings).runs, "tank")  # before the flights, which take long
     model = true_model(settings, catalogue, unlisted)
     out.parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}-"))
     try:
         _record_all(settings, model, unlisted, folder, progress)
         folder.chmod(0o755)
-        shutil.rmtree(out, ignore_errors=True)
-        os.replace(folder, out)
+        _move(folder, out)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+CAMPAIGN = "campaign.yaml"
+
+
+def _move(new: Path, out: Path) -> None:
+    """Put a campaign where it belongs.
+
+    Into a folder that is there, file by file: until all are, it holds no campaign, and is still one
+    that a tank may write into.
+    """
+    if not out.exists():
+        os.replace(new, out)
+        return
+    stale = _list_written(out) - {path.name for path in new.iterdir()}
+    for name in (CAMPAIGN, *sorted(stale)):
+        (out / name).unlink(missing_ok=True)
+    turn = {SEALED: 0, CAMPAIGN: 2}
+    for path in sorted(new.iterdir(), key=lambda path: (turn.get(path.name, 1), path.name)):
+        os.replace(path, out / path.name)
+
+
+def _list_written(out: Path) -> set[str]:
+    """Names of the files that a tank wrote into a folder, by what it sealed there."""
+    try:
+        settings = checked(SealedTruth, read_yaml(out / SEALED), out / SEALED).settings
+        describe(settings)  # no run leaves the folder
+    except (RovsimError, OSError):
+        return set()
+    each = (
+        name for run in settings.runs for name in (motion_file(settings, run), commands_file(run))
+    )
+    return {CAMPAIGN, SEALED, VEHICLE, *each}
 
 
 def _refuse_other_files(out: Path) -> None:
@@ -103,7 +144,7 @@ def _record_all(
         _record(model, settings, run, folder, np.random.default_rng(seed))
     progress(len(runs), len(runs))
     campaign, truth = describe(settings), seal(settings, model.added[:hidden], unlisted)
-    write_yaml(folder / "campaign.yaml", campaign.model_dump(mode="json", exclude_unset=True))
+    write_yaml(folder / CAMPAIGN, campaign.model_dump(mode="json", exclude_unset=True))
     if vehicle := own_vehicle(settings):
         shutil.copyfile(vehicle, folder / VEHICLE)
     beyond = None if truth.outside else {"outside"}
@@ -125,7 +166,7 @@ def _record(
     write_text(folder / motion_file(settings, run), seen)
     if not run.release:
         commands = export_commands(truth, settings.log, model.vehicle, random)
-        write_text(folder / f"{run.id}_commands.csv", commands)
+        write_text(folder / commands_file(run), commands)
 
 
 def _read_sent(settings: TankSettings, run: TankRun) -> SentLog:

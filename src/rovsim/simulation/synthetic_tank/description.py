@@ -74,7 +74,7 @@ def describe(settings: TankSettings) -> CampaignFile:
             {
                 "id": run.id, "control": run.control, "split": run.split,
                 "mocap": motion_file(settings, run),
-                "commands": "none" if run.release else f"{run.id}_commands.csv",
+                "commands": "none" if run.release else commands_file(run),
             }
             for run in settings.runs
         ],
@@ -85,6 +85,11 @@ def describe(settings: TankSettings) -> CampaignFile:
 def motion_file(settings: TankSettings, run: TankRun) -> str:
     """Name of the file that holds what was measured of a run."""
     return f"{run.id}.csv" if settings.sensors else f"{run.id}_6D.tsv"
+
+
+def commands_file(run: TankRun) -> str:
+    """Name of the file that holds what was sent in a run."""
+    return f"{run.id}_commands.csv"
 
 
 def _describe_walls(settings: TankSettings) -> dict[str, list[float]]:

@@ -1,5 +1,7 @@
 """What a synthetic campaign is made of."""
 
+import math
+from fractions import Fraction
 from typing import Annotated, Any, Literal, Mapping
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator, model_validator
@@ -121,7 +123,7 @@ class TankSettings(Section):
     log: Log = Log()
     turbulence: Turbulence = Turbulence()
     effects: tuple[EffectEntry, ...] = ()  # hidden
-    step: PositiveFloat = 0.001  # s; Heun's error is then far below the noise
+    step: PositiveFloat = 0.001  # s, at most; Heun's error is then far below the noise
 
     @field_validator("sensors")
     @classmethod
@@ -131,6 +133,36 @@ class TankSettings(Section):
             if kind not in PLACES and any(sensor.at):
                 raise ValueError(f"a sensor of {kind} has no place: leave `at` out")
         return sensors
+
+    @model_validator(mode="after")
+    def _has_a_step(self) -> "TankSettings":
+        if self.steps_per_second > MOST_STEPS:
+            rates = " and ".join(f"{rate:g}" for rate in self._rates)
+            raise ValueError(
+                f"rates and a step that fit each other: {rates} Hz and at most {self.step:g} s ask "
+                f"for more than {MOST_STEPS} steps a second; whole numbers with a small common "
+                "multiple ask for few"
+            )
+        return self
+
+    @property
+    def _rates(self) -> list[float]:
+        """Of the frames, if there are cameras, and of the lines of the log, Hz."""
+        return [*([] if self.sensors else [self.camera.rate]), self.log.rate]
+
+    @property
+    def steps_per_second(self) -> float:
+        """Of the integration: so many that each frame and each command falls on one."""
+        given = [Fraction(rate).limit_denominator(1000) for rate in self._rates]
+        rates = [max(rate, Fraction(1, 1000)) for rate in given]
+        shared = Fraction(
+            math.lcm(*(rate.numerator for rate in rates)),
+            math.gcd(*(rate.denominator for rate in rates)),
+        )
+        return float(math.ceil(1.0 / (self.step * float(shared)) - 1e-9) * shared)
+
+
+MOST_STEPS = 10_000  # a second: a run of a minute then takes 60 MB
 
 
 # Where effects show that need more than the default vehicle: room to go ahead; waves that heave,

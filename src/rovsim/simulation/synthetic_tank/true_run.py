@@ -53,7 +53,7 @@ def fly_run(
     Raises:
         LeftTank: the hidden effects are stronger than the pilot.
     """
-    h, tick = settings.step, 1.0 / settings.log.rate
+    h, tick = 1.0 / settings.steps_per_second, 1.0 / settings.log.rate
     duration = sent.seconds if sent else settings.duration
     ticks, per_tick = round(duration / tick), round(tick / h)
     vehicle = _TrueVehicle(model, tank, settings, tick, duration)
