@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from starlette.datastructures import QueryParams
 
 import synthetic_study
 from chores import counting, dying, failing
@@ -18,9 +19,10 @@ from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import app, charts, path, tasks
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
+from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.totals import list_totals, tell_total
 from rovsim.apps.workbench.traces import panels
-from rovsim.apps.workbench.work import Work, reap
+from rovsim.apps.workbench.work import LongWork, Work, reap
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
@@ -145,7 +147,7 @@ def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench
 
 @pytest.mark.parametrize(
     ("name", "found"),
-    [("nominal.yaml", "as another"), ("new.json", "yaml"), ("campaign.yaml", "no model file")],
+    [("nominal.yaml", "as another"), ("new.json", "yaml"), ("campaign.yaml", "there already")],
 )
 def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, monkeypatch, name, found):
     monkeypatch.chdir(tmp_path)
@@ -277,16 +279,59 @@ def test_saving_stays_where_the_workbench_is(bench, tmp_path, monkeypatch):
     assert not (tmp_path / "out.yaml").exists()
 
 
-def test_a_saved_draft_is_one_of_the_models_and_may_be_saved_again(bench, tmp_path, monkeypatch):
+def test_a_saved_draft_is_one_of_the_models_and_no_other_goes_over_it(bench, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     here = Workbench(bench.settings, built_in(), bench.data, dict(bench.models), dict(bench.paths))
     here.draft.tick("thruster_lag", True)
-    for value in (0.1, 0.2):
+    for name, value in (("lagging", 0.1), ("more", 0.2)):
         here.draft.move("thruster_lag", "time_constant", value)
-        saved = here.save(tmp_path / "lagging.yaml")
-        assert here.models["lagging"] is saved
+        saved = here.save(tmp_path / f"{name}.yaml")
+        assert here.models[name] is saved
         assert saved.added[0]["time_constant"] == value
+        with pytest.raises(BadInput, match="there already"):
+            here.save(tmp_path / "lagging.yaml")
+    assert here.models["lagging"].added[0]["time_constant"] == 0.1
     assert here.base.name == "nominal"
+
+
+def test_a_diagnosis_of_effects_that_are_not_known_here_can_be_looked_at():
+    found = diagnosis()
+    own = found.selected[0].model_copy(update={"effect": "own_effect"})
+    draft = Draft(
+        model(), found.model_copy(update={"selected": (own, *found.selected)}), built_in()
+    )
+    assert draft.unknown == ["own_effect"]
+    assert draft.ticked == [one.effect for one in found.selected]
+    assert "own_effect" not in draft.fitted
+    draft.model()
+
+
+def test_a_model_without_forces_is_no_base(bench):
+    inert = bench.settings.model_copy(update={"model": "zero_acceleration"})
+    with pytest.raises(BadInput, match="no forces"):
+        Workbench.opened(inert, built_in())
+
+
+def test_an_address_holds_what_is_chosen_also_where_that_is_none(monkeypatch):
+    told = []
+    monkeypatch.setattr("nicegui.ui.navigate.history.replace", told.append)
+    place = Place("compare", QueryParams("horizon=None"))
+    chosen = place.choose({"horizon": 2.0, "axis": None}, {"horizon": (2.0, None)})
+    assert chosen["horizon"] is None
+    place.tell(chosen)
+    assert told == ["/compare?horizon=None"]
+    assert Place("compare", QueryParams(told[0].partition("?")[2])).choose(
+        {"horizon": 2.0}, {"horizon": (2.0, None)}
+    ) == {"horizon": None}
+
+
+def test_long_work_is_not_ended_by_other_work():
+    works = LongWork()
+    works.begin("one", print, time.sleep, 60.0)
+    with pytest.raises(BadInput, match="'one' goes on"):
+        works.begin("two", print, time.sleep, 60.0)
+    assert works.now.state == "running"
+    works.now.cancel()
 
 
 def test_models_saved_before_are_known_and_no_two_share_a_name(bench, tmp_path, monkeypatch):

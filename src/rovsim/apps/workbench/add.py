@@ -57,6 +57,7 @@ class Add:
         }  # fmt: skip
         self.chosen = place.choose(first, possible)
         self.wanted = self.drawing = False
+        self.drawn = 0  # times
         self.traces: Traces | None = None
 
     async def show(self) -> None:
@@ -87,6 +88,11 @@ class Add:
         self.list.clear()
         offered = list(dict.fromkeys([*self.draft.fitted, *self.draft.ticked]))
         with self.list:
+            if unknown := self.draft.unknown:
+                text(
+                    f"The diagnosis also found {', '.join(unknown)}, which nobody knows here: open "
+                    "the workbench with the effects_file=… it was made with.", "warning",
+                )  # fmt: skip
             for name in offered[:5] + [n for n in offered[5:] if n in self.draft.ticked]:
                 self._effect(name)
             rest = [name for name in self.bench.catalogue if name not in offered[:5]]
@@ -216,10 +222,14 @@ class Add:
         if model is None:
             return
         self.area.clear()
+        self.drawn += 1
+        mine = self.drawn
         with self.area:
             waiting = ui.spinner()  # the first replay with a new force compiles it
         base, before = await computed(self._replayed, self.bench.base)
         new, now = await computed(self._replayed, model)
+        if mine != self.drawn:  # something else was chosen meanwhile
+            return
         waiting.delete()
         motion = self.bench.data.motions[self.run]
         self.base = base

@@ -36,7 +36,7 @@ class Draft:
     _found: dict[str, Model] = field(default_factory=dict)  # by what they lack
 
     def __post_init__(self) -> None:
-        self.ticked = [one.effect for one in self.chosen]
+        self.ticked = [one.effect for one in self.chosen if one.effect in self.catalogue]
 
     @property
     def chosen(self) -> tuple[FittedEffect, ...]:
@@ -45,13 +45,16 @@ class Draft:
 
     @property
     def fitted(self) -> dict[str, FittedEffect]:
-        """What the diagnosis has values for, those first that are chosen."""
-        first = {one.effect: one for one in self.chosen}
-        return first | {
-            name: one
-            for name, one in (self.diagnosis.fitted if self.diagnosis else {}).items()
-            if name not in first
-        }
+        """What is known here and has values in the diagnosis, those first that are chosen."""
+        found = {one.effect: one for one in self.chosen}
+        for name, one in (self.diagnosis.fitted if self.diagnosis else {}).items():
+            found.setdefault(name, one)
+        return {name: one for name, one in found.items() if name in self.catalogue}
+
+    @property
+    def unknown(self) -> list[str]:
+        """Effects that the diagnosis selected, and that the catalogue does not know."""
+        return [one.effect for one in self.chosen if one.effect not in self.catalogue]
 
     def _remember(self, change: object) -> None:
         """Keep what is there; a value that goes on moving is one change."""

@@ -48,7 +48,7 @@ def look(folder: Path, part: str = "") -> Listing:
 
     Of the folders inside it those whose name holds `part`, in whatever case.
     """
-    folder = Path(os.path.abspath(folder.expanduser()))
+    folder = Path(os.path.abspath(os.path.expanduser(folder)))
     while not os.path.isdir(folder) and folder != folder.parent:
         folder = folder.parent
     parents = tuple(reversed(folder.parents))

@@ -69,6 +69,7 @@ class Models:
         self.span: Span = (place.number("from"), place.number("to"))
         self.models: dict[str, Model] = {}  # those shown, by name
         self.traces: Traces | None = None
+        self.drawn = 0  # times
 
     async def show(self) -> None:
         """Build the screen."""
@@ -131,15 +132,19 @@ class Models:
         """Everything below the controls."""
         self._tell()
         self.area.clear()
-        self.traces = None
+        self.traces, self.drawn = None, self.drawn + 1
+        mine = self.drawn
         try:
             names = dict.fromkeys(self.chosen[side] for side in SIDES)
             self.models = {n: await computed(self.bench.known_model, n) for n in names}
             shown = await self._panels()
             errors = await computed(self._errors)
         except RovsimError as error:  # of a file, or of a run that lacks what an effect needs
-            with self.area:
-                text(str(error), "warning")
+            if mine == self.drawn:
+                with self.area:
+                    text(str(error), "warning")
+            return
+        if mine != self.drawn:  # something else was chosen meanwhile
             return
         with self.area:
             if len(self.models) == 1:

@@ -18,6 +18,7 @@ class Place:
     screen: str
     query: QueryParams = field(default_factory=QueryParams)
     kept: dict[str, dict[str, Any]] = field(default_factory=dict)
+    _possible: dict[str, Sequence[Any]] = field(default_factory=dict)
 
     def choose(
         self, first: Mapping[str, Any], possible: Mapping[str, Sequence[Any]]
@@ -28,6 +29,7 @@ class Place:
         be had is passed over: an address may be of another day.
         """
         found = {**first, **self.kept.get(self.screen, {})}
+        self._possible |= possible
         for name, values in possible.items():
             several = isinstance(first[name], list)
             known = {str(value): value for value in values}
@@ -46,6 +48,10 @@ class Place:
             return None
 
     def tell(self, chosen: Mapping[str, Any]) -> None:
-        """Write what is shown into the address; what is None is left out."""
-        pairs = {name: value for name, value in chosen.items() if value is not None}
+        """Write what is shown into the address; None is left out where it says that nothing is."""
+        pairs = {
+            name: value
+            for name, value in chosen.items()
+            if value is not None or None in self._possible.get(name, ())
+        }
         ui.navigate.history.replace(f"/{self.screen}?{urlencode(pairs, doseq=True)}")

@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import os
 import tempfile
 import time
 from pathlib import Path
@@ -44,7 +45,7 @@ class Session:
 
     def choose(self, folder: str) -> None:
         """Open another campaign, or look into a folder that holds none."""
-        place = Path(folder).expanduser()
+        place = Path(os.path.expanduser(folder))
         self.proposal = None
         if folder and place.is_dir() and not (place / "campaign.yaml").exists():
             self._look_into(place)

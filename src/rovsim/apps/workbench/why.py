@@ -57,9 +57,8 @@ async def show(bench: Workbench, place: Place) -> None:
     for remark in said.remarks:
         text(remark)
     _ranking(found)
-    ui.button("Diagnose again", on_click=lambda: jobs.diagnose(bench)).props(
-        "flat no-caps"
-    ).classes("onward")
+    again = ui.button("Diagnose again", on_click=lambda: jobs.diagnose(bench))
+    _while_idle(bench, again.props("flat no-caps").classes("onward"))
     for effect, room in seen.items():
         with room:
             await _show_effect(bench, effect)
@@ -72,9 +71,11 @@ def _ask(bench: Workbench) -> None:
         "end. This takes from ten seconds to some minutes."
     )
     button = ui.button("Find what is missing", icon="search", on_click=lambda: jobs.diagnose(bench))
-    button.props("unelevated no-caps").classes("onward").bind_enabled_from(
-        bench, "busy", backward=lambda busy: not busy
-    )
+    _while_idle(bench, button.props("unelevated no-caps").classes("onward"))
+
+
+def _while_idle(bench: Workbench, button: ui.button) -> None:
+    button.bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
 
 
 def _errors(error: DiagnosisErrors) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from typing import Any, Callable
 
-from rovsim.core.errors import RovsimError
+from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.progress import heard_by
 
 FEWEST = 0.1  # share that must be done before anybody can tell how long the rest takes
@@ -91,7 +91,18 @@ class LongWork:
     def begin(
         self, title: str, after: Callable[[Any], None], function: Callable, *given: Any
     ) -> None:
-        """See `Work.start`."""
+        """See `Work.start`.
+
+        Raises:
+            BadInput: other work goes on.
+        """
+        if self.now is not None:
+            raise BadInput(
+                f"'{self.now.title}' goes on",
+                where="workbench",
+                expected="one long work at a time",
+                remedy="Wait for its end, or cancel it.",
+            )
         self.now = Work.start(title, after, function, *given)
 
     def settle(self) -> str:

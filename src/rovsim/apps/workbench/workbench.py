@@ -15,7 +15,7 @@ from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import WorkbenchSettings, select
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.work import LongWork
-from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text, write_text
 from rovsim.core.remade import Recent
 from rovsim.design.settings import Question
@@ -66,6 +66,7 @@ class Workbench:
         """
         data = measure(open_campaign(settings.campaign), settings.signals)
         found = {m.name: m for m in load_models(settings.model, data.vehicle, catalogue)}
+        _check_base(next(iter(found.values())))
         specs = [settings.model] if isinstance(settings.model, str) else settings.model
         paths = dict(zip(found, dict.fromkeys(specs), strict=True))
         bench = Workbench(settings, catalogue.on(data.vehicle), data, found, paths)
@@ -186,7 +187,7 @@ class Workbench:
             BadInput: no such model can be, or the place is taken by something else.
         """
         inside = (Path(), self.out, self.data.campaign.file.parent)
-        _check_place(path, inside, {*BUILT_IN, self.base.name}, self.catalogue)
+        _check_place(path, inside, {*BUILT_IN, self.base.name})
         story: dict[str, object] = {
             "base": self.base.name,
             "effects": self.draft.ticked,
@@ -290,7 +291,17 @@ class Workbench:
         return self._searched[model]
 
 
-def _check_place(path: Path, inside: Sequence[Path], taken: set[str], catalogue: Catalogue) -> None:
+def _check_base(model: Model) -> None:
+    if model.inert:
+        raise BadInput(
+            f"'{model.name}' has no forces that could be wrong",
+            where="model",
+            expected="a model of the vehicle first",
+            remedy=f"Leave it out, the ladder shows it; or write model=[nominal,{model.name}].",
+        )
+
+
+def _check_place(path: Path, inside: Sequence[Path], taken: set[str]) -> None:
     """Refuse to write elsewhere or over what is no model, and to call a model as another is."""
     found = ""
     if not any(path.resolve().is_relative_to(folder.resolve()) for folder in inside):
@@ -300,10 +311,7 @@ def _check_place(path: Path, inside: Sequence[Path], taken: set[str], catalogue:
     elif path.stem in taken:
         found = f"would be called '{path.stem}', as another model is"
     elif path.exists():
-        try:
-            read_model(path, catalogue)
-        except RovsimError:
-            found = "is there, and is no model file"
+        found = "is there already"
     if found:
         raise BadInput(
             found, where=path, expected="a new model file", remedy="Give it another name."
