@@ -131,6 +131,15 @@ def test_short_series_give_numbers_or_say_that_they_cannot(chain, n):
     assert (np.isfinite(nu_dot) == (n >= 3)).all()
 
 
+@pytest.mark.parametrize("kind", GROUPS["differentiate"], ids=name)
+@pytest.mark.parametrize("dt", [0.005, 0.05, 1.0])
+def test_a_steady_motion_has_its_velocity_at_any_rate(kind, dt):
+    x = 0.3 * dt * np.arange(40)[:, None]
+    first, second = kind().derivatives(x, dt)
+    np.testing.assert_allclose(first, 0.3, atol=1e-9)
+    np.testing.assert_allclose(second, 0.0, atol=1e-6)
+
+
 @pytest.mark.parametrize("kind", GROUPS["filter"], ids=name)
 def test_filters_leave_unit_quaternions_and_their_input_alone(kind):
     eta = wandering(5, 300)

@@ -274,6 +274,12 @@ def test_windows_stay_inside_usable_stretches():
     assert known.tolist() == [*range(1, 201), *range(301, 501)]
 
 
+def test_a_horizon_below_half_a_sample_has_no_windows():
+    found = replay(model(), simulated(), OPEN, ReplaySettings(horizons=(0.004, 2.0))).horizons
+    assert np.isnan(found["0.004"].nu).all()
+    assert np.isfinite(found["2"].nu).any()
+
+
 def test_a_run_without_a_usable_sample_predicts_nothing():
     run = simulated(seconds=1.0, gap=(0, 101))
     for prediction in replay(model(), run, OPEN, ReplaySettings()).horizons.values():

@@ -92,6 +92,14 @@ def test_a_sum_is_held_by_what_is_read_beside_it():
     assert np.abs(held[ends]).max() < direct.std()
 
 
+def test_two_readings_beside_a_sum_hold_it():
+    time = np.arange(200) / 10.0
+    clock, two = OnClock(time, 0.5), np.array([5.0, 15.0])
+    rate, direct = Channel(time, np.zeros((200, 1))), Channel(two, np.array([[1.0], [2.0]]))
+    found = clock.drift(direct.value, rate, direct)[:, 0]
+    np.testing.assert_allclose(np.interp(two, time, found), [1.0, 2.0], atol=0.1)
+
+
 def test_what_is_let_go_is_not_commanded_and_comes_to_rest(tmp_path):
     release = {"pose": [0, 0, 0, 0.3, 0, 0], "velocity": [0.2, 0, 0, 0, 0, 0]}
     still = {"force": 0.0, "moment": 0.0}

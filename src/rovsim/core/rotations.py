@@ -106,6 +106,15 @@ def continuous(q: Array) -> Array:
     return q * np.concatenate([[1.0], np.cumprod(flips)])[:, None]
 
 
+def unwrapped(angles: Array) -> Array:
+    """Angles (time, c) in rad that go on beyond half a turn, over gaps (NaN) as well."""
+    found = angles.copy()
+    for column in found.T:
+        known = np.isfinite(column)
+        column[known] = np.unwrap(column[known])
+    return found
+
+
 def from_euler(roll: Array, pitch: Array, yaw: Array) -> Array:
     """Quaternions (..., 4) of the angles R = Rz(yaw) Ry(pitch) Rx(roll) (Fossen 2021, eq. 2.31)."""
     angles = np.stack(np.broadcast_arrays(yaw, pitch, roll), axis=-1)

@@ -99,7 +99,8 @@ class NoiseDraws:
         if not self.colour.any():
             return np.zeros((count, 6))
         keep = np.exp(-period / self.colour_memory)
-        kicks = self.random.normal(size=(count, 6)) * self.colour * np.sqrt(1.0 - keep**2)
+        kicks = self.random.normal(size=(count, 6)) * self.colour
+        kicks[1:] *= np.sqrt(1.0 - keep**2)  # the first is as large as any later error
         axes = zip(keep, kicks.T, strict=True)
         return np.stack([scipy.signal.lfilter([1.0], [1.0, -k], x) for k, x in axes], 1)
 

@@ -11,6 +11,8 @@ from rovsim.measurement.signals.motion import Motion
 def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
     """Index pairs (anchor, end) of full windows inside usable stretches.
 
+    None where a window is shorter than half a sample.
+
     Sampled: predictions are anchor+1 .. end. Binned: bins anchor .. end-1, whose number follows the
     uneven clock: the next window starts at the bin that begins nearest to `seconds` later.
     """
@@ -19,7 +21,7 @@ def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
             yield from _find_bins(motion, first, last, seconds)
             continue
         count = round(seconds / time_step(motion.time))
-        for anchor in range(first, last - count, count):
+        for anchor in range(first, last - count, count) if count else ():
             yield anchor, anchor + count
 
 

@@ -79,9 +79,12 @@ def _suffices(known: Mapping[str, Channel], direct: str, rate: str) -> bool:
 def noise_density(channel: Channel) -> float:
     """Noise of a channel over a second: that of a sample by the square root of the rate.
 
-    The noise of a sample from its second differences, whose variance is 6 times its own.
+    The noise of a sample from its second differences, whose variance is 6 times its own. NaN where
+    there are none.
     """
     value = channel.value
+    if len(value) < 3:
+        return np.nan
     if value.shape[1] == 4:  # small turns are twice the vector part of a quaternion
         value = 2.0 * rotations.continuous(value)
     noise = np.nanstd(np.diff(value, 2, axis=0)) / np.sqrt(6.0)

@@ -57,7 +57,7 @@ class SavitzkyGolay(_Margin):
 
     def derivatives(self, x: Array, dt: float) -> tuple[Array, Array]:
         """First and second time derivative of `x` (..., time, channels)."""
-        width = odd_window(self.window, dt, x.shape[-2])
+        width = max(3, odd_window(self.window, dt, x.shape[-2]))  # a parabola at least
         degree = min(self.degree, width - 1)
         first, second = (
             scipy.signal.savgol_filter(x, width, degree, deriv=d, delta=dt, axis=-2, mode="interp")

@@ -84,7 +84,8 @@ class OnClock:
         Noise that adds up against noise that does not: the best smoothing is exponential, with the
         ratio of the two as its time (Wiener); here a bell of the same width. NaN without readings.
         """
-        width = np.clip(noise_density(direct) / max(noise_density(summed), 1e-12), *DRIFT)
+        ratio = noise_density(direct) / max(noise_density(summed), 1e-12)
+        width = np.clip(np.nan_to_num(ratio), *DRIFT)  # two readings: taken as they are
         sigma = np.sqrt(2.0) * width * (direct.rate or 1.0)
         found = np.full((len(self.clock), apart.shape[1]), np.nan)
         for k, column in enumerate(apart.T):

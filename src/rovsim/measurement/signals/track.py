@@ -104,17 +104,9 @@ def _read_attitude(at: OnClock, direct: Mapping[str, Channel]) -> _Tracked:
         return _Tracked(at.attitudes(direct["attitude"]), ~none, none)
     angles = np.full((len(at.clock), 3), np.nan)
     for channel in direct.values():
-        angles = at.values(Channel(channel.time, _unwrapped(channel.value)))
+        angles = at.values(Channel(channel.time, rotations.unwrapped(channel.value)))
     known = ~np.isnan(angles).all(axis=0)
     return _Tracked(_continuous(rotations.from_euler(*np.nan_to_num(angles).T)), known, none)
-
-
-def _unwrapped(angles: Array) -> Array:
-    found = angles.copy()
-    for column in found.T:
-        known = np.isfinite(column)
-        column[known] = np.unwrap(column[known])
-    return found
 
 
 def _continuous(q: Array) -> Array:
@@ -150,7 +142,7 @@ def _sum_velocities(
     known = np.isfinite(channel.value).any(axis=0)
     q = between(channel.time, at.clock, attitude)
     v, place = np.nan_to_num(channel.value), np.array(recording.sensors.velocity_at)
-    if place.any():
+    if place.any() and len(at.clock) > 1:
         q_dot = np.gradient(attitude, at.clock, axis=0)
         turning = rotations.body_rates(attitude, q_dot)
         spin = np.stack([np.interp(channel.time, at.clock, own) for own in turning.T], axis=1)

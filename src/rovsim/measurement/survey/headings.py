@@ -13,6 +13,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
+from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
 from rovsim.measurement.recording.table import Lines, csv_lines, numbers
 
@@ -239,7 +240,7 @@ def _radians(
     if named and unit:
         return 1.0, ""
     if named:  # angles that count on may be large: only what no vehicle does speaks against a name
-        fast = _usual_speed(np.unwrap(value, axis=0), time)
+        fast = _usual_speed(unwrapped(value), time)
         absurd = fast > FASTEST_TURN
         return (DEGREE, f" in degrees, by its size ({fast:.0f} rad/s)") if absurd else (1.0, "")
     size = np.nanmax(np.abs(value), axis=0)
