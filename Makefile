@@ -118,8 +118,12 @@ catalogue: setup
 docs: setup
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
 
+# What Add and train wrote into results/ goes as well, so that is said first.
 clean:
-	rm -rf results/* .snakemake
+	@echo "This removes all in results/ that is not of the repository, models you saved there too:"
+	@git clean -ndx results .snakemake
+	@test -n "$(YES)" || { echo "make clean YES=1 does it."; exit 2; }
+	git clean -fdxq results .snakemake
 
 # After a change of pyproject.toml: exact pins of what is installed now, setuptools (--all) included.
 lock:

@@ -12,7 +12,8 @@ from rovsim.benchmarks.blind.run import Benchmark, file_name
 from rovsim.core.errors import RovsimError
 
 try:
-    words = config.get("overrides", "").split()
+    given = config.get("overrides", [])
+    words = given.split() if isinstance(given, str) else list(given)
     settings = compose(words)
     benchmark = Benchmark.of(settings.blind, settings.out)
     jobs = benchmark.pending()

@@ -111,6 +111,15 @@ REFUSED = {
         {"commands.kind": "demand", "commands.columns": ["a", "b"]},
         ["commands.columns", "2 columns", "surge", "List all six"],
     ),
+    "axes of thrusters": (
+        {"commands.kind": "normalized", "commands.axes": ["surge"]},
+        ["commands.axes", "per thruster", "Leave 'axes' out"],
+    ),
+    "further columns of a bag": (
+        {"commands.format": "rosbag2", "commands.auxiliary": ["voltage"]},
+        ["commands.auxiliary", "rosbag2", "Leave it out"],
+    ),
+    "no such user": ({"folder": "~nobody_at_all/x"}, ["~nobody_at_all/x", "set 'folder'"]),
     "no such file": ({"runs.0.commands": "x.csv"}, ["run 'one'", "x.csv", "Put it there"]),
     "variable": ({"folder": "$NOT_SET_ANYWHERE"}, ["folder", "NOT_SET_ANYWHERE", "Set it"]),
 }

@@ -1,7 +1,7 @@
 """Settings: Hydra composes them from conf/ once, here; the library gets plain typed values."""
 
 from pathlib import Path
-from typing import Any, Literal, Sequence
+from typing import Annotated, Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
@@ -97,7 +97,7 @@ class CampaignSettings(SimulationSettings, CommandSettings):
     """What every command on a campaign takes."""
 
     campaign: PathText | None
-    model: PathText | list[PathText]
+    model: PathText | Annotated[list[PathText], Field(min_length=1)]
 
 
 class WorkbenchSettings(TrainingSettings, CampaignSettings):

@@ -118,9 +118,7 @@ def _prbs(t: Array, axes: Array, random: np.random.Generator) -> Array:
 USUAL: Mapping[str, Usual] = {
     "zigzag": Usual(_zigzag, "Ahead, and the helm over to the other side every 5 s"),
     "steps": Usual(_steps, "One axis after the other: ahead, rest, back, rest, each as long"),
-    "multisine": Usual(
-        _multisine, "All axes at once, swings of 20 s to 2 s on top of one another"
-    ),
+    "multisine": Usual(_multisine, "All axes at once, swings of 20 s to 2 s on top of one another"),
     "prbs": Usual(
         _prbs,
         "All axes at once, each full over to a side that changes at random, every second",

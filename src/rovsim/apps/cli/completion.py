@@ -196,7 +196,7 @@ def _files(start: str, ending: str) -> list[str]:
     """Folders, and files that end so, which begin with what was typed; "/": folders alone."""
     _, _, name = start.rpartition("/")
     before = start[: len(start) - len(name)]
-    place = Path(before or ".").expanduser()
+    place = Path(os.path.expanduser(before or "."))
     found = []
     for entry in sorted(os.scandir(place), key=lambda one: one.name) if place.is_dir() else ():
         if entry.name.startswith(name) and (name or not entry.name.startswith(".")):

@@ -3,6 +3,7 @@
 import hashlib
 import inspect
 import keyword
+import os
 import re
 import sys
 import traceback
@@ -27,7 +28,7 @@ def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]
     Raises:
         BadInput: it cannot be read or run, declares no effect, or an id that is taken.
     """
-    path = path.expanduser().resolve()
+    path = Path(os.path.expanduser(path)).resolve()
     return check_effects(vars(_run(path, read_text(path))), path, taken)
 
 

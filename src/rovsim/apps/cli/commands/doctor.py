@@ -11,7 +11,6 @@ import os
 import platform
 import shutil
 import sys
-from pathlib import Path
 from typing import Callable
 
 from rovsim import __version__
@@ -82,8 +81,9 @@ def _extras() -> list[Line]:
 def _services(tracking: TrackingSettings) -> list[Line]:
     browser = next((path for name in BROWSERS if (path := shutil.which(name))), None)
     slurm = shutil.which("sbatch")
-    file = Path(tracking.uri.removeprefix("sqlite:///"))
-    kept = "runs are kept there" if file.exists() else "no run was logged yet"
+    file = tracking.uri.removeprefix("sqlite:///")
+    kept = "a server" if file == tracking.uri else "no run was logged yet"
+    kept = "runs are kept there" if os.path.exists(file) else kept
     return [
         ("browser", browser is not None, browser or "no Chromium: `playwright install chromium`"),
         ("slurm", slurm is not None, slurm or "no sbatch here; only clusters need it"),

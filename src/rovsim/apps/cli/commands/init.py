@@ -29,7 +29,7 @@ class Settings(CommandSettings):
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Look, write, and say what was found and what is left to answer."""
-    paths = [Path(name).expanduser() for name in settings.files]
+    paths = [Path(os.path.expanduser(name)) for name in settings.files]
     if not paths:
         raise BadInput(
             "no file was named",
