@@ -47,7 +47,7 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
     try:
         return kind.model_validate(content)
     except ValidationError as error:
-        raise _explained(error, kind, content, where) from None
+        raise _explained(error, kind, where) from None
     except OverflowError:
         raise BadInput(
             "holds a number with hundreds of digits",
@@ -57,7 +57,7 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
         ) from None
 
 
-def _explained(error: ValidationError, kind: type[Section], content: Any, where: Any) -> BadInput:
+def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadInput:
     found = error.errors(include_url=False)
     # A key that is mistyped is unknown and missing; the first says what was meant.
     first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])

@@ -120,9 +120,8 @@ def search(where: Range, settings: DesignSettings, seed: int) -> list[Tried]:
         archive.extend(found)
         return np.array([-_ranked(one) for one in found])
 
-    single = _one_axis_each(where)
-    rate(single.T)
-    first = _begin(archive, single, where, settings.population, np.random.default_rng(seed))
+    rate(_one_axis_each(where).T)
+    first = _begin(archive, where, settings.population, np.random.default_rng(seed))
     scipy.optimize.differential_evolution(
         cast(Any, rate),  # whole generations, which its types do not know
         scipy.optimize.Bounds(np.zeros(first.shape[1]), np.ones(first.shape[1])),
@@ -154,9 +153,8 @@ def _one_axis_each(where: Range) -> Array:
 
 
 def _begin(
-    archive: Sequence[Tried], single: Array, where: Range, population: int,
-    random: np.random.Generator,
-) -> Array:  # fmt: skip
+    archive: Sequence[Tried], where: Range, population: int, random: np.random.Generator
+) -> Array:
     """The first generation: the best of each axis, alone and in pairs, and what chance adds."""
     best = []
     rows = np.array([one.numbers for one in archive])

@@ -57,14 +57,14 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
         arrays["noise"] *= _factors(arrays, spectra)
         gaussian.set_hyperparameters(model, arrays)
         _condition(model, Z, T)
-        library = gaussian.library_predictor(model, arrays)
+        gaussian.library_predictor(model, arrays)  # solves for the weights
         weights = model.prediction_strategy.mean_cache.numpy()
     variances = gaussian.fade_beyond(_posterior_variances(arrays, spectra), arrays, Z, X, settings)
     data = gaussian.export(settings, arrays, Z, weights, variances)
     info = {"points": len(rows), "tuning_points": len(some), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
     info["seconds"] = round(perf_counter() - start, 3)
-    return Trained(settings, data, arrays, library, info)
+    return Trained(settings, data, arrays, info)
 
 
 def library_from(arrays: Mapping[str, Array], settings: GpSettings) -> Predict:

@@ -52,10 +52,9 @@ def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress
     settings = settings.model_copy(update={"k": k})
     arrays = {"points": Z, "targets": Y, "shift": scaling.shift, "scale": scaling.scale}
     data = export_neighbours(settings.features, scaling, Z, Y, k, settings.weights)
-    library = library_from(arrays, settings)
     progress(1, 1)
     info = {"points": len(rows), "k": k, "seconds": round(perf_counter() - start, 3)}
-    return Trained(settings, data, arrays, library, info)
+    return Trained(settings, data, arrays, info)
 
 
 def best_k(Z: Array, Y: Array, weights: str) -> int:

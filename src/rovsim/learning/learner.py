@@ -37,14 +37,12 @@ class Trained:
     """A residual fresh from training.
 
     `data`: exported for the kernels. `arrays`: what the library's own model is rebuilt from.
-    `library_predict`: the library's own prediction from unscaled features. `info`: numbers to
-    report (points, seconds, hyperparameters, final loss).
+    `info`: numbers to report (points, seconds, hyperparameters, final loss).
     """
 
     settings: LearnerSettings
     data: Array
     arrays: dict[str, Array]
-    library_predict: Predict
     info: dict[str, Any] = field(default_factory=dict)
 
     @property

@@ -44,14 +44,14 @@ def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progres
         model = _model(_centres(Z, settings.inducing, seed))
         loss = _train(model, Z, T, settings, progress)
         arrays |= gaussian.hyperparameters(model) | _variational(model)
-        library = gaussian.library_predictor(model, arrays)
+        model.eval()
         weights, variances = _weights(model), _posterior_variances(model, arrays)
     variances = gaussian.fade_beyond(variances, arrays, arrays["inducing"], X, settings)
     data = gaussian.export(settings, arrays, arrays["inducing"], weights, variances)
     info = {"points": len(arrays["inducing"]), "rows": len(rows), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
     info["seconds"] = round(perf_counter() - start, 3)
-    return Trained(settings, data, arrays, library, info)
+    return Trained(settings, data, arrays, info)
 
 
 def library_from(arrays: Mapping[str, Array], settings: SvgpSettings) -> Predict:

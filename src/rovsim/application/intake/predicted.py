@@ -13,8 +13,6 @@ from rovsim.dynamics.vehicle.hydrodynamics import matrix
 from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.drive import Drive
 
-SMALL = 1e-9
-
 
 def wrench(vehicle: Vehicle, commands: Commands) -> Array:
     """Static body wrench (m, 6) of each logged line: N, N m, FRD."""

@@ -132,7 +132,7 @@ def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[st
     best = min(learned, key=lambda name: learned[name])
     return [
         _best_sentence(title(best), learned[best], len(learned), measure),
-        *_per_axis(best, relate(errors).reindex([best]).loc[best]),
+        *_per_axis(relate(errors).reindex([best]).loc[best]),
         *_others(learned, best),
     ]
 
@@ -171,7 +171,7 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
     return f"None of the {count} learned residuals helps; the best, {best}, {change} ({measure})."
 
 
-def _per_axis(best: str, row: Series) -> list[str]:
+def _per_axis(row: Series) -> list[str]:
     if row.isna().all():
         return []
     lower = [f"{a} (−{_percent(1 - r)})" for a, r in row.items() if r < 1 - EQUAL]
