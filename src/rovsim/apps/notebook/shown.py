@@ -148,7 +148,7 @@ class ShownDiagnosis(Figures):
 
     @property
     def ranking(self) -> DataFrame:
-        """Every effect that was tried by itself, the best first."""
+        """The likeliest effects by themselves, the best first, and those selected beyond them."""
         rows = {r.effect: (or_nan(r.error_reduction), r.probability) for r in self.result.ranking}
         columns = ["error_reduction", "probability"]
         return DataFrame.from_dict(rows, orient="index", columns=columns)

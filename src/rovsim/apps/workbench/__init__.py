@@ -10,7 +10,7 @@ anyway, and ECharts, Vue and fonts in its own package, so that nothing is fetche
     draft         a model being put together from effects
     work          long work in a process of its own; jobs begins it, tasks does it
     charts, parts ECharts options and HTML that several screens share
-    compare …     one screen a file: TITLE, QUESTION, show(bench)
+    compare …     one screen a file: TITLE, QUESTION, show(bench, place)
 """
 
 HOST = "127.0.0.1"  # loopback: nobody else can reach it
