@@ -5,6 +5,12 @@ from numpy import ndarray as Array
 
 # PWM = 1500 us + 400 us c, as the vehicle files' comments say.
 CENTER, SPAN = 1500.0, 400.0
+NONE = (0.0, 65535.0)  # what MAVLink tells of an output or input without pulses
+
+
+def absent(pulses: Array) -> Array:
+    """Which of them are none."""
+    return np.isin(pulses, NONE)
 
 
 def to_commands(pulses: Array) -> Array:

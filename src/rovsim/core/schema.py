@@ -3,7 +3,7 @@
 import os
 import reprlib
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, ValidationError
 
@@ -24,6 +24,7 @@ def _path(text: str) -> str:
     return text
 
 
+Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 PathText = Annotated[str, AfterValidator(_path)]
 # A number as it is: neither true nor '1.5' is one.
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]

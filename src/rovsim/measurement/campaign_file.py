@@ -7,7 +7,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 
 from rovsim import AXES
 from rovsim.core.rotations import BodyAxes, WorldAxes
-from rovsim.core.schema import PathText, Section
+from rovsim.core.schema import Axis, PathText, Section
 from rovsim.measurement.sensors import Sensors
 
 
@@ -39,7 +39,6 @@ def _distinct(names: list[str]) -> list[str]:
     return names
 
 
-Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1)]
 Place = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
 FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]

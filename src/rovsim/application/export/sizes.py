@@ -82,8 +82,7 @@ def _calm(vehicle: Vehicle, demands: bool) -> TankSettings:
 
 
 def _fly(model: Model, settings: TankSettings) -> Motion:
-    walls = np.array([getattr(settings.tank, axis) for axis in "xyz"])
-    tank = np.sort(walls * HALF_TURN_X[:, None], axis=1)
+    tank = settings.tank.ned
     found = fly_run(model, settings, "6dof", tank, np.random.default_rng(SEED))
     state, time = found.state[::STRIDE], np.round(found.time[::STRIDE], 9)
     site = Site(tank, HALF_TURN_X, float(tank[2, 0]))

@@ -14,10 +14,7 @@ WORD = re.compile(rf"(^|[_\-\s.]+)({ROLES})(?=$|[_\-\s.]+)", re.IGNORECASE)
 
 def run_key(stem: str) -> str:
     """What is left of a file's stem without the words that say what it is."""
-    left = stem
-    while (shorter := WORD.sub("", left)) != left:
-        left = shorter
-    return re.sub(r"[\s_\-.]+", "-", left).strip("-").casefold()
+    return re.sub(r"[\s_\-.]+", "-", _without_role(stem)).strip("-").casefold()
 
 
 def run_ids(stems: Sequence[str]) -> list[str]:

@@ -1,13 +1,13 @@
 """A vehicle file: what stands in it, and the nominal effects it stands for."""
 
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field, PositiveFloat
 
 from rovsim import AXES
-from rovsim.core.schema import Section
+from rovsim.core.schema import Axis, Section
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
@@ -19,7 +19,6 @@ from rovsim.dynamics.vehicle.hydrodynamics import Hydrodynamics
 from rovsim.dynamics.vehicle.surfaces import Surface, Surfaces
 from rovsim.dynamics.vehicle.thrusters import Thrusters, ThrusterSet, Triple
 
-Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 ALL: tuple[Axis, ...] = get_args(Axis)
 
 

@@ -9,8 +9,10 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.pwm import absent
 from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
+from rovsim.measurement.recording.rosbag2.commands import MANUAL, PULSES, pushed
 from rovsim.measurement.recording.rosbag2.motion import POSES, read_bag
 from rovsim.measurement.recording.tidying import tidy_export
 from rovsim.measurement.survey.contents import Contents, Drive, Kind, Track
@@ -42,7 +44,6 @@ OUTPUTS = (
 # ArduSub, "RC input and output": channels of the pilot; throttle is up.
 PILOT = {"RC5": "surge", "RC6": "sway", "-RC3": "heave", "RC2": "roll", "RC1": "pitch",
          "RC4": "yaw"}  # fmt: skip
-NO_PULSE = (0.0, 65535.0)
 
 
 def look_into_bag(path: Path) -> Contents:
@@ -133,7 +134,7 @@ def _place(kind: str) -> int:
 def _drive(bag: Bag, topic: str) -> Drive:
     kind, first = bag.first(topic, "commands.topic")
     name = _short(kind)
-    if name in ("RCOut", "OverrideRCIn", "RCIn"):
+    if name in PULSES:
         found = bag.read(
             topic, "commands.topic", _padded("channels", len(first.channels)), "pulses"
         )
@@ -142,10 +143,8 @@ def _drive(bag: Bag, topic: str) -> Drive:
         return Drive("rosbag2", tuple(AXES), *_numbers(bag, topic, _forces), "wrench",
                      f"messages of the type {name}", topic)  # fmt: skip
     if name == "ManualControl":
-        time, value = _numbers(
-            bag, topic, lambda m: [m.x / 1e3, m.y / 1e3, (500 - m.z) / 500, m.r / 1e3]
-        )
-        return Drive("rosbag2", ("surge", "sway", "heave", "yaw"), time, value, "demand",
+        time, value = _numbers(bag, topic, lambda m: [pushed(m, axis) for axis in MANUAL])
+        return Drive("rosbag2", tuple(MANUAL), time, value, "demand",
                      "the pilot's sticks (ManualControl)", topic)  # fmt: skip
     time, value = _numbers(bag, topic, _padded("data", len(first.data)))
     columns = tuple(f"t{k + 1}" for k in range(value.shape[1]))
@@ -180,7 +179,7 @@ def _kind(value: Array) -> tuple[Kind | None, str]:
 
 def _given(found: Samples) -> Array:
     """Which channels (c,) ever carried a pulse."""
-    return (~np.isin(found.value, NO_PULSE) & np.isfinite(found.value)).any(axis=0)
+    return (~absent(found.value) & np.isfinite(found.value)).any(axis=0)
 
 
 def _outputs(found: Samples) -> Drive:

@@ -5,13 +5,14 @@ from typing import Iterator
 
 import numpy as np
 
+from rovsim.core.pwm import absent
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.ardupilot.commands import SOURCES
 from rovsim.measurement.recording.ardupilot.logs import open_log
 from rovsim.measurement.recording.ardupilot.motion import read_log
 from rovsim.measurement.recording.ardupilot.series import Log
 from rovsim.measurement.recording.tidying import tidy_export
-from rovsim.measurement.survey.bags import NO_PULSE, PILOT
+from rovsim.measurement.survey.bags import PILOT
 from rovsim.measurement.survey.contents import Contents, Drive, Track
 
 MOST = 16  # outputs and channels of a log
@@ -35,7 +36,7 @@ def _drives(log: Log) -> Iterator[Drive]:
             continue
         series = log.series[name]
         value = series.of([field.format(k) for k in range(1, MOST + 1)])
-        given = np.flatnonzero((~np.isin(value, NO_PULSE) & np.isfinite(value)).any(axis=0)) + 1
+        given = np.flatnonzero((~absent(value) & np.isfinite(value)).any(axis=0)) + 1
         if kind == "SERVO" and len(given):
             columns = tuple(f"SERVO{k}" for k in given)
             said = f"outputs ({name}), in their order"

@@ -10,7 +10,6 @@ import numpy as np
 
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import write_text
-from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
@@ -154,8 +153,7 @@ def _record_all(
 def _record(
     model: Model, settings: TankSettings, run: TankRun, folder: Path, random: np.random.Generator
 ) -> None:
-    box = np.array([getattr(settings.tank, axis) for axis in "xyz"])
-    tank = np.sort(box * HALF_TURN_X[:, None], axis=1)
+    tank = settings.tank.ned
     sent = _read_sent(settings, run) if run.fly else None
     truth = fly_run(model, settings, run.control, tank, random, run.release, sent)
     if settings.sensors:

@@ -4,8 +4,11 @@ import math
 from fractions import Fraction
 from typing import Annotated, Any, Literal, Mapping
 
+import numpy as np
+from numpy import ndarray as Array
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator, model_validator
 
+from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.schema import Section
 from rovsim.dynamics.effects.base import Means
 from rovsim.dynamics.model_file import EffectEntry
@@ -56,6 +59,11 @@ class Box(Section):
     x: Interval = (0.0, 10.0)
     y: Interval = (0.0, 5.0)
     z: Interval = (0.0, 3.0)
+
+    @property
+    def ned(self) -> Array:
+        """Low and high walls (3, 2) in NED, m."""
+        return np.sort(np.array([self.x, self.y, self.z]) * HALF_TURN_X[:, None], axis=1)
 
 
 class Camera(Section):

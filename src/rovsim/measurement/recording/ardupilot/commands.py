@@ -76,7 +76,7 @@ def _series(held: Log, wanted: str) -> tuple[Series, str]:
 
 def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
     """Values (m, c) with 0 and 65535 taken for what they mean, as in a bag of mavros."""
-    none = (value == 0.0) | (value == 65535.0)
+    none = pwm.absent(value)
     if wanted == "RC" or not none.any():
         return np.where(none, np.nan, value), ()
     said = f"{int(none.sum())} outputs without a pulse stand for no command."

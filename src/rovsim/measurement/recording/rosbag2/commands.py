@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, Mapping
 
 import numpy as np
 from numpy import ndarray as Array
@@ -18,8 +18,12 @@ from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
 PULSES = ("RCOut", "OverrideRCIn", "RCIn")
 # MAVLink MANUAL_CONTROL as ArduSub takes it: x, y, r in -1000 .. 1000, z in 0 .. 1000 and up
-MANUAL = {"surge": ("x", 0, 1000), "sway": ("y", 0, 1000), "heave": ("z", 500, -500)}
-MANUAL |= {"yaw": ("r", 0, 1000)}
+MANUAL: Mapping[str, tuple[str, int, int]] = {
+    "surge": ("x", 0, 1000),
+    "sway": ("y", 0, 1000),
+    "heave": ("z", 500, -500),
+    "yaw": ("r", 0, 1000),
+}
 FORCES = dict(zip(AXES, [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"],
                   strict=True))  # fmt: skip
 
@@ -56,6 +60,12 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     return as_commands(found.time, value, log, place, pulses=pulses, notes=notes)
 
 
+def pushed(message: Any, axis: str) -> float:
+    """How far a stick stands, in [-1, 1], by a ManualControl message."""
+    field, center, span = MANUAL[axis]
+    return float((getattr(message, field) - center) / span)
+
+
 def _only_topic(bag: Bag) -> str:
     likely = [t for t, kind in bag.topics.items() if any(word in kind for word in LIKELY)]
     if len(likely) == 1:
@@ -74,7 +84,7 @@ def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
     An output without pulses is a thruster that stands; an input of 0 or 65535 is none.
     """
     value = found.value
-    none = (value == 0.0) | (value == 65535.0)
+    none = pwm.absent(value)
     if not none.any():
         return value, ()
     if found.kind.endswith("RCOut"):
@@ -88,8 +98,7 @@ def _getter(kind: str, first: Any, log: CommandLog, k: int, where: str) -> Get:
     name = log.names[k]
     axis = log.axes[k] if log.axes else name
     if kind.endswith("ManualControl") and axis in MANUAL:
-        field, center, span = MANUAL[axis]
-        return lambda message: (getattr(message, field) - center) / span
+        return lambda message: pushed(message, axis)
     inner = getattr(first, "wrench", first)
     if hasattr(inner, "force") and axis in FORCES:
         return _walk(("wrench." if inner is not first else "") + FORCES[axis])
