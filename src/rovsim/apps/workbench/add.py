@@ -1,9 +1,7 @@
 """Add: tick effects, move their values, see the replay move; save the model as a file."""
 
 import asyncio
-import shlex
 from functools import partial
-from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from nicegui import ui
@@ -14,14 +12,12 @@ from rovsim.apps.workbench.parts import (
     Slider,
     computed,
     heading,
-    in_a_terminal,
-    onward,
-    section,
     text,
     tile,
     tile_html,
 )
 from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.saving import Saving
 from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.traces import (
     HORIZONS,
@@ -71,7 +67,7 @@ class Add:
             with ui.column().classes("half left"):
                 self.list = ui.column().classes("area")
                 self._effects()
-                self._save()
+                Saving(self.bench)
             with ui.column().classes("half right"):
                 with ui.row().classes("controls"):
                     self._choice("run", ui.select(self.runs, label="Run"))
@@ -259,65 +255,6 @@ class Add:
                     self.after.content = tile_html("This run, now", now, "run/now", note)
         finally:
             self.drawing = False
-
-    def _save(self) -> None:
-        section("Save it")
-        self.path = ui.input("Model file", value=str(self.bench.free_path())).classes(
-            "control wide"
-        )
-        self.path.props("outlined dense")
-        ui.button("Save, and open the test runs", icon="save", on_click=self._saved).props(
-            "unelevated no-caps"
-        ).classes("onward")
-        self.result = ui.column().classes("area")
-
-    async def _saved(self) -> None:
-        """Write the model file, and show what it does on the test runs."""
-        path = Path(self.path.value.strip())
-        try:
-            saved = await computed(self.bench.save, path)
-        except RovsimError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
-            return
-        before = (await computed(self.bench.step, self.bench.base)).windows_2s
-        after = (await computed(self.bench.step, saved)).windows_2s
-        opened = await computed(self.bench.note_opening, saved)
-        self.path.value = str(self.bench.free_path())
-        self._tell(path, before, after, opened)
-
-    def _tell(self, path: Path, before: float | None, after: float | None, opened: int) -> None:
-        diagnosis = self.bench.diagnosis
-        floor = diagnosis.error.noise_floor if diagnosis else None
-        self.result.clear()
-        with self.result:
-            with ui.row().classes("tiles"):
-                tile("Error before", before, "saved/before", "test runs")
-                tile("Error now", after, "saved/after", "test runs")
-                if floor is not None:
-                    tile("Noise floor", floor, "saved/noise_floor", "of a perfect model, about")
-            text(_sentence(before, after))
-            text(_counted(opened), "soft")
-            words = (f"campaign={self.bench.settings.campaign}", f"model=[nominal,{path}]")
-            in_a_terminal(f"rovsim compare {shlex.join(words)} out=COMPARED")
-            onward("See the whole ladder", "/ladder")
-
-
-def _sentence(before: float | None, after: float | None) -> str:
-    if before is None or after is None:
-        return "Saved. There is no test run to measure it on."
-    if after < before:
-        return f"Saved. On the test runs the error fell by {100 * (1 - after / before):.0f} %."
-    return "Saved. On the test runs the error did not fall."
-
-
-def _counted(opened: int) -> str:
-    """How often the test runs were opened, and what that does to their number."""
-    if opened == 1:
-        return "The test runs were opened for one saved model: this one."
-    return (
-        f"The test runs were opened for {opened} saved models. Whoever chooses among these by the "
-        "test runs has fitted to them: the error on new runs will be larger."
-    )
 
 
 async def show(bench: Workbench, place: Place) -> None:
