@@ -181,12 +181,16 @@ def test_binned_recordings_are_turned_back_too():
 
 @pytest.mark.parametrize(
     ("delay", "likelihood", "absorbed"),
-    [(0.001, 10.0, True), (-0.007, 10.0, True), (0.001, -np.inf, False), (0.03, 10.0, False),
-     (-0.02, 10.0, False), (-0.08, 10.0, False)],
-    ids=["late", "early", "nothing is observed", "too late", "too early", "before the filter"],
+    [(0.001, 10.0, True), (-0.007, 10.0, True), (0.009, 10.0, True), (0.001, -np.inf, False),
+     (0.03, 10.0, False), (-0.02, 10.0, False), (-0.08, 10.0, False)],
+    ids=["late", "early", "a frame late", "nothing is observed", "too late", "too early",
+         "before the filter"],
 )  # fmt: skip
 def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood, absorbed):
-    smoothing, base = Smoothing(6.0, std=0.3, gain=100.0, lowest=5.5, highest=7.0), model()
+    smoothing, base = (
+        Smoothing(6.0, std=0.3, gain=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01),
+        model(),
+    )
     delayed = Term(InputDelay(delay=delay), ("delay",))
     h = Hypothesis(seen_through(base, smoothing), (delayed,))
     found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
@@ -195,4 +199,7 @@ def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood
     selection = Selection(workspace, found, ())
     again, finer = absorb_delay(selection, base, smoothing)
     assert (again.found is rest) is absorbed
-    assert (finer.cutoff != smoothing.cutoff) is absorbed
+    assert (finer != smoothing) is absorbed
+    late = finer.effect.arrival(0.0) + 1.0 / (np.pi * finer.cutoff)
+    assert late == pytest.approx(1.0 / (6.0 * np.pi) + absorbed * delay)
+    assert (finer.latency != 0.0) is (delay == 0.009)  # the noise knows the cutoff far better

@@ -15,6 +15,7 @@ from scipy.optimize import minimize_scalar
 
 from rovsim.diagnosis.observer.camera_noise import KINDS, Kind, Spectrum, measure_spectra
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
 
 SURE = 30.0  # in twice the log likelihood: odds of a million to one, for no effect depends on it
@@ -31,14 +32,23 @@ SHAPE = 0.1
 class Smoothing:
     """A software filter: `cutoff` Hz and its standard deviation, `gain` in twice the likelihood.
 
-    The noise leaves cutoffs from `lowest` to `highest` open, if it may be of any kind.
+    The noise tells the cutoff `told`, and leaves those from `lowest` to `highest` open, if it may
+    be of any kind. `frame` s: from one pose to the next. `latency` s: of a `PoseFilter`.
     """
 
     cutoff: float
     std: float
     gain: float
+    told: float
     lowest: float
     highest: float
+    frame: float
+    latency: float = 0.0
+
+    @property
+    def effect(self) -> PoseFilter:
+        """What it does to the poses."""
+        return PoseFilter(cutoff=self.cutoff, latency=self.latency)
 
 
 def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None:
@@ -62,7 +72,8 @@ def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
     possible = tried[costs.min(axis=0) < costs.min() + OPEN**2]
     off = max(OPEN * std, SHAPE * cutoff)
     lowest, highest = min(cutoff - off, possible[0]), max(cutoff + off, possible[-1])
-    return Smoothing(cutoff, std, gain, float(lowest), float(highest))
+    frame = max(s.period for s in spectra)
+    return Smoothing(cutoff, std, gain, cutoff, float(lowest), float(highest), frame)
 
 
 def _cost(spectra: Sequence[Spectrum], kind: Kind, cutoff: float | None) -> float:

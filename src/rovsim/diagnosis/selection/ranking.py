@@ -16,7 +16,6 @@ from rovsim.diagnosis.selection.rivals import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.current import CurrentDrift
-from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
 
 
@@ -73,7 +72,7 @@ def name_terms(found: Fit, rivals: Sequence[Rival]) -> list[Named]:
 
 def name_smoothing(smoothing: Smoothing) -> Named:
     """What the camera does, as an effect; white noise was tried in its place."""
-    term = Term(PoseFilter(cutoff=smoothing.cutoff), ("cutoff",))
+    term = Term(smoothing.effect, ("cutoff",))
     return Named(term, {"cutoff": smoothing.std}, _odds(smoothing.gain))
 
 

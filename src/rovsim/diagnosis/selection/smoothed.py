@@ -1,7 +1,9 @@
 """A filter in the camera's software and a late command both delay what is seen.
 
 The noise of the cameras tells the filter's cutoff only within some per cent, the motion tells the
-delay far more finely. So a delay no longer than what the noise leaves open is the filter's.
+delay far more finely. So a delay no longer than what the noise leaves open is the filter's. So is
+one of about a frame, whatever the noise says: software that works between frames is that much later
+than software that works frame by frame.
 """
 
 from dataclasses import replace
@@ -13,15 +15,17 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.clocks import InputDelay
-from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
 
 DELAY = InputDelay.id
+# Frames: later by so much, and no more, is a latency, not a lower cutoff. Two stages between frames
+# are one frame later than two from frame to frame.
+BETWEEN_FRAMES = (0.5, 1.5)
 
 
 def seen_through(base: Model, smoothing: Smoothing | None) -> Model:
     """The base, as far as is known what the camera does to its poses."""
-    return base if smoothing is None else base + PoseFilter(cutoff=smoothing.cutoff)
+    return base if smoothing is None else base + smoothing.effect
 
 
 def absorb_delay(
@@ -29,8 +33,7 @@ def absorb_delay(
 ) -> tuple[Selection, Smoothing]:
     """The selection without a delay that the filter explains, and the filter that explains it.
 
-    Two stages delay slow motions by twice their time constant T = 1 / (2 pi f). Whatever was named
-    only because the cutoff was not quite right goes.
+    Whatever was named only because the cutoff was not quite right goes.
     """
     found = selection.found
     if DELAY not in (term.id for term in found.hypothesis.terms):
@@ -38,15 +41,32 @@ def absorb_delay(
     h = found.hypothesis
     k = next(i for i, term in enumerate(h.terms) if term.id == DELAY)
     delay, column = h.terms[k].effect["delay"], h.columns[k][0]
-    T, *_ = PoseFilter(cutoff=smoothing.cutoff).time_constants()
-    slower = T + 0.5 * delay
-    cutoff = 1.0 / (2.0 * np.pi * slower) if slower > 0.0 else np.inf
-    if not smoothing.lowest <= cutoff <= smoothing.highest:
+    std = float(found.std[column] * h.terms[k].parameters[0].scale)
+    finer = _refine(smoothing, delay, std)
+    if finer is None:
         return selection, smoothing
-    std = found.std[column] * h.terms[k].parameters[0].scale
-    finer = replace(smoothing, cutoff=cutoff, std=float(np.pi * cutoff**2 * std))
     rest = Hypothesis(seen_through(base, finer), h.without(k).terms)
     again = selection.workspace.fit(rest)
     if not np.isfinite(again.likelihood):  # undone, so slow a filter makes more than was there
         return selection, smoothing
     return replace(selection, found=prune(selection.workspace, again)), finer
+
+
+def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
+    """The filter that is later by a delay, known to within `std` s; None if it cannot be.
+
+    Two stages delay slow motions by twice their time constant T = 1 / (2 pi f).
+    """
+    late = _delay(smoothing.cutoff) + smoothing.latency + delay
+    beyond = late - _delay(smoothing.told)
+    least, most = BETWEEN_FRAMES
+    if least * smoothing.frame < beyond < most * smoothing.frame:
+        return replace(smoothing, cutoff=smoothing.told, latency=beyond)
+    cutoff = 1.0 / (np.pi * late) if late > 0.0 else np.inf
+    if not smoothing.lowest <= cutoff <= smoothing.highest:
+        return None
+    return replace(smoothing, cutoff=cutoff, std=np.pi * cutoff**2 * std, latency=0.0)
+
+
+def _delay(cutoff: float) -> float:
+    return 1.0 / (np.pi * cutoff)

@@ -207,7 +207,7 @@ class Wander(Effect):
 class Clock(Effect):
     """Moves the instants at which logged commands take effect."""
 
-    through = "commands"
+    through: ClassVar[Means] = "commands"
 
     @abstractmethod
     def arrival(self, time: Array) -> Array:

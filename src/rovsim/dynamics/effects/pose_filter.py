@@ -2,20 +2,29 @@
 
 from math import pi
 
-from rovsim.dynamics.effects.base import Parameter, Smoothing
+from numpy import ndarray as Array
+
+from rovsim.dynamics.effects.base import Clock, Parameter, Smoothing
 from rovsim.dynamics.effects.parameters import Signature
 
 NONE = 1e3  # Hz, ten times what cameras see: no filter at all
+LATEST = 0.2  # s, two frames of the slowest cameras
 
 
-class PoseFilter(Smoothing):
+class PoseFilter(Smoothing, Clock):
     """The software of the motion capture smooths the poses it reports, and so reports them late.
 
     Position and attitude pass two equal first-order low-passes; a cutoff of 1000 Hz means none.
+    Poses may come later than by these alone, by a `latency`: one frame where the software works
+    between frames, or hands on the one before. Commands then seem late by as much.
     """
 
     id = "pose_filter"
-    equation = r"y_k = a\,y_{k-1} + (1 - a)\,x_k \text{ twice},\quad a = e^{-2 \pi f_c\,\Delta t}"
+    through = "any"
+    equation = (
+        r"y_k = a\,y_{k-1} + (1 - a)\,x_k \text{ twice},\quad a = e^{-2 \pi f_c\,\Delta t},"
+        r"\quad u(t - \delta_y)"
+    )
     neglects = (
         "that it begins anew after frames in which the body was not found, and filters that look "
         "ahead"
@@ -30,6 +39,7 @@ class PoseFilter(Smoothing):
     signature = Signature({"cutoff": 2.0}, "surge", "change of surge thrust")
     parameters = (
         Parameter("cutoff", "Hz", "f_c", 0.1, NONE, default=NONE, scale=1.0, reciprocal=True),
+        Parameter("latency", "s", r"\delta_y", -LATEST, LATEST, scale=0.01, fitted=False),
     )
     starts = ({"cutoff": 10.0}, {"cutoff": 4.0})
 
@@ -37,3 +47,7 @@ class PoseFilter(Smoothing):
         """Of the two low-passes, s."""
         cutoff = self["cutoff"]
         return () if cutoff >= NONE else 2 * (1.0 / (2.0 * pi * cutoff),)
+
+    def arrival(self, time: Array) -> Array:
+        """On the clock of the poses every line takes effect later by the latency."""
+        return time + self["latency"]
