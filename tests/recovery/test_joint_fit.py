@@ -7,11 +7,14 @@ import pytest
 
 from flown import observed
 from rovsim import AXES
+from rovsim.diagnosis.answer import settle
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.joint_fit import _prune_together, fit_jointly
 from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
@@ -83,6 +86,9 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
         decay = loops[f"bandwidth_{axis}"] + body.linear[i] / body.M[i, i]
         true = WIDTH[axis] + base.body.linear[i] / base.body.M[i, i]
         assert decay == pytest.approx(true, rel=0.35), axis
+    settled = settle(selection, select_usable(runs), Gate((), runs))
+    left = {t.id: t.free for t in settled.fit.hypothesis.terms}
+    assert left == {t.id: t.free for t in found.hypothesis.terms}  # all of it, though none is sure
     again = fit_to_replays(found, bank)
     assert [t.id for t in again.hypothesis.terms] == [t.id for t in found.hypothesis.terms]
     assert np.isfinite(again.std).all()

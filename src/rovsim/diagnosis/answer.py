@@ -21,7 +21,6 @@ from rovsim.diagnosis.selection.forward_selection import search_unnoticed
 from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
 from rovsim.diagnosis.selection.idle_effects import drop_idle
-from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.model import Model
@@ -88,7 +87,7 @@ def settle(selection: Selection, usable: UsableRuns, gate: Gate) -> Answer:
 def _settle_values(selection: Selection, usable: UsableRuns) -> Answer:
     """At its final values on all runs, without what these do not bear out."""
     found, bank = polish_selection(selection, usable.runs)
-    borne_out = prune(selection.workspace.look_at(bank, found.noise), found)
+    borne_out = selection.prune(selection.workspace.look_at(bank, found.noise), found)
     if borne_out is not found:
         fewer = selection.fit(borne_out.hypothesis)
         return _settle_values(replace(selection, found=fewer), usable)

@@ -6,6 +6,7 @@ import numpy as np
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 SURE = 6.0  # twice a log likelihood: odds of 20 to 1
@@ -49,6 +50,13 @@ class Selection:
         `current`: a fit whose derivatives it may begin with.
         """
         return self.workspace.challenge(start, current, score, self.reach)
+
+    def prune(self, workspace: SearchWorkspace, found: Fit) -> Fit:
+        """Without what is not worth its price to a fit of the selection.
+
+        What was fitted at once stays: none of it is sure by itself, and all is needed.
+        """
+        return prune(workspace, found) if np.isinf(self.reach) else found
 
     @property
     def named_rivals(self) -> list[Rival]:
