@@ -69,10 +69,13 @@ def test_where_physics_is_left_a_name_must_be_surely_worth_it():
 
 
 class Workspace:
-    """Fits nothing: hypotheses as they are."""
+    """Fits nothing: hypotheses as they are, and no filter holds any but those it is given."""
+
+    def __init__(self, held=True):
+        self.held = held
 
     def fit(self, h, reach):
-        return Found(h)
+        return Found(h, self.held)
 
     def drop(self, found, groups):
         h = found.hypothesis
@@ -80,8 +83,8 @@ class Workspace:
 
 
 class Found:
-    def __init__(self, h):
-        self.hypothesis = h
+    def __init__(self, h, held=True):
+        self.hypothesis, self.held = h, held
 
 
 def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
@@ -94,6 +97,9 @@ def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
     passed, whole = Gate(held, runs).judge(selection)
     assert [t.id for t in passed.found.hypothesis.terms] == ["quadratic_damping"]
     assert not whole
+    lost = replace(selection, workspace=Workspace(held=False))
+    assert Gate(held, runs).keep_earning(lost).found is lost.found
+    assert Gate(held, runs).keep_earning(selection).found is not selection.found
     alone = Selection(Workspace(), Found(Hypothesis(base, (wrong,))), (), True)
     passed, whole = Gate(held, runs).judge(alone)
     assert passed.found.hypothesis.terms == ()

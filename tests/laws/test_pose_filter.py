@@ -194,7 +194,7 @@ def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood
     delayed = Term(InputDelay(delay=delay), ("delay",))
     h = Hypothesis(seen_through(base, smoothing), (delayed,))
     found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
-    rest = SimpleNamespace(likelihood=likelihood, hypothesis=SimpleNamespace(x=np.empty(0)))
+    rest = SimpleNamespace(held=np.isfinite(likelihood), hypothesis=SimpleNamespace(x=np.empty(0)))
     workspace = SimpleNamespace(fit=lambda start: rest)
     selection = Selection(workspace, found, ())
     again, finer = absorb_delay(selection, base, smoothing)

@@ -26,7 +26,9 @@ class Wald:
         left = [name for term in h.terms for name in term.free]
         gone = sum(self.z[name] ** 2 for name in self.z if name not in left)
         std = np.array([abs(x) / self.z[name] for x, name in zip(h.x, left, strict=True)])
-        return SimpleNamespace(hypothesis=h, std=std, likelihood=self.likelihood - gone)
+        likelihood = self.likelihood - gone
+        held = np.isfinite(likelihood)
+        return SimpleNamespace(hypothesis=h, std=std, likelihood=likelihood, held=held)
 
     def score(self, found: SimpleNamespace) -> float:
         return found.likelihood - PRICE * len(found.hypothesis.x)

@@ -45,12 +45,13 @@ class Answer:
     @property
     def complete(self) -> bool:
         """Whether it leaves nothing."""
-        return not (self.structures or self.refused)
+        return self.fit.held and not (self.structures or self.refused)
 
     @property
     def lasting(self) -> bool:
         """Whether more is left than single pushes: then names may stand for what has none."""
-        return self.refused or not all(one.moment for one in self.structures)
+        single = all(one.moment for one in self.structures)
+        return self.refused or not (self.fit.held and single)
 
     @cached_property
     def replayed(self) -> Model:
@@ -88,11 +89,11 @@ def _settle_values(selection: Selection, usable: UsableRuns) -> Answer:
     """At its final values on all runs, without what these do not bear out."""
     found, bank = polish_selection(selection, usable.runs)
     borne_out = selection.prune(selection.workspace.look_at(bank, found.noise), found)
-    if borne_out is not found:
-        fewer = selection.fit(borne_out.hypothesis)
+    fewer = selection.fit(borne_out.hypothesis) if borne_out is not found else found
+    if fewer is not found and fewer.held:
         return _settle_values(replace(selection, found=fewer), usable)
     score, whole = selection.workspace.score(found), fit_whole_file(found, bank)
-    left = find_structure(found if whole is None else whole, bank)
+    left = find_structure(found if whole is None else whole, bank) if found.held else []
     return Answer(selection, found, bank, score, left, whole=whole)
 
 

@@ -121,7 +121,8 @@ def _diagnose(
         _correlate(wider),
         rank_selected(base, named, usable.runs),
         ranking=rank_alone(workspace, nothing, found.fit),
-        rivals=rivals, structures=found.structures, refused=found.refused, scale=scale,
+        rivals=rivals, structures=found.structures,
+        refused=found.refused or not found.fit.held, scale=scale,
         not_observable=list_not_observable(found.selection, catalogue, base.vehicle),
         proposed=proposed,
         disturbance=None if proposed else _trace(found),
@@ -194,6 +195,6 @@ def _propose(
 
 def _trace(found: Answer) -> ForceInTime | None:
     """The force in time that is left; None where nothing is seen of it, or no filter holds."""
-    if not found.structures or not found.fit.seen.finite:
+    if not found.structures or not found.fit.held:
         return None
     return trace_force(found.fit, found.bank, found.structures)

@@ -108,7 +108,7 @@ def propose_law(
     if judged is None or not _holds(judged, selection, best, gate):
         return None
     fit, bank = polish(judged.fit)
-    if not np.isfinite(fit.likelihood):
+    if not fit.held:
         return None
     sizes, axis = _measure(judged.form, fit, runs)
     if any(left.axis == axis for left in find_structure(fit, bank)):

@@ -121,7 +121,7 @@ class LawSearch:
         terms: tuple[LawTerm, ...] = ()
         fit, best = self.selection.fit(start), None
         score = self.workspace.score(fit)
-        while len(terms) < TERMS and np.isfinite(fit.likelihood):
+        while len(terms) < TERMS and fit.held:
             known: Known = (None, None)
             if best is not None:
                 middle, known = stay(middle, list_moved(terms), place_of(best.law, around.site))

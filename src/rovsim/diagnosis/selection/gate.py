@@ -68,9 +68,10 @@ class Gate:
         found = selection.found
         while self.runs and found.hypothesis.terms:
             weakest = self._find_harmful(selection, found)
-            if weakest is None:
+            fewer = selection.fit(weakest) if weakest else None
+            if fewer is None or not fewer.held:
                 break
-            found = selection.fit(weakest)
+            found = fewer
         if self.refuses(found.hypothesis.model, found.hypothesis.base):
             base = replace(found.hypothesis, terms=())
             found = selection.fit(base)
@@ -126,8 +127,12 @@ class Gate:
             idle = [k for k, e in enumerate(errors[1:]) if not _costs(e, errors[0], least)]
             if not idle:
                 break
-            losses = [_ratio(errors[1 + k], errors[0]) for k in idle]
-            found = selection.fit(fewer[idle[int(np.argmin(losses))]])
+            idle.sort(key=lambda k: _ratio(errors[1 + k], errors[0]))
+            left = (selection.fit(fewer[k]) for k in idle)
+            without = next((fit for fit in left if fit.held), None)
+            if without is None:
+                break
+            found = without
         return replace(selection, found=found)
 
     def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:

@@ -51,6 +51,11 @@ class Fit:
     covariance: Array
 
     @property
+    def held(self) -> bool:
+        """Whether the filters could hold the model; if not, nothing is known of it."""
+        return bool(np.isfinite(self.likelihood))
+
+    @property
     def hypothesis(self) -> Hypothesis:
         """The hypothesis at its most likely values."""
         return self.seen.at
@@ -111,7 +116,7 @@ def polish(
     polished = again(found)
     for _ in range(1, POLISHED):
         finer = again(polished[0])
-        if not np.isfinite(finer[0].likelihood):
+        if not finer[0].held:
             break
         polished = finer
     return polished

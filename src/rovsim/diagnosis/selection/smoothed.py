@@ -47,7 +47,7 @@ def absorb_delay(
         return selection, smoothing
     rest = Hypothesis(seen_through(base, finer), h.without(k).terms)
     again = selection.workspace.fit(rest)
-    if not np.isfinite(again.likelihood):  # undone, so slow a filter makes more than was there
+    if not again.held:  # undone, so slow a filter makes more than was there
         return selection, smoothing
     return replace(selection, found=prune(selection.workspace, again)), finer
 

@@ -288,7 +288,7 @@ class SearchWorkspace:
 
         None where the observer cannot hold the current model.
         """
-        if not np.isfinite(current.likelihood):
+        if not current.held:
             return []
         key = current.hypothesis.key
         if key not in self._proposed:
