@@ -7,13 +7,15 @@ from rovsim import AXES
 from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
 from rovsim.diagnosis.checks.identifiability import find_doubtful, group_joint_parameters
 from rovsim.diagnosis.found import TrainDiagnosis
+from rovsim.diagnosis.observer.drifting_current import DriftFit
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.random_walk import Rate
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
-from rovsim.diagnosis.selection.ranking import Named, Selected, doubt_lead
+from rovsim.diagnosis.selection.ranking import Named, Selected, doubt_lead, name_drift
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
@@ -90,3 +92,9 @@ def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(del
         selected=selected,
     )  # fmt: skip
     assert (LOOKS_AHEAD in advise(found, [], [], built_in())) == doubted
+
+
+def test_what_wanders_may_be_what_has_no_name():
+    drift = DriftFit(Rate(0.01, std=0.001, gain=120.0), surplus=100.0)
+    assert name_drift(drift, lasting=False).probability == pytest.approx(1.0)
+    assert name_drift(drift, lasting=True).probability is None

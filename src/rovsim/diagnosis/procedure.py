@@ -115,7 +115,7 @@ def _diagnose(
     if found.fit.noise.drift:
         drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
         if drift.sure:
-            named.append(name_drift(drift))
+            named.append(name_drift(drift, found.lasting))
     return TrainDiagnosis(
         base, usable, found.fit,
         _correlate(wider),

@@ -86,13 +86,15 @@ def doubt_lead(named: Sequence[Named]) -> list[Named]:
     return [replace(one, probability=None) if leads(one) else one for one in named]
 
 
-def name_drift(drift: DriftFit) -> Named:
+def name_drift(drift: DriftFit, lasting: bool) -> Named:
     """A current that wanders, as an effect; forces that wander were tried in its place.
 
-    Nobody can foresee it, so it removes no error.
+    Nobody can foresee it, so it removes no error. Where physics is left that has no name, that may
+    be what seems to wander.
     """
     term = Term(CurrentDrift(rate=drift.rate.value), ("rate",))
-    return Named(term, {"rate": drift.rate.std}, _odds(drift.surplus))
+    probability = None if lasting else _odds(drift.surplus)
+    return Named(term, {"rate": drift.rate.std}, probability)
 
 
 def _odds(surplus: float) -> float:
