@@ -73,7 +73,8 @@ def chaptered(effects: Mapping[str, type[Effect]]) -> dict[str, list[type[Effect
     command = list(KINDS)[1]
     chapters: dict[str, list[type[Effect]]] = {title: [] for title in KINDS}
     for _, cls in sorted(effects.items()):
-        title = next(t for t, kinds in KINDS.items() if issubclass(cls, kinds))
+        # what smooths poses also moves the clock of the commands: the last that fits
+        title = next(t for t, kinds in reversed(KINDS.items()) if issubclass(cls, kinds))
         on_the_way = issubclass(cls, Autopilot) or cls.__module__.endswith(".thrusters")
         chapters[command if on_the_way else title].append(cls)
     return chapters
