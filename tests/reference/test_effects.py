@@ -27,7 +27,8 @@ from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion
 
-# parameters of contract, sections 2 and 6, where they are not one per axis
+# parameters of contract, sections 2 and 6, where they are not one per axis; `rate` of voltage_sag and
+# `latency` of pose_filter are ours, and change nothing unless given
 NAMES = {
     "net_buoyancy": ["force"],
     "buoyancy_center": ["x", "y", "z"],
@@ -64,7 +65,7 @@ NAMES |= {
     "tether_drag": ["coefficient", *ANCHOR],
     "wall_proximity": ["gain", "length_scale"],
     "surface_proximity": ["gain", "length_scale"],
-    "pose_filter": ["cutoff"],
+    "pose_filter": ["cutoff", "latency"],
     "marker_offset": ["x", "y", "z"],
     "marker_misalignment": ["roll", "pitch", "yaw"],
     "world_tilt": ["roll", "pitch"],
