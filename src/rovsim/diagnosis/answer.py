@@ -89,9 +89,10 @@ def _settle_values(selection: Selection, usable: UsableRuns) -> Answer:
     """At its final values on all runs, without what these do not bear out."""
     found, bank = polish_selection(selection, usable.runs)
     borne_out = selection.prune(selection.workspace.look_at(bank, found.noise), found)
-    fewer = selection.fit(borne_out.hypothesis) if borne_out is not found else found
-    if fewer is not found and fewer.held:
-        return _settle_values(replace(selection, found=fewer), usable)
+    if borne_out is not found:
+        fewer = selection.fit(borne_out.hypothesis)
+        if fewer.held:
+            return _settle_values(replace(selection, found=fewer), usable)
     score, whole = selection.workspace.score(found), fit_whole_file(found, bank)
     left = find_structure(found if whole is None else whole, bank) if found.held else []
     return Answer(selection, found, bank, score, left, whole=whole)
