@@ -17,6 +17,7 @@ from rovsim.apps.workbench.parts import (
     section,
     table,
     text,
+    while_idle,
     words,
 )
 from rovsim.apps.workbench.place import Place
@@ -145,7 +146,7 @@ class Flight:
             "Plan the flight", icon="route",
             on_click=lambda: jobs.design(self.bench, self.chosen["model"], question),
         ).props("unelevated no-caps").classes("onward")  # fmt: skip
-        button.bind_enabled_from(self.bench, "busy", backward=lambda busy: not busy)
+        while_idle(self.bench, button)
 
     def _terminal(self) -> None:
         chosen = self.chosen

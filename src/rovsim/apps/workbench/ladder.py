@@ -5,7 +5,16 @@ from nicegui import app, ui
 from rovsim import AXES
 from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.charts import INK, SOFT, Options
-from rovsim.apps.workbench.parts import cell, chart, computed, heading, section, table, text
+from rovsim.apps.workbench.parts import (
+    cell,
+    chart,
+    computed,
+    heading,
+    section,
+    table,
+    text,
+    while_idle,
+)
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.reporting.charts import chart_ladder
@@ -54,11 +63,10 @@ def _train(bench: Workbench) -> None:
         on = ui.select(physical, label="On top of", value=physical[-1]).classes("control")
         on.props("outlined dense")
         for kind, name in KINDS.items():
-            ui.button(
+            train = ui.button(
                 f"Train {name}", on_click=lambda _, k=kind: jobs.train(bench, k, on.value)
-            ).props("outline no-caps").bind_enabled_from(
-                bench, "busy", backward=lambda busy: not busy
             )
+            while_idle(bench, train.props("outline no-caps"))
 
 
 def _report(bench: Workbench) -> None:
@@ -68,9 +76,10 @@ def _report(bench: Workbench) -> None:
         "soft",
     )
     with ui.row().classes("controls"):
-        ui.button(
+        write = ui.button(
             "Write the report", icon="description", on_click=lambda: jobs.report(bench)
-        ).props("outline no-caps").bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
+        )
+        while_idle(bench, write.props("outline no-caps"))
         if "report" in bench.choices:
             path = bench.choices["report"]
             address = app.add_static_file(local_file=path, max_cache_age=0)

@@ -20,6 +20,7 @@ from rovsim.apps.workbench.parts import (
     table,
     text,
     tile,
+    while_idle,
     words,
 )
 from rovsim.apps.workbench.place import Place
@@ -58,7 +59,7 @@ async def show(bench: Workbench, place: Place) -> None:
         text(remark)
     _ranking(found)
     again = ui.button("Diagnose again", on_click=lambda: jobs.diagnose(bench))
-    _while_idle(bench, again.props("flat no-caps").classes("onward"))
+    while_idle(bench, again.props("flat no-caps").classes("onward"))
     for effect, room in seen.items():
         with room:
             await _show_effect(bench, effect)
@@ -71,11 +72,7 @@ def _ask(bench: Workbench) -> None:
         "end. This takes from ten seconds to some minutes."
     )
     button = ui.button("Find what is missing", icon="search", on_click=lambda: jobs.diagnose(bench))
-    _while_idle(bench, button.props("unelevated no-caps").classes("onward"))
-
-
-def _while_idle(bench: Workbench, button: ui.button) -> None:
-    button.bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
+    while_idle(bench, button.props("unelevated no-caps").classes("onward"))
 
 
 def _errors(error: DiagnosisErrors) -> None:

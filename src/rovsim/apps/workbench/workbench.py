@@ -302,7 +302,7 @@ def _check_base(model: Model) -> None:
 
 
 def _check_place(path: Path, inside: Sequence[Path], taken: set[str]) -> None:
-    """Refuse to write elsewhere or over what is no model, and to call a model as another is."""
+    """Refuse to write elsewhere or over a file, and to call a model as another is."""
     found = ""
     if not any(path.resolve().is_relative_to(folder.resolve()) for folder in inside):
         found = "lies outside the folder in which the workbench was started"
