@@ -18,9 +18,9 @@ from rovsim.core.rotations import from_euler, matrix, rotate, unrotate
 from rovsim.dynamics.body import Body, packed
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.damping import QuadraticDamping
-from rovsim.dynamics.engine.compiled import engine
+from rovsim.dynamics.engine.modules import engine
 from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import Constants, Inputs, Jobs, Place
+from rovsim.dynamics.engine.types import Constants, Inputs, Jobs, Place, WrenchParameters
 from rovsim.dynamics.model import zero_acceleration
 from rovsim.evaluation.scored import score
 from rovsim.evaluation.scores import rms, subtract
@@ -71,8 +71,9 @@ def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
     out = np.empty((len(jobs.first) * steps, 13))
     how(
         engine([]).integrate, jobs, h * np.arange(steps + 1), 1,
-        Constants.stacked([packed(body) for body in bodies]), inputs, np.empty((len(bodies), 0)),
-        None, Place(np.full((3, 2), np.nan), np.ones(3)), out,
+        Constants.stacked([packed(body) for body in bodies]), inputs,
+        WrenchParameters(np.empty((len(bodies), 0))), None,
+        Place(np.full((3, 2), np.nan), np.ones(3)), out,
     )  # fmt: skip
     return out.reshape(-1, steps, 13)
 
@@ -171,7 +172,7 @@ def test_batches_do_not_change_the_numbers(monkeypatch):
 
 CHILD = """
 from worlds import model, motion, at_rest, sticks
-from rovsim.dynamics.engine.compiled import engine
+from rovsim.dynamics.engine.modules import engine
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 simulate(model(), motion(sticks()), [(0, 5, at_rest())], ReplaySettings())
@@ -208,7 +209,7 @@ def kernel(path, factor):
     return module.Push
 
 
-def test_an_edited_kernel_gives_another_engine(tmp_path):
+def test_an_edited_kernel_is_compiled_anew(tmp_path):
     names = [engine([kernel(tmp_path / f"{i}.py", f)]).__name__ for i, f in enumerate([1, 2, 1])]
     assert names[0] == names[2] != names[1]
 

@@ -15,9 +15,16 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Wrench
-from rovsim.dynamics.engine.compiled import engine
+from rovsim.dynamics.engine.modules import attached, engine
 from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import NO_MEMORY, Constants, Inputs, Jobs, Place
+from rovsim.dynamics.engine.types import (
+    NO_MEMORY,
+    Constants,
+    Inputs,
+    Jobs,
+    Place,
+    WrenchParameters,
+)
 from rovsim.dynamics.model import Model
 from rovsim.simulation.drive import Drive, Reads
 
@@ -96,9 +103,13 @@ class Batch:
         if learned:
             _refuse_unlike(models)
             self._residual = models[0].residual.data if models[0].residual else None
-        slots = _slots(models, candidates)
-        self.engine = engine(slots)
-        self._parameters = np.stack([_slotted(m, slots) for m in models])
+        own, further = _slots(models, candidates)
+        slots = [*own, *further]
+        self.engine = engine(own, bool(further))
+        self._parameters = WrenchParameters(
+            np.stack([_slotted(m, slots) for m in models]),
+            attached(further, sum(len(cls.channels) for cls in own)) if further else None,
+        )
         self._constants = Constants.stacked([m.constants for m in models])
         self._place = Place(
             np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
@@ -181,7 +192,7 @@ class Batch:
         out = np.empty((len(pushes), 13))
         self.engine.heun(
             state, memory, t, h, pushes, self._constants, self._inputs([drive]),
-            self._parameters[0], self._residual, self._place, out,
+            self._parameters, self._residual, self._place, out,
         )  # fmt: skip
         return out
 
@@ -210,18 +221,22 @@ def _refuse_unlike(models: Sequence[Model]) -> None:
     )
 
 
-def _slots(models: Sequence[Model], candidates: Sequence[type[Wrench]]) -> list[type[Wrench]]:
-    """Wrench effects of an engine that serves the models, some perhaps twice.
+def _slots(
+    models: Sequence[Model], candidates: Sequence[type[Wrench]]
+) -> tuple[tuple[type[Wrench], ...], list[type[Wrench]]]:
+    """Wrench effects of the engine that serves the models, and those to attach to it.
 
-    None where none acts; otherwise all that are known: an engine takes seconds to compile, and a
-    step hardly longer for those that a model lacks.
+    None where none acts; otherwise all of the package: an engine takes seconds to compile, and a
+    step hardly longer for those that a model lacks. Attached are all others, and what a model has
+    twice.
     """
     most = Counter(candidates)
     for model in models:
         most |= Counter(type(wrench) for wrench in model.wrenches)
-    if most:
-        most |= Counter(built_in().wrenches)
-    return [cls for cls in sorted(most, key=lambda cls: cls.id) for _ in range(most[cls])]
+    if not most:
+        return (), []
+    further = most - Counter(built_in().wrenches)
+    return built_in().wrenches, sorted(further.elements(), key=lambda cls: cls.id)
 
 
 def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rovsim.dynamics.engine.compiled import entry, inline_anew, inline_internal, internal
 from rovsim.dynamics.engine.equation import flow, rotation, slope
-from rovsim.dynamics.engine.types import Constants, State
+from rovsim.dynamics.engine.types import Constants, State, WrenchParameters
 from rovsim.dynamics.engine.vectors import (
     add3,
     add4,
@@ -117,6 +117,12 @@ def constants_of(bodies, m):
 
 
 @inline_internal
+def parameters_of(p, m):
+    """Parameters of the wrench effects of set m alone."""
+    return WrenchParameters(p.values[m], p.attached)
+
+
+@inline_internal
 def step_of(inputs, row, k):
     """Commands of step k: wrench, forces and angles, demand, duration of the recording."""
     return (
@@ -182,8 +188,8 @@ def integrate(extra, jobs, time, stride, bodies, inputs, p, data, site, out):
     place, features, a_res = site_of(site), np.empty(FEATURES), np.empty(6)
     for job in range(jobs.first.size):
         m, first, row = jobs.member[job], jobs.first[job], jobs.out[job]
-        x, body, own, left = state_of(jobs.state[job]), constants_of(bodies, m), p[m], stride
-        memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
+        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), parameters_of(p, m)
+        memory, left = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6, stride
         for n in range(first, first + jobs.steps[job]):
             t, h, step = time[n], time[n + 1] - time[n], step_of(inputs, inputs.row[m], n)
             ramp = ramp_of(inputs, inputs.row[m], n, body)
@@ -200,11 +206,11 @@ def integrate(extra, jobs, time, stride, bodies, inputs, p, data, site, out):
 def advance(extra, state, memory, t, h, bodies, inputs, p, data, site):
     """Move state (13,) and memory (6,) on over all steps of the inputs, in place."""
     x, body, place, m = state_of(state), constants_of(bodies, 0), site_of(site), vector6(memory)
-    features, a_res = np.empty(FEATURES), np.empty(6)
+    features, a_res, own = np.empty(FEATURES), np.empty(6), parameters_of(p, 0)
     for n in range(inputs.duration.size):
         step = step_of(inputs, 0, n)
         x, m = stepped(
-            extra, t + n * h, x, m, h, body, p[0], step, ZERO6, data, place, features, a_res
+            extra, t + n * h, x, m, h, body, own, step, ZERO6, data, place, features, a_res
         )
     store(x, state)
     for i in range(6):
@@ -220,19 +226,20 @@ def heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out)
     """
     x, body, place = state_of(state), constants_of(bodies, 0), site_of(site)
     features, a_res, m = np.empty(FEATURES), np.empty(6), vector6(memory)
+    own = parameters_of(p, 0)
     for n in range(pushes.shape[0]):
         step, now, push = step_of(inputs, 0, n), t + n * h, vector6(pushes[n])
         if data is not None:
             recalled = memory_push(body, m)
             a_learned = learned(
-                extra, now, x, body, p, step, recalled, data, place, features, a_res
+                extra, now, x, body, own, step, recalled, data, place, features, a_res
             )
             push = add6(push, 1.0, a_learned)
-        k1 = slope(extra, now, x, body, p, step, add6(push, 1.0, memory_push(body, m)), place)
+        k1 = slope(extra, now, x, body, own, step, add6(push, 1.0, memory_push(body, m)), place)
         m1 = add6(through_water(x, body), -1.0, m)
         x1, ahead = moved(x, h, k1), add6(m, h * body.forgets, m1)
         k2 = slope(
-            extra, now + h, x1, body, p, step, add6(push, 1.0, memory_push(body, ahead)), place
+            extra, now + h, x1, body, own, step, add6(push, 1.0, memory_push(body, ahead)), place
         )
         m2 = add6(through_water(x1, body), -1.0, ahead)
         x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
@@ -248,7 +255,7 @@ def accelerations(extra, times, states, memory, bodies, inputs, p, data, site, o
 
     `memory` (n, 6) is what the water remembers then; empty: nothing.
     """
-    body, own, place = constants_of(bodies, 0), p[0], site_of(site)
+    body, own, place = constants_of(bodies, 0), parameters_of(p, 0), site_of(site)
     features, a_res = np.empty(FEATURES), np.empty(6)
     for n in range(times.size):
         x, step, push = state_of(states[n]), step_of(inputs, inputs.row[0], n), ZERO6

@@ -13,6 +13,7 @@ from rovsim.dynamics.engine.integration import (
     ZERO6,
     constants_of,
     memory_after,
+    parameters_of,
     push_over_step,
     ramp_of,
     renormalised,
@@ -142,7 +143,7 @@ def observe(
     place = site_of(site)
     for job in range(jobs.first.size):
         m, first, at = jobs.member[job], jobs.first[job], jobs.out[job]
-        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), p[m]
+        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), parameters_of(p, m)
         gain_pose, gain_nu = vector6(gains[0]), each6(body.free, vector6(gains[1]))
         gain_a = each6(body.free, vector6(gains[2]))
         a, n = ZERO6, ends[first]

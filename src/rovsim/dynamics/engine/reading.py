@@ -10,6 +10,7 @@ channels of each such effect, one effect after the other.
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import typeof, types
 from numpy import ndarray as Array
 
 from rovsim.dynamics.engine.compiled import inline_anew, inline_internal
@@ -55,21 +56,35 @@ def example_reading(channels: Any) -> ReadingAt:
     return ReadingAt(*EXAMPLE, actuators, channels)
 
 
+class Layout(NamedTuple):
+    """Of `acting`: the number of thrusters' components and of surfaces, and all `places`."""
+
+    components: int
+    surfaces: int
+    places: Array
+
+
 @inline_internal
-def first_channel(body):
+def layout_of(body):
+    """Where in `acting` is what."""
+    return Layout(body.B.shape[1], body.lifting.size, body.places)
+
+
+@inline_internal
+def first_channel(layout):
     """Column of `acting` where the channels begin."""
-    surfaces, components = body.lifting.size, body.B.shape[1]
-    return 2 * (components + surfaces) + body.places.shape[0] - surfaces
+    components, surfaces, places = layout
+    return 2 * (components + surfaces) + places.shape[0] - surfaces
 
 
 @inline_internal
-def actuators_at(at, body, acting):
+def actuators_at(at, layout, acting):
     """All actuators at one instant."""
-    columns, count = body.B.shape[1] + body.lifting.size, body.places.shape[0]
-    first = columns + count - body.lifting.size
+    columns, count = layout.components + layout.surfaces, layout.places.shape[0]
+    first = columns + count - layout.surfaces
     inflow = np.empty((count, 3))
     for i in range(count):
-        local = add3(at.nu_r[:3], 1.0, cross(at.nu_r[3:], vector3(body.places[i])))
+        local = add3(at.nu_r[:3], 1.0, cross(at.nu_r[3:], vector3(layout.places[i])))
         for j in range(3):
             inflow[i, j] = local[j]
     return Actuators(acting[columns:first], acting[first : first + columns], inflow)
@@ -82,3 +97,9 @@ def reading_at(at, actuators, channels):
         at.t, at.duration, at.position, at.R, at.nu, at.nu_r, at.nu_c_dot, at.drag, at.inertia,
         at.demand, at.tank, at.axes, actuators, channels,
     )  # fmt: skip
+
+
+# How a chain of effects is called by its address: (at, p, layout, acting).
+BY_ADDRESS = types.UniTuple(types.float64, 6)(
+    typeof(EXAMPLE), types.float64[::1], typeof(Layout(0, 0, np.zeros((0, 3)))), types.float64[::1]
+)

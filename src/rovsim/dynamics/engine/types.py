@@ -1,6 +1,6 @@
 """What the compiled engine passes around. SI units, body axes FRD at CO, world NED, float64."""
 
-from typing import NamedTuple, Sequence
+from typing import Any, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -101,6 +101,17 @@ class Constants(NamedTuple):
 
 
 OF_VEHICLE = ("directions", "factors", "surfaces", "places")  # the same in all its parameter sets
+
+
+class WrenchParameters(NamedTuple):
+    """Parameters of wrench effects: `values` (m, k) for each of m sets, or (k,) of one set.
+
+    Those of an engine's own effects come first, each behind 1 or 0: whether it acts. Values beyond
+    them are those of `attached`, another chain of effects (`rovsim.dynamics.engine.modules`).
+    """
+
+    values: Array
+    attached: Any = None
 
 
 class Inputs(NamedTuple):
