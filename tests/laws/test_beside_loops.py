@@ -8,6 +8,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
@@ -28,7 +29,7 @@ def test_the_torque_of_propellers_is_foreseen_beside_a_loop_about_yaw(tmp_path):
     listed = list_candidates(runs, built_in(), base.vehicle)
     torque = [c for c in listed if c.effect is PropellerTorque]
     known = linearise_candidates(bank, Hypothesis(base), torque)
-    first = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
+    first = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     loop = Hypothesis(base, (Term(OnboardControl(**LOOP), ()),))
     workspace = first.redesign(loop, FIRST_NOISE)
     (proposal,) = workspace.propose(workspace.fit(loop))

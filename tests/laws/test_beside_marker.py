@@ -8,6 +8,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
@@ -29,7 +30,7 @@ def searching(tmp_path_factory):
     listed = list_candidates(runs, built_in(), base.vehicle)
     drag = [c for c in listed if c.effect in (QuadraticDamping, MarkerOffset)]
     known = linearise_candidates(bank, Hypothesis(base), drag)
-    workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
+    workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     return workspace, workspace.fit(Hypothesis(base, (Term(MarkerOffset(), ("x",)),)))
 
 

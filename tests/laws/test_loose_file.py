@@ -51,7 +51,7 @@ def fit(cost, *names):
 def workspace_of(without=0.0):
     """`without`: what is left beside a loose file if a term is taken away."""
     return SimpleNamespace(
-        price=PRICE, products=lambda seen: np.array([[seen]]),
+        price=PRICE, columns=SimpleNamespace(products=lambda seen: np.array([[seen]])),
         products_without=lambda found, term: np.array([[without]]),
         sensitivities=SimpleNamespace(base_model=None, blocks=()),
     )  # fmt: skip
@@ -103,7 +103,7 @@ def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
     assert all(one.gain < 0.0 for one in alone)
     base = nominal(load_vehicle(default_vehicle()))
     workspace = SimpleNamespace(
-        price=400.0, products=lambda seen: rows @ rows.T,
+        price=400.0, columns=SimpleNamespace(products=lambda seen: rows @ rows.T),
         sensitivities=SimpleNamespace(base_model=base, blocks=blocks),
     )  # fmt: skip
     both = propose_file(workspace, SimpleNamespace(seen=None, hypothesis=Hypothesis(base)))

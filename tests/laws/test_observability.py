@@ -8,6 +8,7 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
@@ -31,7 +32,7 @@ def test_behind_loops_about_all_angles_the_torque_of_propellers_cannot_be_seen(t
     listed = list_candidates(runs, built_in(), base.vehicle)
     some = [c for c in listed if c.effect.id in TRIED]
     known = linearise_candidates(bank, Hypothesis(base), some)
-    workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
+    workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     loops = Term(OnboardControl(**LOOPS), tuple(LOOPS))
     with_loops, without = (
         list_not_observable(

@@ -18,6 +18,7 @@ from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.joint_fit import _prune_together, fit_jointly
 from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
@@ -71,7 +72,7 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     listed = list_candidates(runs, built_in(), base.vehicle)
     some = [c for c in listed if c.effect.id in ("added_mass", "linear_damping")]
     known = linearise_candidates(bank, Hypothesis(base), some)
-    workspace = SearchWorkspace(bank, known, FIRST_NOISE, SearchSettings())
+    workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     selection = fit_jointly(workspace, base, AXES)
     found, bank = selection.found, selection.workspace.bank
     terms = {t.id: t.effect for t in found.hypothesis.terms}

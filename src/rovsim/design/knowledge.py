@@ -18,6 +18,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.candidates import Candidate, list_candidates
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit, polish
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
@@ -281,5 +282,5 @@ def _propose(
     """The start and the free parameters of an effect that promise most, and their price."""
     found, bank = _fit(h, runs)
     seen = linearise_candidates(bank, found.hypothesis, own)
-    workspace = SearchWorkspace(bank, seen, found.noise, SearchSettings())
+    workspace = SearchWorkspace(WhiteColumns(bank, seen, found.noise), SearchSettings())
     return workspace.propose(found)[0].term, workspace.price

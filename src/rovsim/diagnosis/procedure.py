@@ -55,6 +55,7 @@ from rovsim.diagnosis.selection.ranking import (
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linearise_candidates
 from rovsim.diagnosis.selection.smoothed import absorb_delay, seen_through
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
@@ -177,7 +178,8 @@ def _observe(
         if not noise.drift or close.paths:
             break
         close = close.redesign(base, noise)  # forces differ where the water moves
-    return SearchWorkspace(close, sensitivities, noise, settings).redesign(Hypothesis(base), noise)
+    workspace = SearchWorkspace(WhiteColumns(close, sensitivities, noise), settings)
+    return workspace.redesign(Hypothesis(base), noise)
 
 
 def _propose(

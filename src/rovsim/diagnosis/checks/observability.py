@@ -35,10 +35,10 @@ def list_not_observable(
     workspace = selection.workspace
     runs = workspace.bank.runs
     blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
-    shown = _find_shown(workspace.sizes(Hypothesis(base)), blocks, workspace.price)
+    shown = _find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.price)
     if selection.found.hypothesis.model.thrust_path.autopilots:
         driven = [block for block in blocks if block.candidate.effect.through == "thrusters"]
-        sizes = workspace.sizes(selection.found.hypothesis)
+        sizes = workspace.columns.sizes(selection.found.hypothesis)
         shown |= _find_shown(sizes, driven, workspace.price)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)

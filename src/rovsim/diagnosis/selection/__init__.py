@@ -3,6 +3,7 @@
 candidates         every effect of the catalogue, from each of its starts
 sensitivities      how each would change the innovations, to first order
 proposals          what each promises, and what chance would seem to gain
+white_columns      the same under one noise, beside what was found
 workspace          the runs, the columns, one noise for all; what is fitted already
 prior              what is known of parameters before the runs are looked at
 gauss_newton       the most likely parameters, and their spread

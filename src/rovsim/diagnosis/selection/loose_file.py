@@ -68,13 +68,13 @@ def cost_beside(numbers: list[FileNumber], products: Array) -> float:
 
 def measure_cost(workspace: SearchWorkspace, found: Fit) -> float:
     """The same of a fit."""
-    return cost_beside(list_numbers(workspace), workspace.products(found.seen))
+    return cost_beside(list_numbers(workspace), workspace.columns.products(found.seen))
 
 
 def measure_loss(workspace: SearchWorkspace, found: Fit, term: Term) -> float:
     """How much more is left beside a loose file without one term of a fit."""
     numbers, rest = list_numbers(workspace), workspace.products_without(found, term)
-    return cost_beside(numbers, rest) - cost_beside(numbers, workspace.products(found.seen))
+    return cost_beside(numbers, rest) - cost_beside(numbers, workspace.columns.products(found.seen))
 
 
 def find_limit(workspace: SearchWorkspace, term: Term) -> float:
@@ -112,7 +112,7 @@ def propose_file(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     the common scale, and the gain would follow it away from what the file says.
     """
     numbers = [n for n in list_numbers(workspace) if n.candidate.effect is not ThrusterGain]
-    own, M = [number.row for number in numbers], workspace.products(current.seen)
+    own, M = [number.row for number in numbers], workspace.columns.products(current.seen)
     gain = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.price)
     found = current.hypothesis
     for j, x in zip(gain.chosen, gain.x, strict=True):

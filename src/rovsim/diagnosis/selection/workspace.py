@@ -7,7 +7,7 @@ single number.
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple, Sequence
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import inner_products, project_out, solve
+from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit, fit_or_give_up
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain
@@ -23,17 +23,11 @@ from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, ra
 from rovsim.diagnosis.selection.sensitivities import (
     Sensitivities,
     fit_remaining_noise,
-    linearise_beside,
     linearise_candidates,
 )
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.dynamics.model import Model
 
-# Of the square of a derivative: if one has turned by more, what was found has changed columns.
-# Chosen on a marker 0.1 m beside CO, which turned its own by 0.2: one drag passed for another.
-CHANGED = 0.1
-# Of a column's own square, in six digits: what free parameters leave less of is theirs.
-EXPLAINED = 1e-6
 HOPELESS = 100.0  # twice the log likelihood: what is less likely by e^50 need not be known better
 
 
@@ -41,7 +35,7 @@ HOPELESS = 100.0  # twice the log likelihood: what is less likely by e^50 need n
 class Removed:
     """A hypothesis without one of its terms, judged to first order.
 
-    `products` (1 + c, 1 + c) as of `SearchWorkspace`; `loss`: increase of the sum of squares;
+    `products` (1 + c, 1 + c) as of `WhiteColumns`; `loss`: increase of the sum of squares;
     `others`: all candidates for what the term took, best first.
     """
 
@@ -51,110 +45,67 @@ class Removed:
     others: list[Proposal]
 
 
-class _White(NamedTuple):
-    """Columns (c, m) of the candidates, white, and their inner products (c, c)."""
-
-    columns: Array
-    products: Array
-
-
 @dataclass(frozen=True, eq=False)
 class SearchWorkspace:
-    """Everything a search looks at: the runs, the candidates' columns, and one noise for all.
+    """Everything a search looks at: the runs, the candidates' columns, and one noise for all."""
 
-    `sensitivities` are those beside the base, then beside what was found. Loops on board take
-    demands from the mixer, so that thrusters push something else beside them: there all columns
-    are made anew.
-    """
-
-    bank: FilterBank
-    sensitivities: Sensitivities
-    noise: Noise
+    columns: WhiteColumns
     settings: SearchSettings
     _fitted: dict[tuple, Fit] = field(default_factory=dict)
     _given_up: dict[tuple, float] = field(default_factory=dict)
     _proposed: dict[tuple, list[Proposal]] = field(default_factory=dict)
     _removed: dict[tuple, list[Removed]] = field(default_factory=dict)
-    _beside: dict[tuple, Sensitivities] = field(default_factory=dict)
-    _white: dict[tuple, _White] = field(default_factory=dict)
+
+    @property
+    def bank(self) -> FilterBank:
+        """The filters that all fits have."""
+        return self.columns.bank
+
+    @property
+    def noise(self) -> Noise:
+        """What all of them are judged under."""
+        return self.columns.noise
+
+    @property
+    def sensitivities(self) -> Sensitivities:
+        """What each candidate would change."""
+        return self.columns.sensitivities
 
     def renew(self, current: Fit) -> "SearchWorkspace":
         """The workspace whose filters, columns and noise suit what is now known to act.
 
         Columns take longest: they are made anew each time that twice as much was found.
         """
-        at, beside = current.hypothesis, self._look_beside(current.hypothesis).beside
+        at, beside = current.hypothesis, self.columns.beside(current.hypothesis).beside
         fresh = self.look_again(current) if len(at.terms) >= 2 * len(beside) else self
-        noise = fit_remaining_noise(fresh._look_beside(at), at, self.noise, rounds=1)
+        noise = fit_remaining_noise(fresh.columns.beside(at), at, self.noise, rounds=1)
         return fresh.redesign(at, noise)
 
     def look_again(self, current: Fit) -> "SearchWorkspace":
         """The workspace with columns beside all that was found, where that has changed them."""
         at, names = current.hypothesis, {term.id for term in current.hypothesis.terms}
-        if names == set(self._look_beside(at).beside) or not self._has_changed_columns(current):
+        known = names == set(self.columns.beside(at).beside)
+        if known or not self.columns.have_changed(current.seen):
             return self
-        bank, loops = self.bank.redesign(at.model, self.noise), _list_loops(at.model)
-        fresh = linearise_beside(bank, at, self.sensitivities)
-        again = replace(self, _white={}, _proposed={}, _removed={})
-        if loops == _list_loops(self.sensitivities.base_model):
-            return replace(again, sensitivities=fresh)
-        return replace(again, _beside=self._beside | {loops: fresh})
-
-    def _has_changed_columns(self, current: Fit) -> bool:
-        """Whether the derivatives by what was found are others than they were without it.
-
-        Where axes drive each other columns are made anew with every noise, and not here.
-        """
-        h = current.hypothesis
-        if self.bank.coupled:
-            return False
-        known = {
-            (block.candidate.effect.id, name): column
-            for block in reversed(self._look_beside(h).blocks)
-            for name, column in zip(block.candidate.free, block.derivatives, strict=True)
-        }
-        names = [(term.id, name) for term in h.terms for name in term.free]
-        both = [(k, known[name]) for k, name in enumerate(names) if name in known]
-        own = self.bank.flatten([J.astype(np.float32) for J in current.seen.J], self.noise)
-        columns = self._whiten(h).columns
-        return any(_turned(own[k], columns[j]) > CHANGED for k, j in both)
+        return replace(self, columns=self.columns.anew(at), _proposed={}, _removed={})
 
     def redesign(self, at: Hypothesis, noise: Noise) -> "SearchWorkspace":
         """The workspace whose filters suit a hypothesis and a noise.
 
-        Columns found with the filters of one noise can be turned into those of another, but not
-        where axes drive each other: there they are made anew, and the noise is fitted to them.
+        Where axes drive each other, columns of another noise do not do: they are made anew, and the
+        noise is fitted to them.
         """
-        bank, columns = self.bank.redesign(at.model, noise), self.sensitivities
-        beside = {} if bank.coupled else self._beside
-        if bank.coupled:
-            base = Hypothesis(columns.base_model)
-            columns = linearise_candidates(bank, base, columns.candidates)
-            noise = fit_remaining_noise(columns, at, noise, rounds=1)
-        return SearchWorkspace(bank, columns, noise, self.settings, _beside=beside)
+        bank = self.bank.redesign(at.model, noise)
+        if not bank.coupled:
+            return SearchWorkspace(self.columns.under(bank, noise), self.settings)
+        base = Hypothesis(self.sensitivities.base_model)
+        fresh = linearise_candidates(bank, base, self.sensitivities.candidates)
+        noise = fit_remaining_noise(fresh, at, noise, rounds=1)
+        return SearchWorkspace(WhiteColumns(bank, fresh, noise), self.settings)
 
     def look_at(self, bank: FilterBank, noise: Noise) -> "SearchWorkspace":
         """The same prices, for fits to other runs; candidates are still judged by its own."""
-        return SearchWorkspace(bank, self.sensitivities, noise, self.settings)
-
-    def _look_beside(self, at: Hypothesis) -> Sensitivities:
-        """The candidates' columns beside the loops of a hypothesis; made once for these loops."""
-        loops = _list_loops(at.model)
-        if loops == _list_loops(self.sensitivities.base_model):
-            return self.sensitivities
-        if loops not in self._beside:
-            bank = self.bank.redesign(at.model, self.noise)
-            self._beside[loops] = linearise_beside(bank, at, self.sensitivities)
-        return self._beside[loops]
-
-    def _whiten(self, at: Hypothesis) -> _White:
-        """The same, white under the common noise."""
-        loops = _list_loops(at.model)
-        if loops not in self._white:
-            known = self._look_beside(at)
-            columns = known.bank.flatten(known.columns, self.noise)
-            self._white[loops] = _White(columns, inner_products(columns).astype(float))
-        return self._white[loops]
+        return SearchWorkspace(WhiteColumns(bank, self.sensitivities, noise), self.settings)
 
     @cached_property
     def price(self) -> float:
@@ -197,26 +148,6 @@ class SearchWorkspace:
         """What a hypothesis costs, in twice the log likelihood."""
         return self.price * sum(t.choices for t in at.terms) + doubt_gain(at)
 
-    def sizes(self, at: Hypothesis) -> Array:
-        """Lengths (c,) of the candidates' columns, white, beside the loops of a hypothesis."""
-        return np.sqrt(np.diag(self._whiten(at).products))
-
-    def products(self, seen: Linearised) -> Array:
-        """Inner products (1 + c, 1 + c) of the innovations and the candidates' columns.
-
-        What the free parameters can explain is projected out of both.
-        """
-        rows = [one.astype(np.float32) for one in seen.rows]
-        own = self.bank.flatten(rows, self.noise)
-        columns, among = self._whiten(seen.at)
-        across = own @ columns.T
-        M = np.block([[inner_products(own), across], [across.T, among]])
-        kept = [0, *range(len(own), len(M))]
-        left = project_out(M, range(1, len(own)))[np.ix_(kept, kept)]
-        gone = 1 + np.flatnonzero(np.diag(left)[1:] < EXPLAINED * np.diag(among))
-        left[gone], left[:, gone] = 0.0, 0.0
-        return left
-
     def remove_each(self, current: Fit) -> list[Removed]:
         """The current hypothesis without each of its terms, the others refitted to first order.
 
@@ -228,9 +159,9 @@ class SearchWorkspace:
         return self._removed[key]
 
     def _remove_each(self, current: Fit) -> list[Removed]:
-        found, left = [], float(self.products(current.seen)[0, 0])
+        found, left = [], float(self.columns.products(current.seen)[0, 0])
         for seen in self._without(current, [(term,) for term in current.hypothesis.terms]):
-            M = self.products(seen)
+            M = self.columns.products(seen)
             found.append(Removed(seen.at, M, float(M[0, 0]) - left, self._rank(M)))
         return found
 
@@ -238,7 +169,7 @@ class SearchWorkspace:
         """The `products` of the current hypothesis without one of its terms."""
         if known := self._removed.get(current.hypothesis.key):
             return known[current.hypothesis.terms.index(term)].products
-        return self.products(self._without(current, [(term,)])[0])
+        return self.columns.products(self._without(current, [(term,)])[0])
 
     def drop(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Hypothesis]:
         """The current hypothesis without each group of terms, the others refitted to first order.
@@ -292,26 +223,13 @@ class SearchWorkspace:
             return []
         key = current.hypothesis.key
         if key not in self._proposed:
-            self._proposed[key] = self._rank(self.products(current.seen))
+            self._proposed[key] = self._rank(self.columns.products(current.seen))
         return self._proposed[key]
 
     def chance_limit(self, current: Fit, seed: int) -> float:
         """What the best of all candidates gains by chance, but for the false alarms allowed."""
         gains = draw_chance_gains(
-            self.products(current.seen)[1:, 1:], self.sensitivities.blocks, self.price,
+            self.columns.products(current.seen)[1:, 1:], self.sensitivities.blocks, self.price,
             self.settings.draws, seed,
         )  # fmt: skip
         return max(0.0, float(np.quantile(gains, 1.0 - self.settings.false_alarm)))
-
-
-def _turned(a: Array, b: Array) -> float:
-    """Share of the square of a that is not along b."""
-    return 1.0 - float((a @ b) ** 2 / max((a @ a) * (b @ b), 1e-30))
-
-
-def _list_loops(model: Model) -> tuple:
-    """Which demands loops on board take, and in which mode; empty where there are none."""
-    return tuple(
-        (loop.mixed(np.eye(6)).tobytes(), *(loop[p.name] for p in loop.parameters if not p.fitted))
-        for loop in model.thrust_path.autopilots
-    )
