@@ -203,3 +203,32 @@ def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood
     late = finer.effect.arrival(0.0) + 1.0 / (np.pi * finer.cutoff)
     assert late == pytest.approx(1.0 / (6.0 * np.pi) + absorbed * delay)
     assert (finer.latency != 0.0) is (delay == 0.009)  # the noise knows the cutoff far better
+
+
+@pytest.mark.parametrize(
+    ("lag", "likelier", "absorbed"),
+    [(0.009, 10.0, True), (0.009, 1e3, False), (0.05, 10.0, False)],
+    ids=["a frame", "a frame, and surely no delay", "far longer"],
+)
+def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
+    """`likelier`: by how much the lag is than the filter's latency, twice the log likelihood."""
+    base = model()
+    smoothing = Smoothing(6.0, std=0.3, gain=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01)
+
+    def found(start, score=0.0):
+        std = np.full(len(start.x), 0.01)
+        return SimpleNamespace(hypothesis=start, std=std, held=True, score=score)
+
+    def fit(start, reach=np.inf):
+        if "thruster_lag" in (term.id for term in start.terms):
+            return found(start)  # a delay beside it has nothing to explain
+        late = (Term(InputDelay(delay=lag), ("delay",)),) if start.terms else ()
+        return found(replace(start, terms=late), -likelier)
+
+    h = Hypothesis(
+        seen_through(base, smoothing), (Term(ThrusterLag(time_constant=lag), ("time_constant",)),)
+    )
+    workspace = SimpleNamespace(fit=fit, score=lambda one: one.score, price=0.0)
+    again, finer = absorb_delay(Selection(workspace, found(h), ()), base, smoothing)
+    assert (again.found.hypothesis.terms == ()) is absorbed
+    assert finer.latency == pytest.approx(lag if absorbed else 0.0)

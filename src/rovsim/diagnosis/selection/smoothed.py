@@ -12,12 +12,15 @@ import numpy as np
 
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.workspace import HOPELESS
 from rovsim.dynamics.effects.clocks import InputDelay
+from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.dynamics.model import Model
 
-DELAY = InputDelay.id
+DELAY, LAG = InputDelay.id, ThrusterLag.id
 # Frames: later by so much, and no more, is a latency, not a lower cutoff. Two stages between frames
 # are one frame later than two from frame to frame.
 BETWEEN_FRAMES = (0.5, 1.5)
@@ -35,21 +38,51 @@ def absorb_delay(
 
     Whatever was named only because the cutoff was not quite right goes.
     """
-    found = selection.found
+    found, workspace = selection.found, selection.workspace
+    unlagged = _without_short_lag(found.hypothesis, smoothing)
+    if unlagged:
+        again, finer = _absorb(selection, _with_delay(selection, unlagged), base, smoothing)
+        if again and workspace.score(again) > workspace.score(found) - HOPELESS:
+            return replace(selection, found=prune(workspace, again)), finer
     if DELAY not in (term.id for term in found.hypothesis.terms):
-        found = selection.fit(found.hypothesis.with_term(Term(InputDelay(), ("delay",))))
-    h = found.hypothesis
+        found = _with_delay(selection, found.hypothesis)
+    again, finer = _absorb(selection, found, base, smoothing)
+    return (replace(selection, found=prune(workspace, again)) if again else selection), finer
+
+
+def _with_delay(selection: Selection, h: Hypothesis) -> Fit:
+    """A hypothesis with a delay, fitted."""
+    others = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY))
+    return selection.fit(others.with_term(Term(InputDelay(), ("delay",))))
+
+
+def _without_short_lag(h: Hypothesis, smoothing: Smoothing) -> Hypothesis | None:
+    """Without thrusters that lag by about a frame: to most commands the same as a delay.
+
+    The likelihood hardly tells: it hangs more on the cutoff, within what the noise leaves open.
+    """
+    for k, term in enumerate(h.terms):
+        if term.id == LAG and term.effect["time_constant"] < BETWEEN_FRAMES[1] * smoothing.frame:
+            return h.without(k)
+    return None
+
+
+def _absorb(
+    selection: Selection, at: Fit, base: Model, smoothing: Smoothing
+) -> tuple[Fit | None, Smoothing]:
+    """A hypothesis without its delay, beside the filter that explains it; None if there is none."""
+    h = at.hypothesis
     k = next(i for i, term in enumerate(h.terms) if term.id == DELAY)
     delay, column = h.terms[k].effect["delay"], h.columns[k][0]
-    std = float(found.std[column] * h.terms[k].parameters[0].scale)
+    std = float(at.std[column] * h.terms[k].parameters[0].scale)
     finer = _refine(smoothing, delay, std)
     if finer is None:
-        return selection, smoothing
+        return None, smoothing
     rest = Hypothesis(seen_through(base, finer), h.without(k).terms)
     again = selection.workspace.fit(rest)
     if not again.held:  # undone, so slow a filter makes more than was there
-        return selection, smoothing
-    return replace(selection, found=prune(selection.workspace, again)), finer
+        return None, smoothing
+    return again, finer
 
 
 def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
