@@ -61,20 +61,25 @@ def test_steps_end_where_bins_end():
     assert np.all(np.diff(run.edges) < 0.08)
 
 
-def test_a_line_that_was_lost_in_a_fast_ramp_is_known_to_be(tmp_path):
+def test_lines_that_were_lost_while_commands_changed_are_known_to_be(tmp_path):
     base, (run,) = observed(tmp_path, duration=8.0, camera=Camera(**STILL))
     time = 0.02 * np.arange(400)
-    slow, fast = np.full(360, 0.01), np.full(40, 0.03)
-    value = np.cumsum(np.concatenate([slow, fast]))[:, None]
-    kept = np.isin(np.arange(400), (100, 390), invert=True)
-    commands = Commands(time[kept], value[kept], "thruster")
-    lossy = replace(run, motion=replace(run.motion, commands=commands))
-    found = find_lost_commands(lossy, base.thrust_path)
-    np.testing.assert_allclose(run.edges[0] + found, [[7.78, 7.82]])
-    later = Commands(time[kept] + 3.0, value[kept], "thruster")  # of a clock that was not set
-    motion = replace(run.motion, commands=later)
-    moved = replace(run, motion=motion, edges=run.edges + 3.0)
-    np.testing.assert_allclose(find_lost_commands(moved, base.thrust_path), found)
+    still, ramp = np.zeros(200), np.full(200, 0.01)
+    value = np.cumsum(np.concatenate([still, ramp]))[:, None]
+
+    def find(kept, late=0.0):
+        commands = Commands(time[kept] + late, value[kept], "thruster")
+        motion = replace(run.motion, commands=commands)
+        return find_lost_commands(replace(run, motion=motion, edges=run.edges + late),
+                                  base.thrust_path)  # fmt: skip
+
+    kept = np.isin(np.arange(400), (100, 300, 390), invert=True)
+    found = find(kept)
+    np.testing.assert_allclose(run.edges[0] + found, [[5.98, 6.02], [7.78, 7.82]])
+    np.testing.assert_allclose(find(kept, 3.0), found)  # of a clock that was not set
+    assert not len(find(np.ones(400, bool)))
+    uneven = np.random.default_rng(0).uniform(size=400) < 0.5
+    assert len(find(uneven)) <= 0.05 * uneven.sum()
 
 
 @pytest.mark.parametrize("at", [6.004, 6.026, 6.043])

@@ -10,20 +10,22 @@ from rovsim.dynamics.effects.base import Shaping
 from rovsim.dynamics.model import Model
 
 GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
-USUAL = 0.95  # quantile of the changes from line to line: more is a jump, of few lines at most
+FEW = 0.05  # of all lines: a log that is never regular lost none
 
 
 def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
-    """Begins and ends (g, 2) of lost lines of the command log over which commands jumped.
+    """Begins and ends (g, 2) of lost lines of the command log over which commands changed.
 
-    In s since the start of the run, as its `time`; `path` says when a logged command takes effect.
+    Where there are more than a few, those over which they changed most. In s since the start of the
+    run, as its `time`; `path` says when a logged command takes effect.
     """
     commands = run.motion.commands
     steps = np.diff(commands.time)
     if not len(steps):
         return np.empty((0, 2))
     change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
-    lost = (steps > GAP * np.median(steps)) & (change > np.quantile(change, USUAL))
+    change[steps < GAP * np.median(steps)] = 0.0
+    lost = change > max(0.0, np.quantile(change, 1.0 - FEW))
     before = commands.before
     at = path.arrival(commands.time - run.edges[0] + before) - before
     return np.column_stack([at[:-1][lost], at[1:][lost]])
