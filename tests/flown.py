@@ -5,7 +5,7 @@ from pathlib import Path
 from rovsim.application.pipeline.reading import load_campaign_vehicle
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.train_runs import prepare_train
-from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
@@ -16,10 +16,12 @@ from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 
 
-def observed(folder: Path, control: str = "6dof", **tank) -> tuple[Model, list[ObservedRun]]:
+def observed(
+    folder: Path, control: str = "6dof", catalogue: Catalogue | None = None, **tank
+) -> tuple[Model, list[ObservedRun]]:
     """The nominal model, and one train run; `tank` are settings of the tank."""
     run = TankRun(id="a", control=control, split="train")
-    make_campaign(TankSettings(runs=(run,), **tank), folder / "raw", built_in())
+    make_campaign(TankSettings(runs=(run,), **tank), folder / "raw", catalogue or built_in())
     campaign = load_campaign(folder / "raw")
     stage = resampled(read_run(campaign, "a")[0], SignalSettings())
     motion = differentiated(filtered(stage, SignalSettings()), SignalSettings())

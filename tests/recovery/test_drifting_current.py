@@ -1,18 +1,27 @@
 """A current that wanders is told from still water, from a steady one, and from other pushes."""
 
 from dataclasses import replace
+from math import exp
 
 import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.drifting_current import MovingWater
+from rovsim.benchmarks.blind.laws import carried
+from rovsim.diagnosis.observer.drifting_current import LIKELY, MovingWater
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.noise import FIRST_NOISE, Path
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.noise import FIRST_NOISE, DriftingCurrent, Path
 from rovsim.diagnosis.observer.random_walk import list_terms
 from rovsim.diagnosis.procedure import diagnose
+from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.steady_current import prefer_steady
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.catalogue import Catalogue, built_in
+from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.model_file import EffectEntry
 
@@ -57,6 +66,66 @@ def test_nothing_else_is_taken_for_it(tmp_path, hidden):
     found = diagnose(base, runs, SearchSettings(), catalogue=built_in())
     assert {one.term.id for one in found.selected} == {one.effect for one in hidden}
     assert found.fit.noise.drift is None
+
+
+class Eddy(Wrench):
+    """Water that turns about one place, and rests far from it."""
+
+    id = "eddy"
+    listed = False
+    equation = r"v_c = \omega e^{-r^2 / 2 s^2} \hat z \times r"
+    neglects = "walls, and the force of water that accelerates"
+    source = "a test"
+    parameters = (Parameter("rate", "1/s", r"\omega", scale=0.3),)
+
+    @staticmethod
+    def wrench(at, p):
+        """Drag of the water that turns."""
+        north, east = at.position[0] - 5.0, at.position[1] + 2.5
+        rate = p.rate * exp(-(north * north + east * east))
+        X, Y, Z = carried(at, -rate * east, rate * north)
+        return X, Y, Z, 0.0, 0.0, 0.0
+
+
+def settled_noise(base, runs):
+    """A filter bank that suits the noise of the nominal model, and that noise."""
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    noise, _ = bank.fit_noise(bank.innovations(base), FIRST_NOISE)
+    return bank.redesign(base, noise), noise
+
+
+@pytest.mark.parametrize(
+    ("hidden", "steady"),
+    [(hide("current", north=0.1), True), (hide("current_drift", rate=0.015), False)],
+    ids=["steady", "wandering"],
+)
+def test_a_steady_current_takes_the_place_of_one_that_hardly_wanders(tmp_path, hidden, steady):
+    base, runs = observed(tmp_path, duration=60.0, effects=(hidden,))
+    bank, noise = settled_noise(base, runs)
+    listed = [c for c in list_candidates(runs, built_in(), base.vehicle) if c.effect is Current]
+    known = linearise_candidates(bank, Hypothesis(base), listed)
+    rate = 0.003 if steady else 0.015
+    columns = WhiteColumns(bank, known, replace(noise, drift=DriftingCurrent(rate)))
+    wandering = SearchWorkspace(columns, SearchSettings())
+    workspace, found = prefer_steady(wandering, wandering.fit(Hypothesis(base)))
+    assert (workspace.noise.drift is None) is steady
+    assert [term.id for term in found.hypothesis.terms] == steady * ["current"]
+    if steady:
+        assert abs(found.hypothesis.model.effects[-1]["north"] - 0.1) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("hidden", "by_place"),
+    [(hide("eddy", rate=0.6), True), (hide("current_drift", rate=0.015), False)],
+    ids=["eddy", "wandering"],
+)
+def test_a_flow_that_differs_from_place_to_place_does_not_wander(tmp_path, hidden, by_place):
+    known = Catalogue({**built_in(), Eddy.id: Eddy})
+    base, runs = observed(tmp_path, duration=60.0, effects=(hidden,), catalogue=known)
+    bank, noise = settled_noise(base, runs)
+    e = bank.innovations(base)
+    assert bank.measure_drift(e, noise).rate.gain > LIKELY
+    assert bank.varies_with_place(e, noise) is by_place
 
 
 def test_water_that_moves_shows_as_a_current_does(tmp_path):

@@ -52,8 +52,9 @@ from rovsim.diagnosis.selection.ranking import (
     rank_alone,
     rank_selected,
 )
+from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.diagnosis.selection.sensitivities import fit_remaining_noise, linearise_candidates
+from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.smoothed import absorb_delay, seen_through
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -107,6 +108,9 @@ def _diagnose(
         seen = seen_through(base, smoothing)
         joint = settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
         found = choose(found, joint, gate)
+    if found.fit.noise.drift and found.bank.varies_with_place(found.fit.seen.e, found.fit.noise):
+        calm = usable.where_no_water_wanders()
+        return _diagnose(base, calm, settings, catalogue, seed, stage, smooths)
     found, wider, scale = finish(found, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
     proposed = _propose(found, base, gate, usable, camera) if found.lasting else None

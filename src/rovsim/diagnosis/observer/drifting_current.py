@@ -22,6 +22,9 @@ RATE = 0.005  # m/s per sqrt(s), a usual drift, or N per sqrt(s)
 # eight of nine development cases, and a jet in one corner 11 (a force along the tank 330); where
 # one did, gains were thousands.
 LIKELY = 25.0
+# Along the way of a vehicle: an eddy a sixth as wide as the tank is seen.
+HALF_WAVES = 6
+SMALL = 1e-9  # m
 # Odds of a thousand to one against a force that wanders, along the tank or along the body.
 SURE = 13.8
 
@@ -102,14 +105,23 @@ class MovingWater:
             return DriftFit(found, found.gain)
         forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
         others = [self._walk(pushes).fit_rate(z, tunings).gain for pushes in forces]
-        return DriftFit(found, found.gain - max(0.0, self._gain_by_place(z, tunings), *others))
+        by_place = self._gain_by_place(z, tunings, _lines(self.runs))
+        return DriftFit(found, found.gain - max(0.0, by_place, *others))
 
-    def _gain_by_place(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> float:
-        """What a current would gain that is steady, and another at every place along a line.
+    def varies_with_place(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> bool:
+        """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
+        found = self.walk.fit_rate(z, tunings)
+        return found.gain - self._gain_by_place(z, tunings, _eddies(self.runs)) < SURE
 
-        A vehicle that moves through it meets a current that wanders.
+    def _gain_by_place(
+        self, z: Sequence[Array], tunings: Sequence[Tuning], fields: Sequence[Array]
+    ) -> float:
+        """What a current would gain that is steady, and of another size at every place.
+
+        A vehicle that moves through it meets a current that wanders. `fields` (k, n) of each run:
+        how each part of it varies along the way.
         """
-        pushes = zip(_lines(self.runs), self._pushes, self.bends, strict=True)
+        pushes = zip(fields, self._pushes, self.bends, strict=True)
         every = zip(self.runs, self.tunings, tunings, pushes, strict=True)
         columns = [
             whiten_run(self._show(run, found, *how), run, found, wanted)
@@ -142,6 +154,20 @@ def _lines(runs: Sequence[ObservedRun]) -> list[Array]:
     places = [np.nan_to_num(run.motion.eta[run.index, :3].T) for run in runs]
     middle = np.mean(np.hstack(places), axis=1, keepdims=True)
     return [np.vstack([np.ones(p.shape[1]), p - middle]) for p in places]
+
+
+def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
+    """Half waves (k, n) along both sides of where the vehicles were, and the depth."""
+    places = [np.nan_to_num(run.motion.eta[run.index, :3].T) for run in runs]
+    low, high = (f(np.hstack(places), axis=1)[:, None] for f in (np.min, np.max))
+    waves = [(k, j) for k in range(HALF_WAVES + 1) for j in range(HALF_WAVES + 1 - k)]
+
+    def vary(place: Array) -> Array:
+        x, y, z = (place - low) / np.maximum(high - low, SMALL)
+        each = [np.cos(np.pi * k * x) * np.cos(np.pi * j * y) / (1 + k + j) for k, j in waves]
+        return np.stack([*each, z - 0.5])
+
+    return [vary(place) for place in places]
 
 
 def push_by_current(model: Model, run: ObservedRun, current: Array) -> Array:

@@ -85,7 +85,8 @@ class FilterBank:
     @property
     def looks_for_drift(self) -> bool:
         """Whether a current that wanders is looked for: every axis has its own, steady filter."""
-        return not self.coupled and all(run.motion.measured is None for run in self.runs)
+        known = all(run.motion.measured is None and run.wanders for run in self.runs)
+        return known and not self.coupled
 
     def shows_drift(self, noise: Noise) -> bool:
         """Whether a usual drift of the current would be told from none."""
@@ -162,6 +163,10 @@ class FilterBank:
     def measure_drift(self, e: Sequence[Array], noise: Noise) -> DriftFit:
         """How the current most likely wanders, from innovations (6, n) of each run."""
         return self._water.find_drift(self._split(e, noise), self.tune(noise))
+
+    def varies_with_place(self, e: Sequence[Array], noise: Noise) -> bool:
+        """Whether a steady flow through the tank may be what seems to wander."""
+        return self._water.varies_with_place(self._split(e, noise), self.tune(noise))
 
     def _take_out(
         self, e: Sequence[Array], noise: Noise, rate: float

@@ -60,7 +60,7 @@ class ObservedRun(Steps):
     It starts at the first reading of each of the `spans`, at the state of that sample, and reads up
     to the last. `drives` are of models over the steps of the observer, `replay_drives` over those
     of a replay; `wrenches` are those that the models of a diagnosis may have, `free` (6,) the axes
-    in which the vehicle can move at all.
+    in which the vehicle can move at all, `wanders` whether the water may.
     """
 
     motion: Motion
@@ -68,6 +68,7 @@ class ObservedRun(Steps):
     replay_drives: Drives
     wrenches: tuple[type[Wrench], ...]
     free: Array
+    wanders: bool = True
 
     def limited(self, kept: Array) -> "ObservedRun":
         """The same run of which only some samples or bins (n,) are usable."""

@@ -1,6 +1,6 @@
 """The runs a model is judged by: what they can show, and whether that is enough."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Sequence
 
 import numpy as np
@@ -38,6 +38,10 @@ class UsableRuns:
         """Axes about which something can be said."""
         silent = (*self.still, *self.unmeasured, *self.held)
         return tuple(axis for axis in AXES if axis not in silent)
+
+    def where_no_water_wanders(self) -> "UsableRuns":
+        """The same runs, in which that is not looked for."""
+        return replace(self, runs=tuple(replace(run, wanders=False) for run in self.runs))
 
 
 def select_usable(train: Sequence[ObservedRun]) -> UsableRuns:

@@ -2,6 +2,7 @@
 
 candidates         every effect of the catalogue, from each of its starts
 sensitivities      how each would change the innovations, to first order
+remaining_noise    of what a hypothesis leaves and none of them explains
 proposals          what each promises, and what chance would seem to gain
 white_columns      the same under one noise, beside what was found
 workspace          the runs, the columns, one noise for all; what is fitted already
@@ -11,6 +12,7 @@ pruning            without what is not worth its price
 forward_selection  add, refit, swap, prune
 file_first         what the vehicle file explains as well as something rarer
 loose_file         a special effect beside a vehicle file that may be off everywhere
+steady_current     or one that wanders?
 rivals             where that ended, and what else the effects could be
 smoothed           beside what the camera does
 gate               stretches that took no part must be replayed no worse

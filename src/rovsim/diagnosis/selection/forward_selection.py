@@ -15,6 +15,7 @@ from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.rivals import Rival, Selection
+from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.workspace import HOPELESS, Removed, SearchWorkspace
 from rovsim.dynamics.model import Model
 
@@ -149,14 +150,15 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
 
     The workspace's noise and filters follow what is found.
     """
-    current, settings = base, workspace.settings
+    settings = workspace.settings
+    workspace, current = prefer_steady(workspace, base)
     while len(current.hypothesis.terms) < settings.most_effects:
         found = add_best(workspace, current, workspace.chance_limit(current, seed))
         if found is None:
             break
         gained = workspace.score(found) - workspace.score(current)
         workspace = workspace.renew(found)
-        again = workspace.fit(found.hypothesis)
+        workspace, again = prefer_steady(workspace, workspace.fit(found.hypothesis))
         swap = max(SWAP, SLIGHT * gained)
         current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
     workspace = workspace.look_again(current)

@@ -20,11 +20,8 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit, fit_or_give_up
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, rank_proposals
-from rovsim.diagnosis.selection.sensitivities import (
-    Sensitivities,
-    fit_remaining_noise,
-    linearise_candidates,
-)
+from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
+from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_candidates
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.settings import SearchSettings
 

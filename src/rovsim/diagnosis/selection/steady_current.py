@@ -1,0 +1,25 @@
+"""A steady current, or one that wanders?
+
+What is missing and not foreseen to first order can pass for a current that wanders a little. That
+takes a steady one with it, which nothing then asks for, so the two are fitted side by side.
+"""
+
+from dataclasses import replace
+
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.pruning import prune
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.dynamics.effects.current import Current
+
+
+def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorkspace, Fit]:
+    """A steady current in the place of one that wanders, where that is likelier."""
+    h = current.hypothesis
+    if not workspace.noise.drift or Current.id in (term.id for term in h.terms):
+        return workspace, current
+    calm = workspace.redesign(h, replace(workspace.noise, drift=None))
+    steady = calm.fit(h.with_term(Term(Current(), Current.telling)))
+    if not calm.score(steady) > workspace.score(current):
+        return workspace, current
+    return calm, prune(calm, steady)
