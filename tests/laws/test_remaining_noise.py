@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.sensitivities import _remainder
+from rovsim.diagnosis.selection.remaining_noise import _remainder
 
 
 def flatten(rows, noise):

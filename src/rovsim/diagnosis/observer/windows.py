@@ -98,7 +98,9 @@ class Windows:
         paths = self._simulate(models, np.array(begin), pushes)
         each = zip(models, paths, strict=True)
         nu = [self._report(m, of_model) for m, of_model in each]
-        return np.array([self._subtract_measured(of_model) for of_model in nu])
+        # all models at once: a window is short, and there are many
+        by_window = [np.stack(of_models) for of_models in zip(*nu, strict=True)]
+        return self._subtract_measured(len(models), by_window)
 
     def _report(self, model: Model, paths: Sequence[Array]) -> list[Array]:
         """Velocities (steps + 1, 6) of each window, as the motion capture would report them."""
@@ -137,21 +139,22 @@ class Windows:
         """Integration step (w,) at which each begins."""
         return np.array([self.run.at[a] for a, _ in self.spans], np.int64)
 
-    def _subtract_measured(self, nu: Sequence[Array]) -> Array:
-        """Differences (n, 6) of velocities (steps + 1, 6) of each window."""
+    def _subtract_measured(self, count: int, nu: Sequence[Array]) -> Array:
+        """Differences (m, n, 6) of velocities (m, steps + 1, 6) of each window."""
         each = zip(self.spans, nu, strict=True)
         parts = [self._at_readings(span, v) - self._measured(span) for span, v in each]
-        found = np.concatenate([np.empty((0, 6)), *parts])
+        found = np.concatenate([np.empty((count, 0, 6)), *parts], axis=1)
         return np.where(self.run.axes, found, 0.0)
 
     def _measured(self, span: tuple[int, int]) -> Array:
         return self.run.motion.nu[self._compared(span)]
 
     def _at_readings(self, span: tuple[int, int], nu: Array) -> Array:
-        """Velocities at the samples, or their means over the bins, of one window."""
+        """Velocities (m, k, 6) at the samples, or their means over the bins, of one window."""
         a, b = span
         first, at = self.run.at[a], self.run.at[a : b + 1]
         if not self.run.motion.binned:
-            return nu[at[1:] - first]
-        way = cumulative_simpson(nu, dx=self.run.grid[1] - self.run.grid[0], axis=0, initial=0.0)
-        return np.asarray(np.diff(way[at - first], axis=0) / np.diff(self.run.grid[at])[:, None])
+            return nu[:, at[1:] - first]
+        way = cumulative_simpson(nu, dx=self.run.grid[1] - self.run.grid[0], axis=1, initial=0.0)
+        went = np.diff(way[:, at - first], axis=1)
+        return np.asarray(went / np.diff(self.run.grid[at])[:, None])
