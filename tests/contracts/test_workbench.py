@@ -57,12 +57,12 @@ def test_its_errors_are_those_of_the_comparison(bench, horizon):
     found = compare(bench.data, [bench.base], bench.settings).comparison.models["nominal"]
     for run, scores in found.runs.items():
         told = scores.open_loop if horizon is None else scores.windows[f"{horizon:g}"]
-        assert bench.metrics(bench.base, run, horizon) == told
+        assert bench.replays.metrics(bench.base, run, horizon) == told
 
 
 def test_its_ladder_holds_the_diagnosis_the_models_and_the_floor_last(bench, monkeypatch):
     found = (Step(model="+lag", windows_2s=0.1), Step(model="noise_floor", windows_2s=0.05))
-    ladder = Ladder(steps=(bench.step(bench.base), *found))
+    ladder = Ladder(steps=(bench.replays.step(bench.base), *found))
     monkeypatch.setattr(bench, "diagnosis", diagnosis().model_copy(update={"ladder": ladder}))
     names = [s.model for s in bench.ladder().steps]
     assert names == ["zero_acceleration", "nominal", "+lag", "noise_floor"]
@@ -140,7 +140,7 @@ def test_what_is_trained_is_a_model_of_its_own_name_and_the_report_has_all(bench
     assert list(comparison) == ["nominal", "knn_6dof"]
     for name, one in here.models.items():
         for run, scores in comparison[name]["runs"].items():
-            assert here.metrics(one, run, 2.0).model_dump() == scores["windows"]["2"]
+            assert here.replays.metrics(one, run, 2.0).model_dump() == scores["windows"]["2"]
     steps = read_json(here.out / "ladder.json")["steps"]
     assert [s["model"] for s in steps] == ["zero_acceleration", "nominal", "knn_6dof"]
 
@@ -171,7 +171,7 @@ def test_a_coefficient_is_told_with_what_it_comes_to(bench, value, told):
 def test_a_pose_is_shown_in_the_tank_and_turns_the_short_way(bench):
     motion = bench.data.motions["6dof-1"]
     shown = panels(
-        motion, {"m": bench.prediction(bench.base, "6dof-1", 2.0)}, ["heave", "yaw"], "eta"
+        motion, {"m": bench.replays.prediction(bench.base, "6dof-1", 2.0)}, ["heave", "yaw"], "eta"
     )
     titles = ["down", "down: measured − model", "yaw", "yaw: measured − model"]
     assert [panel.title for panel in shown] == titles
@@ -183,7 +183,7 @@ def test_a_pose_is_shown_in_the_tank_and_turns_the_short_way(bench):
 
 def test_under_each_axis_is_what_the_commands_push_along_it(bench):
     motion = bench.data.motions["6dof-1"]
-    thrust = bench.thrust("6dof-1")
+    thrust = bench.replays.thrust(bench.base, "6dof-1")
     assert thrust.shape == (len(motion.time), 6)
     shown = panels(motion, {}, ["sway", "yaw"], "nu", thrust)
     assert [(panel.title, panel.unit) for panel in shown[2::3]] == [
@@ -193,7 +193,10 @@ def test_under_each_axis_is_what_the_commands_push_along_it(bench):
 
 
 def test_a_band_lies_about_its_curve_and_about_the_difference(bench):
-    motion, predicted = bench.data.motions["6dof-1"], bench.prediction(bench.base, "6dof-1", 2.0)
+    motion, predicted = (
+        bench.data.motions["6dof-1"],
+        bench.replays.prediction(bench.base, "6dof-1", 2.0),
+    )
     nu, angle = predicted.nu, to_euler(predicted.eta[:, 3:])
     place = np.hstack([predicted.eta[:, :3], angle])
     band = Band(np.stack([nu - 0.1, nu + 0.3]), np.stack([place - 0.1, place + 0.3]))

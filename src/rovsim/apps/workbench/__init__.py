@@ -6,7 +6,8 @@ anyway, and ECharts, Vue and fonts in its own package, so that nothing is fetche
 
     app           the page: header, navigation, progress of long work
     session       what each browser tab looks at: its campaign, and work
-    workbench     the open campaign, and what was computed of it; knows nothing of a browser
+    workbench     the open campaign and its models; knows nothing of a browser
+    kept_replays  replays and errors of models, each computed once
     draft         a model being put together from effects
     work          long work in a process of its own; jobs begins it, tasks does it
     charts, parts ECharts options and HTML that several screens share

@@ -209,8 +209,8 @@ class Add:
 
     def _replayed(self, model: Model) -> tuple[Any, float | None]:
         """Prediction and error of the run shown."""
-        found = self.bench.prediction(model, self.run, self.chosen["horizon"])
-        return found, self.bench.run_error(model, self.run)
+        found = self.bench.replays.prediction(model, self.run, self.chosen["horizon"])
+        return found, self.bench.replays.run_error(model, self.run)
 
     async def draw(self) -> None:
         """The chart and the two errors, anew."""

@@ -124,7 +124,7 @@ class Compare:
         for run, predicted in found.items():
             for name in chosen["models"]:
                 predicted[name] = await computed(
-                    self.bench.prediction, self.bench.models[name], run, chosen["horizon"]
+                    self.bench.replays.prediction, self.bench.models[name], run, chosen["horizon"]
                 )
         first, *others = [await self._panels(run, p) for run, p in found.items()]
         return beside(first, others), found
@@ -133,12 +133,12 @@ class Compare:
         """One run and its panels; bands are those of the run shown."""
         motion, quantity = self.bench.data.motions[run], self.chosen["quantity"]
         axes = [axis for axis in AXES if axis in self.chosen["axes"]]
-        thrust = await computed(self.bench.thrust, run)
+        thrust = await computed(self.bench.replays.thrust, self.bench.base, run)
         bands: dict[str, Band] = {}
         if self.chosen["bands"] and run == self.chosen["run"] and quantity in BANDED:
             for name in predicted:
                 model, horizon = self.bench.models[name], self.chosen["horizon"]
-                band = await computed(self.bench.band, model, run, horizon)
+                band = await computed(self.bench.replays.band, model, run, horizon)
                 bands |= {name: band} if band else {}
         return motion, panels(motion, predicted, axes, quantity, thrust, bands)
 
@@ -183,7 +183,7 @@ class Compare:
         with self.numbers:
             rows = []
             for run, name in ((run, name) for run, models in found.items() for name in models):
-                errors = self.bench.metrics(self.bench.models[name], run, horizon)
+                errors = self.bench.replays.metrics(self.bench.models[name], run, horizon)
                 key = "" if run == self.chosen["run"] else f"{run}/"
                 cells = [cell(errors.velocity_rmse[a], f"{key}velocity_rmse/{a}") for a in AXES]
                 cells += [cell(getattr(errors, k), f"{key}{k}") for k in POSE_ERRORS]
@@ -201,7 +201,7 @@ class Compare:
         predicted = {
             name: (
                 await computed(
-                    self.bench.prediction, self.bench.models[name], self.chosen["run"], None
+                    self.bench.replays.prediction, self.bench.models[name], self.chosen["run"], None
                 )
             ).eta
             for name in self.chosen["models"]

@@ -164,7 +164,7 @@ class Models:
         motion = self.bench.data.motions[self.chosen["run"]]
         predicted = {
             name: await computed(
-                self.bench.prediction, model, self.chosen["run"], self.chosen["horizon"]
+                self.bench.replays.prediction, model, self.chosen["run"], self.chosen["horizon"]
             )
             for name, model in self.models.items()
         }
@@ -175,7 +175,7 @@ class Models:
         """Of each model at each horizon that comparison.json has."""
         horizons = (*self.bench.settings.replay.horizons, None)
         return {
-            name: {h: self.bench.metrics(model, self.chosen["run"], h) for h in horizons}
+            name: {h: self.bench.replays.metrics(model, self.chosen["run"], h) for h in horizons}
             for name, model in self.models.items()
         }
 

@@ -43,7 +43,7 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
 
 
 def _search(bench: Workbench, model: Model) -> ModelConditions:
-    (found,) = list_conditions([bench.searched(model)]).models.values()
+    (found,) = list_conditions([bench.replays.searched(model)]).models.values()
     return found
 
 

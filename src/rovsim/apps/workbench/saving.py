@@ -31,8 +31,8 @@ class Saving:
         except RovsimError as error:
             ui.notify(str(error), type="warning", multi_line=True)
             return
-        before = (await computed(self.bench.step, self.bench.base)).windows_2s
-        after = (await computed(self.bench.step, saved)).windows_2s
+        before = (await computed(self.bench.replays.step, self.bench.base)).windows_2s
+        after = (await computed(self.bench.replays.step, saved)).windows_2s
         opened = await computed(self.bench.note_opening, saved)
         self.path.value = str(self.bench.free_path())
         self._tell(path, before, after, opened)

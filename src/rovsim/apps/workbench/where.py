@@ -55,7 +55,7 @@ class Where:
     async def draw(self) -> None:
         """Findings, map and bins of one model."""
         model = self.bench.models[self.chosen["model"]]
-        self.searched: SearchedModel = await computed(self.bench.searched, model)
+        self.searched: SearchedModel = await computed(self.bench.replays.searched, model)
         self.told = list_conditions([self.searched]).models[model.name]
         self.area.clear()
         with self.area:

@@ -1,4 +1,4 @@
-"""An open campaign and what was computed of it: the same functions as the commands call."""
+"""An open campaign and its models: the same functions as the commands call."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -6,34 +6,24 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any, Sequence
 
-from numpy import ndarray as Array
-
 from rovsim.application.pipeline.kept import kept_diagnosis, kept_flight, kept_folder
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
 from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import WorkbenchSettings, select
 from rovsim.apps.workbench.draft import Draft
+from rovsim.apps.workbench.kept_replays import KeptReplays
 from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text, write_text
-from rovsim.core.remade import Recent
 from rovsim.design.settings import Question
 from rovsim.diagnosis.of_campaign import law_beside
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
 from rovsim.dynamics.model_file import read_model, write_model
-from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
-from rovsim.evaluation.ladder import score_step
-from rovsim.evaluation.scores import subtract, summarize
-from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import EFFECTS, Ladder, Step
-from rovsim.simulation.bands import Band, foresee
-from rovsim.simulation.measured_states import drive_as_measured
-from rovsim.simulation.prediction import Prediction, Replay
-from rovsim.simulation.replay import find_spans, replay
 
 OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and measured
 
@@ -51,11 +41,6 @@ class Workbench:
     study: Ladder | None = None  # ladder.json beside a diagnosis that was given
     choices: dict[str, Any] = field(default_factory=dict)  # what a screen remembers
     work: LongWork = field(default_factory=LongWork)
-    _replays: Recent[Replay] = field(default_factory=Recent)
-    _bands: Recent[Band | None] = field(default_factory=Recent)
-    _steps: dict[Model, Step] = field(default_factory=dict)
-    _searched: dict[Model, SearchedModel] = field(default_factory=dict)
-    _thrusts: Recent[Array] = field(default_factory=Recent)
 
     @staticmethod
     def opened(settings: WorkbenchSettings, catalogue: Catalogue) -> "Workbench":
@@ -102,6 +87,11 @@ class Workbench:
         """
         model = self.known_model(name)
         return kept_flight(self.out, self.data.campaign, question, model, self.catalogue)
+
+    @cached_property
+    def replays(self) -> KeptReplays:
+        """What models make of the recordings."""
+        return KeptReplays(self.data.runs, self.settings.signals, self.settings.replay)
 
     @cached_property
     def baseline(self) -> Model:
@@ -209,7 +199,7 @@ class Workbench:
         """Write down that the test runs were opened for a model; how often they were by now."""
         kept = self.out / OPENINGS
         before = read_text(kept) if kept.exists() else "model,error\n"
-        write_text(kept, f"{before}{model.name},{self.step(model).windows_2s}\n")
+        write_text(kept, f"{before}{model.name},{self.replays.step(model).windows_2s}\n")
         return len(before.splitlines())
 
     def only(self, *names: str) -> WorkbenchSettings:
@@ -221,74 +211,18 @@ class Workbench:
         """Whether long work is going on."""
         return self.work.now is not None
 
-    def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
-        """One run replayed in windows of `horizon` s, or open loop (None)."""
-        key = (model, run, horizon)
-        spans = () if horizon is None else (horizon,)
-        how = self.settings.replay.only(*spans)
-        return self._replays.get(
-            key,
-            lambda: replay(model, self.data.motions[run], self.settings.signals, how, not spans),
-        )
-
-    def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
-        """What the model predicts in windows of `horizon` s, or open loop (None)."""
-        name = OPEN_LOOP if horizon is None else f"{horizon:g}"
-        return self.replayed(model, run, horizon).horizons[name]
-
-    def band(self, model: Model, run: str, horizon: float | None) -> Band | None:
-        """Within what the model may lie, given all that it leaves open; None where nobody knows."""
-        spans = () if horizon is None else (horizon,)
-        motion, how = self.data.motions[run], self.settings.replay.only(*spans)
-        (found,) = find_spans(motion, how, open_loop=not spans).values()
-        return self._bands.get(
-            (model, run, horizon),
-            lambda: foresee(model, motion, found, self.settings.signals, how) if found else None,
-        )
-
-    def thrust(self, run: str) -> Array:
-        """What the base makes of the commands of a run at its samples or bins (n, 6), N and N m."""
-        motion, how = self.data.motions[run], self.settings.replay
-        return self._thrusts.get((run,), lambda: drive_as_measured(self.base, motion, how).wrench)
-
-    def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
-        """The errors of one run, as comparison.json has them."""
-        return summarize(subtract(self.data.motions[run], self.prediction(model, run, horizon)))
-
-    def run_error(self, model: Model, run: str) -> float | None:
-        """`windows_2s` of one run alone."""
-        motion = self.data.motions[run]
-        replayed = self.replayed(model, run, WINDOW)
-        return score_step(model.name, [(motion, replayed)], motion.run.split).windows_2s
-
-    def step(self, model: Model) -> Step:
-        """The ladder's step of one model; this opens the test runs."""
-        if model not in self._steps:
-            tests = self.data.runs.of("test")
-            pairs = ((self.data.motions[r], self.replayed(model, r, WINDOW)) for r in tests)
-            self._steps[model] = score_step(model.name, pairs)
-        return self._steps[model]
-
     def ladder(self) -> Ladder:
         """All that is known: baseline, base, found effects, models, noise floor."""
         if self.study is not None:
-            extra = [self.step(m) for n, m in self.models.items() if m is not self.base]
+            extra = [self.replays.step(m) for n, m in self.models.items() if m is not self.base]
             known = self.study.steps
             return Ladder(steps=(*known[:-1], *extra, *known[-1:]))
         first = [self.baseline, self.base]
         others = [m for m in self.models.values() if m.name not in {one.name for one in first}]
-        steps = [self.step(m) for m in first]
+        steps = [self.replays.step(m) for m in first]
         steps += [Step(model=EFFECTS)] if self.diagnosis else []
-        steps += [self.step(m) for m in others]
+        steps += [self.replays.step(m) for m in others]
         return Ladder.with_diagnosis(steps, self.diagnosis.ladder.steps if self.diagnosis else ())
-
-    def searched(self, model: Model) -> SearchedModel:
-        """Where a model fails."""
-        if model not in self._searched:
-            self._searched[model] = search_runs(
-                model, self.data.runs, self.settings.signals, self.settings.replay
-            )
-        return self._searched[model]
 
 
 def _check_base(model: Model) -> None:

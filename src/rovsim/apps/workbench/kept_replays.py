@@ -1,0 +1,88 @@
+"""Models against the recordings of a campaign: replays and errors, each computed once."""
+
+from dataclasses import dataclass, field
+
+from numpy import ndarray as Array
+
+from rovsim.core.remade import Recent
+from rovsim.dynamics.model import Model
+from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
+from rovsim.evaluation.ladder import score_step
+from rovsim.evaluation.scores import subtract, summarize
+from rovsim.measurement.runs import Runs
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
+from rovsim.results.ladder import Step
+from rovsim.simulation.bands import Band, foresee
+from rovsim.simulation.measured_states import drive_as_measured
+from rovsim.simulation.prediction import Prediction, Replay
+from rovsim.simulation.replay import find_spans, replay
+from rovsim.simulation.settings import ReplaySettings
+
+
+@dataclass(eq=False)
+class KeptReplays:
+    """Of some runs, filtered and replayed as the settings say."""
+
+    runs: Runs
+    signals: SignalSettings
+    how: ReplaySettings
+    _replays: Recent[Replay] = field(default_factory=Recent)
+    _bands: Recent[Band | None] = field(default_factory=Recent)
+    _steps: dict[Model, Step] = field(default_factory=dict)
+    _searched: dict[Model, SearchedModel] = field(default_factory=dict)
+    _thrusts: Recent[Array] = field(default_factory=Recent)
+
+    def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
+        """One run replayed in windows of `horizon` s, or open loop (None)."""
+        key = (model, run, horizon)
+        spans = () if horizon is None else (horizon,)
+        how = self.how.only(*spans)
+        return self._replays.get(
+            key,
+            lambda: replay(model, self.runs.motions[run], self.signals, how, not spans),
+        )
+
+    def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
+        """What the model predicts in windows of `horizon` s, or open loop (None)."""
+        name = OPEN_LOOP if horizon is None else f"{horizon:g}"
+        return self.replayed(model, run, horizon).horizons[name]
+
+    def band(self, model: Model, run: str, horizon: float | None) -> Band | None:
+        """Within what the model may lie, given all that it leaves open; None where nobody knows."""
+        spans = () if horizon is None else (horizon,)
+        motion, how = self.runs.motions[run], self.how.only(*spans)
+        (found,) = find_spans(motion, how, open_loop=not spans).values()
+        return self._bands.get(
+            (model, run, horizon),
+            lambda: foresee(model, motion, found, self.signals, how) if found else None,
+        )
+
+    def thrust(self, model: Model, run: str) -> Array:
+        """What it makes of the commands of a run at its samples or bins (n, 6), N and N m."""
+        motion, how = self.runs.motions[run], self.how
+        return self._thrusts.get((model, run), lambda: drive_as_measured(model, motion, how).wrench)
+
+    def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
+        """The errors of one run, as comparison.json has them."""
+        return summarize(subtract(self.runs.motions[run], self.prediction(model, run, horizon)))
+
+    def run_error(self, model: Model, run: str) -> float | None:
+        """`windows_2s` of one run alone."""
+        motion = self.runs.motions[run]
+        replayed = self.replayed(model, run, WINDOW)
+        return score_step(model.name, [(motion, replayed)], motion.run.split).windows_2s
+
+    def step(self, model: Model) -> Step:
+        """The ladder's step of one model; this opens the test runs."""
+        if model not in self._steps:
+            tests = self.runs.of("test")
+            pairs = ((self.runs.motions[r], self.replayed(model, r, WINDOW)) for r in tests)
+            self._steps[model] = score_step(model.name, pairs)
+        return self._steps[model]
+
+    def searched(self, model: Model) -> SearchedModel:
+        """Where a model fails."""
+        if model not in self._searched:
+            self._searched[model] = search_runs(model, self.runs, self.signals, self.how)
+        return self._searched[model]
