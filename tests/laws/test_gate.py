@@ -57,6 +57,16 @@ def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
     assert not whole
 
 
+def test_where_a_current_wanders_the_windows_of_one_run_are_one_sample(tmp_path):
+    base, runs = observed(tmp_path, duration=60.0)
+    _, held = keep_apart(runs)
+    slower = base + LinearDamping(surge=60.0, sway=60.0)
+    assert Gate(held, runs).refuses(slower, base)
+    assert not Gate(held, runs, wanders=True).refuses(slower, base)
+    assert not Gate([*held, *held], runs, wanders=True).refuses(base, slower)
+    assert Gate([*held, *held], runs, wanders=True).refuses(slower, base)
+
+
 def test_where_physics_is_left_a_name_must_be_surely_worth_it():
     error = np.linspace(0.5, 1.5, 20)
     assert _costs(1.1 * error, error, 0.02)

@@ -99,7 +99,7 @@ def _diagnose(
     selection = search(workspace, nothing, seed)
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
-    gate = Gate(apart, usable.runs)
+    gate = Gate(apart, usable.runs, wanders=selection.found.noise.drift is not None)
     found = settle_noticed(selection, usable, gate, seed)
     if smoothing and gate.refuses(found.fit.hypothesis.model, base):
         return _diagnose(base, usable, settings, catalogue, seed, stage, smooths=False)

@@ -53,10 +53,14 @@ def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[Obs
 
 @dataclass(frozen=True, eq=False)
 class Gate:
-    """The stretches that were kept apart; the whole runs tell how much each axis varies."""
+    """The stretches that were kept apart; the whole runs tell how much each axis varies.
+
+    `wanders`: the current does, so that what all windows of a run have in common is by chance.
+    """
 
     runs: Sequence[ObservedRun]
     whole: Sequence[ObservedRun]
+    wanders: bool = False
 
     @cached_property
     def spread(self) -> Array:
@@ -159,6 +163,8 @@ class Gate:
     def _errors(self, models: Sequence[Model]) -> Array:
         """Mean squared error (m, w) of each window, every axis in units of how much it varies.
 
+        Of each run where the current wanders.
+
         NaN where a model cannot move at all: a refit to first order may go that far.
         """
         parts: list[Array] = []
@@ -167,9 +173,8 @@ class Gate:
             e = evaluate_possible(models, len(windows.number), partial(_compare_axes, windows))
             with np.errstate(over="ignore", invalid="ignore"):  # of a model that diverges
                 squares = np.mean((e / self.spread[:, None]) ** 2, axis=1)
-            parts += [
-                squares[:, windows.number == k].mean(axis=1) for k in range(len(windows.spans))
-            ]
+            number = 0 * windows.number if self.wanders else windows.number
+            parts += [squares[:, number == k].mean(axis=1) for k in np.unique(number)]
         return np.stack(parts, axis=1)
 
 
