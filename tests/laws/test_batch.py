@@ -143,3 +143,14 @@ def test_what_drives_models_alike_is_found_once():
     assert one is other
     weaker = world + VoltageSag(fraction=0.2)
     assert drives.of([world, weaker])[1] is not one
+
+
+def test_an_effect_that_is_called_by_its_address_pushes_as_one_that_is_compiled_in():
+    """The engine holds each effect once; a second one of a kind is attached to it."""
+    one, two = ConstantWrench(surge=2.0, yaw=0.1), ConstantWrench(surge=-0.5, heave=1.0)
+    whole = ConstantWrench(surge=1.5, heave=1.0, yaw=0.1)
+    paths = [
+        simulate(model(*effects), RUN, [(0, 25, START)], ReplaySettings())[0]
+        for effects in ((one, two), (whole,))
+    ]
+    np.testing.assert_allclose(*paths, atol=1e-12)

@@ -12,12 +12,13 @@ import worlds
 from flown import observed
 from rovsim.core.run import Commands
 from rovsim.diagnosis.checks.residual import split_by_axis
-from rovsim.diagnosis.checks.unknown_thrust import find_different, find_lost_commands
+from rovsim.diagnosis.checks.unknown_thrust import find_different, find_jumps, find_lost_commands
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import prepare_run
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.thrusters import ThrusterDeadband
 from rovsim.dynamics.mocap_view import NO_CHANGE
 from rovsim.simulation.drive import Actuation, Drives
@@ -80,6 +81,16 @@ def test_lines_that_were_lost_while_commands_changed_are_known_to_be(tmp_path):
     assert not len(find(np.ones(400, bool)))
     uneven = np.random.default_rng(0).uniform(size=400) < 0.5
     assert len(find(uneven)) <= 0.05 * uneven.sum()
+
+
+def test_what_a_lost_line_may_do_is_the_change_of_thrust_over_the_inertia(tmp_path):
+    base, (run,) = observed(tmp_path, duration=8.0, camera=Camera(**STILL))
+    lost = np.array([[2.0, 2.04], [5.0, 5.04]])
+    light = find_jumps(run, base, lost)
+    heavy = find_jumps(run, base + AddedMass(heave=base.M[2, 2]), lost)  # twice as heavy
+    assert light.shape == (2, 6)
+    assert np.all(light[:, 2] > 0.01)
+    np.testing.assert_allclose(heavy[:, 2], 0.5 * light[:, 2], rtol=0.02)
 
 
 @pytest.mark.parametrize("at", [6.004, 6.026, 6.043])

@@ -8,7 +8,12 @@ from numpy import ndarray as Array
 from scipy.signal import lfilter
 
 from rovsim import AXES
-from rovsim.diagnosis.checks.unknown_thrust import find_lost_commands, mark_undecided
+from rovsim.diagnosis.checks.unknown_thrust import (
+    SPIN,
+    find_jumps,
+    find_lost_commands,
+    mark_undecided,
+)
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.kalman import AxisFilter
 from rovsim.diagnosis.observer.least_squares import solve
@@ -21,7 +26,7 @@ MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in
 # sums of channels err together: what is left is not quite white. Of development recordings replayed
 # with the true model, three of 36 had a structure at 1.0 to 1.3 times the limit of white noise.
 CHANNELS = 1.5  # times the limit, where channels were measured and not full poses
-SPIN = 0.3  # s within which propellers and motors follow a command
+NOTICED = 1.0  # standard deviations: less of a push nobody sees, and to take it out costs readings
 
 
 @dataclass(frozen=True)
@@ -101,16 +106,17 @@ def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
     J = bank.whiten(found.seen.J, found.noise)
     white = _split_by_run(bank.whiten(found.seen.e, found.noise), bank.runs)
     tunings = bank.tune(found.noise)
-    path = found.hypothesis.model.thrust_path
-    unknown = [find_lost_commands(run, path) for run in bank.runs]
+    model = found.hypothesis.model
+    unknown = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
+    off = [find_jumps(run, model, lost) for run, lost in zip(bank.runs, unknown, strict=True)]
     undecided = tuple(mark_undecided(found.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
         if not all(run.shown[:, i].all() for run in bank.runs):
             continue
         filters = tuple(tuning.filters[i] for tuning in tunings)
-        each = zip(white, filters, bank.runs, unknown, strict=True)
-        cleared = tuple(_clear(own[i], f, run, spans) for own, f, run, spans in each)
+        each = zip(white, filters, bank.runs, unknown, off, strict=True)
+        cleared = tuple(_clear(own[i], f, run, lost, by[:, i]) for own, f, run, lost, by in each)
         level = float(found.noise.level[i])
         residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, level, undecided))
     return residuals
@@ -121,11 +127,18 @@ def _split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
     return np.split(white, counts, axis=-1)
 
 
-def _clear(w: Array, f: AxisFilter, run: ObservedRun, unknown: Array) -> Array:
-    """Without what the vehicle did while the log does not say what it was told."""
-    if not len(unknown):
+def _clear(w: Array, f: AxisFilter, run: ObservedRun, lost: Array, off: Array) -> Array:
+    """Without what the vehicle did while the log does not say what it was told.
+
+    Where it may have been `off` (g,) by enough to be noticed over lost lines (g, 2).
+    """
+    columns = []
+    for (begin, end), by in zip(lost, off, strict=True):
+        during = respond(run.overlapping(begin, end).astype(float), f, run)
+        share = min(1.0, (end - begin) / run.period)
+        if by * share * np.sqrt(during @ during) > NOTICED:
+            columns += [during, respond(run.overlapping(end, end + SPIN).astype(float), f, run)]
+    if not columns:
         return w
-    later = np.column_stack([unknown[:, 1], unknown[:, 1] + SPIN])
-    steps = [run.overlapping(begin, end) for begin, end in (*unknown, *later)]
-    columns = np.stack([respond(some.astype(float), f, run) for some in steps])
-    return w - solve(columns @ columns.T, columns @ w) @ columns
+    rows = np.stack(columns)
+    return w - solve(rows @ rows.T, rows @ w) @ rows

@@ -10,6 +10,7 @@ from rovsim.dynamics.effects.base import Shaping
 from rovsim.dynamics.model import Model
 
 GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
+SPIN = 0.3  # s within which propellers and motors follow a command
 FEW = 0.05  # of all lines: a log that is never regular lost none
 
 
@@ -29,6 +30,19 @@ def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
     before = commands.before
     at = path.arrival(commands.time - run.edges[0] + before) - before
     return np.column_stack([at[:-1][lost], at[1:][lost]])
+
+
+def find_jumps(run: ObservedRun, model: Model, lost: Array) -> Array:
+    """What the thrust over lost lines (g, 2) may have been off by (g, 6), m/s2 and rad/s2.
+
+    As much as it changes from before until thrusters have followed.
+    """
+    a = run.drives.of([model])[0].wrench @ model.body.M_inv.T
+    since = run.edges - run.edges[0]
+    before = np.maximum(np.searchsorted(since, lost[:, 0]) - 2, 0)
+    after = np.searchsorted(since, lost[:, 1] + SPIN)
+    each = zip(before, after, strict=True)
+    return np.array([np.max(np.abs(a[i : j + 1] - a[i]), axis=0) for i, j in each]).reshape(-1, 6)
 
 
 def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
