@@ -149,16 +149,21 @@ class MovingWater:
         return np.asarray((e[0] - e[1:]) / RATE)  # what a model does not foresee
 
 
+def _places(runs: Sequence[ObservedRun]) -> list[Array]:
+    """Place (3, n) in m at the readings of each run."""
+    return [np.nan_to_num(run.motion.eta[run.index, :3].T) for run in runs]
+
+
 def _lines(runs: Sequence[ObservedRun]) -> list[Array]:
     """One and the place in m from their middle (4, n) at the readings of each run."""
-    places = [np.nan_to_num(run.motion.eta[run.index, :3].T) for run in runs]
+    places = _places(runs)
     middle = np.mean(np.hstack(places), axis=1, keepdims=True)
     return [np.vstack([np.ones(p.shape[1]), p - middle]) for p in places]
 
 
 def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
     """Half waves (k, n) along both sides of where the vehicles were, and the depth."""
-    places = [np.nan_to_num(run.motion.eta[run.index, :3].T) for run in runs]
+    places = _places(runs)
     low, high = (f(np.hstack(places), axis=1)[:, None] for f in (np.min, np.max))
     waves = [(k, j) for k in range(HALF_WAVES + 1) for j in range(HALF_WAVES + 1 - k)]
 
