@@ -82,3 +82,20 @@ def test_of_two_processes_that_need_a_function_one_compiles_it(tmp_path, monkeyp
         assert [one.poll() for one in two] == [None, None]
     compiled = [one.communicate(timeout=60)[0] for one in two]
     assert sorted(compiled) == ["0\n", "1\n"]
+
+
+FORKED = """
+import os
+from rovsim.dynamics.engine.vectors import dot3
+child = os.fork()
+if not child:
+    dot3((1.0, 2.0, 3.0), (1.0, 2.0, 3.0))
+    os._exit(0)
+raise SystemExit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+def test_a_forked_process_compiles(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROVSIM_CACHE", str(tmp_path))
+    done = subprocess.run([sys.executable, "-c", FORKED], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -58,12 +58,13 @@ def _compiled_once(function: Any) -> Any:
     Numba's own index of what is kept loses what two processes write at once, or takes one's for the
     other's. Who compiles waits only for what is called, so no two wait for each other.
     """
-    compile_it, lock = function.compile, FileLock(lock_file(function))
+    compile_it, locked = function.compile, lock_file(function)
 
     def compile_alone(signature: Any) -> Any:
         if signature in function.overloads:
             return compile_it(signature)
-        with global_compiler_lock, lock:  # in this order, whichever thread comes first
+        # in this order, whichever thread comes first; a lock made anew: none goes through a fork
+        with global_compiler_lock, FileLock(locked):
             return compile_it(signature)
 
     function.compile = compile_alone
