@@ -68,8 +68,8 @@ def several(names: Sequence[str]) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names as people list them: a, b and c."""
-    *first, last = [short(n) for n in names] or [""]
+    """Return names or phrases as people list them: a, b and c. Long names: `short` them first."""
+    *first, last = [*names] or [""]
     return f"{', '.join(first)} and {last}" if first else last
 
 

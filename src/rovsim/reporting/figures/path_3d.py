@@ -58,7 +58,7 @@ def draw(
         _box(axes, low, high)
     _frame(axes, low, high)
     legend(figure, [*lines(style), *_end_entries()])
-    note(figure, [f"Partly beyond the view: {listed(leaving)}." if leaving else ""])
+    note(figure, [f"Partly beyond the view: {listed(map(title, leaving))}." if leaving else ""])
     return figure
 
 

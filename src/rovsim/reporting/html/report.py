@@ -22,7 +22,7 @@ from rovsim.reporting.tables import (
     tabulate_ladder,
     tabulate_published_errors,
 )
-from rovsim.reporting.wording import explain_model, listed, several, significant, title
+from rovsim.reporting.wording import explain_model, listed, several, short, significant, title
 from rovsim.reporting.words.published_errors import tell_pitfalls, tell_standings
 from rovsim.reporting.words.sentences import summarize
 from rovsim.reporting.words.verdict import explain
@@ -176,8 +176,9 @@ def _tell_undrawn(data: ReportData) -> str:
     if len(data.drawn) in (0, len(data.motions)):
         return ""
     return (
-        f"Of {len(data.motions)} runs, {listed(data.drawn)} have figures of their own: of many, "
-        f"those on which {list(data.replays)[-1]} errs most. The workbench shows each."
+        f"Of {len(data.motions)} runs, {listed(map(short, data.drawn))} have figures of their own: "
+        f"of many, those on which {title(list(data.replays)[-1])} errs most. The workbench shows "
+        "each."
     )
 
 
