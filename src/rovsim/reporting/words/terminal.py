@@ -69,7 +69,7 @@ def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> s
     lines = ["", *textwrap.wrap(f"{said.sentence} (verdict: {said.name})", WIDTH), ""]
     for one, words in zip(found.selected, said.missing, strict=True):
         lines += _effect(one.error_reduction or 0.0, words)
-    lines += ["", "± is the 95 % interval."] if found.selected else []
+    lines += ["", *textwrap.wrap(said.key, WIDTH)] if said.key else []
     lines += _ranking(found.ranking)
     following = [f"Next: {said.next}"] if said.next else []
     for remark in (*said.remarks, *following):

@@ -51,11 +51,15 @@ class Missing:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A diagnosis in words: a sentence, the missing effects, what else to know, what to record."""
+    """A diagnosis in words: a sentence, the missing effects, what else to know, what to record.
+
+    `key` says how to read the missing effects; empty where none is.
+    """
 
     name: str
     sentence: str
     missing: tuple[Missing, ...]
+    key: str
     remarks: tuple[str, ...]
     next: str
 
@@ -71,21 +75,48 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         *silent_sentences(found),
         *part_sentences(found.looked_at),
     ]
-    missing = tuple(_missing(one, catalogue.get(one.effect)) for one in found.selected)
+    missing = tuple(
+        _missing(one, catalogue.get(one.effect), above=bool(place))
+        for place, one in enumerate(found.selected)
+    )
     return Verdict(
-        found.verdict, VERDICTS[found.verdict], missing, tuple(remarks), found.next_experiment
+        found.verdict, VERDICTS[found.verdict], missing, _key(len(missing)), tuple(remarks),
+        found.next_experiment,
+    )  # fmt: skip
+
+
+def _key(effects: int) -> str:
+    """How to read the effects: intervals, probabilities, shares of several."""
+    if not effects:
+        return ""
+    text = "± is the 95 % interval. The probability compares a name with those tried in its place."
+    if effects == 1:
+        return text
+    return (
+        f"{text} The effect that removes most of the error comes first, then the one that removes "
+        "most of what is left, and so on; each share is of the model's error, and comes on top of "
+        "those above it."
     )
 
 
-def _missing(one: FittedEffect, known: type[Effect] | None) -> Missing:
+def _missing(one: FittedEffect, known: type[Effect] | None, above: bool) -> Missing:
+    """`above`: whether effects stand above it, on top of which it removes its share."""
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
     equation, cause = (known.equation, known.cause) if known else ("", "")
     values = tuple(f"{name} {interval(v)}" for name, v in one.parameters.items())
-    removed = f"removes {percent(one.error_reduction)} of the error"
+    removed = _removed(one.error_reduction, above)
     if known and issubclass(known, Wander):
         removed = "cannot be foreseen"
     worth = f"{removed}, {_sure(one.probability)}"
     return Missing(one.effect, meaning, values, worth, equation, cause)
+
+
+def _removed(share: float | None, above: bool) -> str:
+    if share is not None and round(100 * share) < 0:
+        return f"raises the error by {percent(-share)}"
+    return (
+        f"removes another {percent(share)}" if above else f"removes {percent(share)} of the error"
+    )
 
 
 def interval(value: FittedValue) -> str:
