@@ -41,7 +41,9 @@ WORKS = {
 
 def start(command: list[str], folder: Path, log: str = "log.txt") -> subprocess.Popen:
     """A command in a process group of its own, so that all it started can be killed with it."""
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "src"), "PYTHONHASHSEED": "0"}
+    environment = os.environ | {
+        "PYTHONPATH": str(ROOT / "src"), "PYTHONHASHSEED": "0", "SOURCE_DATE_EPOCH": "0"
+    }  # fmt: skip
     with (folder / log).open("ab") as said:
         return subprocess.Popen(
             command, cwd=folder, env=environment, stdout=said, stderr=said, start_new_session=True

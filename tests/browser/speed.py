@@ -13,8 +13,8 @@ from playwright.sync_api import sync_playwright
 
 from chromium import DESK, installed, started
 from rovsim.apps.cli.main import main
-from rovsim.benchmarks.speed.machine import machine
 from rovsim.core.files import write_json
+from rovsim.core.making import describe_machine
 
 # Drawn by Chromium itself: a graphics card that is computed, as tests of three dimensions need it,
 # takes a fifth longer.
@@ -90,7 +90,8 @@ def run(folder: Path) -> dict:
         process.terminate()
         process.wait(20)
     return {
-        "schema": "rovsim.bench_ui/1", "machine": machine(), "first_screen_s": summary(starts),
+        "schema": "rovsim.bench_ui/1", "machine": describe_machine(),
+        "first_screen_s": summary(starts),
         "slider_to_drawn_ms": summary(moves), "horizon_to_drawn_ms": summary(jumps),
     }  # fmt: skip
 

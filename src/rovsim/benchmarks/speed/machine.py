@@ -1,17 +1,8 @@
-"""The machine, and how a control loop would run on it."""
+"""How a control loop would run on this machine."""
 
 import os
-import platform
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import Iterator
-
-
-def machine() -> str:
-    """Processor, cores and Python."""
-    name = platform.processor() or platform.machine()
-    with suppress(OSError, StopIteration), open("/proc/cpuinfo", encoding="utf-8") as info:
-        name = next(line.split(":")[1].strip() for line in info if "model name" in line)
-    return f"{name}, {os.cpu_count()} cores, Python {platform.python_version()}"
 
 
 @contextmanager

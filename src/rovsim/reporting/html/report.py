@@ -1,7 +1,7 @@
 """Put the numbers, sentences and figures of a study into one self-contained HTML page."""
 
 from base64 import b64encode
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Mapping, Sequence
 
@@ -11,7 +11,7 @@ from markupsafe import Markup
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
-from rovsim.core.mappings import leaves
+from rovsim.core.making import tell_making
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, kind
 from rovsim.reporting.formula import mathml
@@ -86,7 +86,7 @@ class Report:
     """Everything the report shows; a section without content is left out.
 
     `pictures` in order of appearance; `provenance`: nested plain values (settings, code digest,
-    versions); `catalogue`: what the effects of the diagnosis are.
+    versions); `catalogue`: what the effects of the diagnosis are; `made`: when and where.
     """
 
     campaign: str
@@ -94,6 +94,7 @@ class Report:
     pictures: Sequence[Picture] = ()
     provenance: Mapping[str, object] = field(default_factory=dict)
     catalogue: Mapping[str, type[Effect]] = field(default_factory=dict)
+    made: str = ""
 
 
 def render(report: Report) -> str:
@@ -104,6 +105,7 @@ def render(report: Report) -> str:
         .get_template("report.html")
         .render(
             campaign=report.campaign,
+            made=report.made,
             verdict=explain(data.diagnosis, report.catalogue) if data.diagnosis else None,
             summary=summarize(data),
             where=data.where.models if data.where else {},
@@ -140,13 +142,23 @@ def _environment() -> Environment:
 
 
 def write(path: Path, report: Report) -> None:
-    """Write the report, whole or not at all."""
-    write_text(path, render(report))
+    """Write the report, whole or not at all; it says when and where."""
+    write_text(path, render(replace(report, made=tell_making())))
 
 
-def list_rows(content: Mapping[str, object]) -> list[tuple[str, str]]:
-    """Nested values as rows of a dotted name and a text."""
-    return [(name, _text(value)) for name, value in leaves(content).items()]
+def list_rows(content: Mapping[str, object], above: str = "") -> list[tuple[str, str]]:
+    """Nested values as rows of a section's dotted name and all its values."""
+    rows, own = [], {}
+    for name, value in content.items():
+        place = f"{above}.{name}" if above else name
+        if isinstance(value, Mapping) and value:
+            rows += list_rows(value, place)
+        elif above:
+            own[name] = _text(value)
+        else:
+            rows.append((name, _text(value)))
+    told = "; ".join(f"{name} {text}" for name, text in own.items())
+    return [(above, told), *rows] if own else rows
 
 
 def _text(value: object) -> str:

@@ -19,10 +19,10 @@ from rovsim.apps.cli.output import say
 from rovsim.benchmarks.speed.accuracy import measure_accuracy
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import GP, Effort, inference
-from rovsim.benchmarks.speed.machine import machine
 from rovsim.benchmarks.speed.replay import replay_speeds
 from rovsim.benchmarks.speed.tables import write_page
 from rovsim.core.extras import require
+from rovsim.core.making import describe_machine
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
@@ -56,7 +56,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     speeds = replay_speeds(model, residuals)
     timed, scheduling = inference(pairs, effort, how.sweep_seconds)
     bench = Bench(
-        machine=machine(),
+        machine=describe_machine(),
         replay=speeds,
         inference=timed,
         scheduling=scheduling,
