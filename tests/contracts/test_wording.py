@@ -1,12 +1,19 @@
 """Words of the terminal and the report: whole phrases, one name for one thing."""
 
+import re
+
 import pytest
 
 from rovsim.dynamics.catalogue import built_in
+from rovsim.reporting.html import report
+from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.wording import listed
 from rovsim.reporting.words import terminal
+from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain
 from synthetic_study import study
+
+FUNCTIONS = "exp|max|tanh|min|to|cdot|le|leftrightarrow|quad|sqrt|sim|pi|top"
 
 
 @pytest.fixture(scope="module")
@@ -33,3 +40,30 @@ def test_an_effect_that_harms_is_not_said_to_remove_anything(content):
     found = content["diagnosis"].model_copy(update={"selected": (harmful,)})
     (said,) = explain(found, built_in()).missing
     assert said.worth.startswith("raises the error by 3")
+
+
+@pytest.mark.parametrize("effect", built_in().values(), ids=list(built_in()))
+def test_every_symbol_of_an_equation_is_explained(effect):
+    """What is left of it are numbers, functions, operators and words."""
+    left = re.sub(r"(?<!_)\\(?:text|mathrm)\{[^}]*\}(_i)?", " ", effect.equation)
+    left = re.sub(rf"\\({FUNCTIONS})(?![a-z])", " ", left).replace("e^", "^")
+    for symbol, meaning in sorted(explain_symbols(effect), key=lambda one: -len(one[0])):
+        assert meaning
+        left = re.sub(rf"(?<![a-z\\]){re.escape(symbol)}(?![A-Za-z_])", " ", left)
+    assert not re.findall("[A-Za-z]", left)
+
+
+def test_a_value_that_was_not_found_is_said_where_the_equation_has_it():
+    sag = built_in()["voltage_sag"]
+    assert ("r", "rate, 0 here") in explain_symbols(sag, ["fraction"])
+    assert ("r", "rate") in explain_symbols(sag, ["fraction", "rate"])
+    assert ("d_i", "surge, sway") in explain_symbols(
+        built_in()["quadratic_damping"], ["surge", "sway"]
+    )
+
+
+def test_the_report_explains_symbols(content):
+    page = report.render(
+        report.Report("x", ReportData(diagnosis=content["diagnosis"]), catalogue=built_in())
+    )
+    assert "velocity through the water along axis i" in page

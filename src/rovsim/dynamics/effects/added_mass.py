@@ -17,6 +17,11 @@ class AddedMass(Coefficients):
 
     id = "added_mass"
     equation = r"\tau = -M_A\dot\nu_r - C_A(\nu_r)\nu_r"
+    symbols = (
+        ("M_A", "added mass, with the values on its diagonal"),
+        ("C_A", "its Coriolis matrix"),
+        (r"\dot\nu_r", "acceleration through the water"),
+    )
     neglects = "coupling between axes and frequency dependence"
     source = "Fossen 2021, sec. 6.3"
     cause = (
@@ -40,6 +45,10 @@ class AddedMassCoupling(Coefficients):
 
     id = "added_mass_coupling"
     equation = r"M_{A,ij} = M_{A,ji} \to M_{A,ij} + m_{ij}"
+    symbols = (
+        ("M_{A,ij}", "entry of the matrix of added mass"),
+        ("M_{A,ji}", "its mirror image"),
+    )
     neglects = "frequency dependence"
     source = "Fossen 2021, sec. 6.3 (M_A is symmetric)"
     cause = (

@@ -57,6 +57,7 @@ class Effect(ABC):
 
     id: ClassVar[str]
     equation: ClassVar[str]
+    symbols: ClassVar[tuple[tuple[str, str], ...]] = ()  # in it (LaTeX, meaning), no parameters
     neglects: ClassVar[str]
     source: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]

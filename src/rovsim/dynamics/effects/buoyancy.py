@@ -10,6 +10,7 @@ class NetBuoyancy(Coefficients):
 
     id = "net_buoyancy"
     equation = r"B \to B + \Delta B"
+    symbols = (("B", "buoyancy"),)
     neglects = "the mass of what floats"
     source = "Fossen 2021, sec. 4.1"
     cause = "Foam was added, air is trapped, or the water is denser than the vehicle file says."
@@ -31,6 +32,10 @@ class BuoyancyCenter(Coefficients):
 
     id = "buoyancy_center"
     equation = r"r_B \to r_B + \Delta r_B"
+    symbols = (
+        ("r_B", "centre of buoyancy"),
+        (r"\Delta r_B", "its shift x, y, z"),
+    )
     neglects = "compression with depth"
     source = "Fossen 2021, sec. 4.1"
     cause = (

@@ -37,6 +37,7 @@ class ClockDrift(Clock):
 
     id = "clock_drift"
     equation = r"t_\text{command} = (1 + r)\,t"
+    symbols = ((r"t_\text{command}", "time on the clock of the command log"),)
     neglects = "a rate that changes with temperature"
     source = "definition"
     cause = "Commands and motion are stamped by two computers whose clocks run at different rates."

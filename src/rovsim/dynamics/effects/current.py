@@ -13,6 +13,7 @@ class Current(Coefficients):
 
     id = "current"
     equation = r"\nu_r = \nu - R^\top v_c"
+    symbols = (("v_c", "velocity of the water north, east, down"),)
     neglects = "shear, turbulence and anything unsteady"
     source = "Fossen 2021, sec. 10.3"
     cause = "A pump, an outlet, or the circulation that the vehicle itself has stirred up."
@@ -42,6 +43,12 @@ class CurrentDrift(Wander):
     id = "current_drift"
     equation = (
         r"v_c(t + \Delta t) = v_c(t) + r \sqrt{\Delta t}\,\xi,\quad \xi \sim \mathcal{N}(0, 1)"
+    )
+    symbols = (
+        ("v_c", "velocity of the water"),
+        (r"\Delta t", "a step of time"),
+        (r"\xi", "a random number"),
+        (r"\mathcal{N}(0, 1)", "the standard normal distribution"),
     )
     neglects = "that water calms down again, the vertical, and the force of water that accelerates"
     source = "limit of the Gauss-Markov process of Fossen 2021, sec. 10.3, without decay"

@@ -23,6 +23,11 @@ class FinEffectiveness(Coefficients):
     rank = 1
     through = "surfaces"
     equation = r"L \to g\,g_i\,L"
+    symbols = (
+        ("L", "lift of control surface i"),
+        ("g", "factor of all"),
+        ("g_i", "factor of surface i"),
+    )
     neglects = "a change of its drag, of its stall and of its zero"
     source = "definition"
     cause = (

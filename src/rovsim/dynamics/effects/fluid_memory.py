@@ -21,6 +21,11 @@ class FluidMemory(Coefficients):
         r"\tau = -c\,\mathrm{diag}(1,1,1,\kappa,\kappa,\kappa)(\nu_r - m),"
         r"\quad T \dot m = \nu_r - m"
     )
+    symbols = (
+        ("m", "velocity that the water remembers"),
+        (r"\dot m", "rate of change of m"),
+        (r"\kappa", "0.02 m²"),
+    )
     neglects = "more than one time constant, and waves"
     source = "Fossen 2021, sec. 6.2 (fluid memory), reduced to one state an axis"
     cause = (

@@ -15,6 +15,7 @@ class ForceCurve(Curve):
 
     id = "force_curve"
     equation = r"F \to \mathrm{sign}(F)\,F_\text{max}\,(|F| / F_\text{max})^e"
+    symbols = ((r"F_\text{max}", "force at full command"),)
     neglects = "another force at full command: that is a gain"
     source = "definition"
     cause = (

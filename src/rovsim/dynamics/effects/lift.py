@@ -9,6 +9,13 @@ class Lift(Wrench):
 
     id = "lift"
     equation = r"Y = -c\,|u_r|\,v_r,\quad Z = -c\,|u_r|\,w_r"
+    symbols = (
+        ("Y", "force to starboard"),
+        ("Z", "force down"),
+        ("u_r", "velocity through the water ahead"),
+        ("v_r", "velocity through the water to starboard"),
+        ("w_r", "velocity through the water down"),
+    )
     neglects = "stall, and the moment of the lift"
     source = "Fossen 2021, sec. 6.4 (lift), small angles"
     cause = "The hull meets the water at an angle, like a wing: side panels, floats, fairings."

@@ -43,6 +43,7 @@ class OnboardControl(Wrench, Autopilot):
         r"\text{ in place of the mixer; attitude mode: }"
         r"M_{ii}\,b_i\,(b_i\,(g_i\,\text{demand}_i - \text{angle}_i) - \nu_i)"
     )
+    symbols = (("M_{ii}", "inertia along axis i, with added mass"),)
     neglects = "saturation and lag of the thrusters that do it, and the loop's integral term"
     source = "a first-order loop, as in cascaded autopilots (Fossen 2021, ch. 15)"
     cause = (

@@ -25,6 +25,13 @@ class PoseFilter(Smoothing, Clock):
         r"y_k = a\,y_{k-1} + (1 - a)\,x_k \text{ twice},\quad a = e^{-2 \pi f_c\,\Delta t},"
         r"\quad u(t - \delta_y)"
     )
+    symbols = (
+        ("y_k", "pose that is reported in frame k"),
+        ("y_{k-1}", "pose before"),
+        ("x_k", "pose without the filter"),
+        ("a", "share of the pose before"),
+        (r"\Delta t", "time between two frames"),
+    )
     neglects = (
         "that it begins anew after frames in which the body was not found, and filters that look "
         "ahead"

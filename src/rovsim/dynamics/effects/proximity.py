@@ -34,6 +34,11 @@ class WallProximity(Wrench):
 
     id = "wall_proximity"
     equation = r"d_i \to d_i\,(1 + g\,(e^{-d_x/l} + e^{-d_y/l}))"
+    symbols = (
+        ("d_i", "damping along axis i"),
+        ("d_x", "distance to the nearer wall along x"),
+        ("d_y", "distance to the nearer wall along y"),
+    )
     neglects = "the floor, and forces towards or along the wall"
     source = "empirical: fades exponentially with the distance"
     cause = "The vehicle worked close to a wall, where the water it displaces has little room."
@@ -63,6 +68,10 @@ class SurfaceProximity(Wrench):
 
     id = "surface_proximity"
     equation = r"d_i \to d_i\,(1 + g\,e^{-d_z/l})"
+    symbols = (
+        ("d_i", "damping along axis i"),
+        ("d_z", "distance to the surface"),
+    )
     neglects = "suction, and waves that come back"
     source = "empirical: fades exponentially with the depth"
     cause = "The vehicle ran shallow and spent power on waves."

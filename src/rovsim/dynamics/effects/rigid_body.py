@@ -43,6 +43,12 @@ class Payload(Coefficients):
 
     id = "payload"
     equation = r"M_{RB} \to M_{RB} + m H^\top(r) H(r),\quad \text{weight } m g \text{ at } r"
+    symbols = (
+        ("M_{RB}", "matrix of mass and inertia"),
+        ("H", "matrix that moves a velocity from CO to r"),
+        ("r", "place x, y, z"),
+        ("g", "gravity"),
+    )
     neglects = "its displaced water and its drag"
     source = "Fossen 2021, sec. 3.3 (parallel-axis theorem)"
     cause = (

@@ -12,6 +12,11 @@ class MarkerOffset(Sensing):
 
     id = "marker_offset"
     equation = r"p_\text{measured} = p_{CO} + R\,r"
+    symbols = (
+        (r"p_\text{measured}", "measured position"),
+        ("p_{CO}", "position of CO"),
+        ("r", "offset x, y, z"),
+    )
     neglects = "markers that move on the vehicle"
     source = "definition"
     cause = "The rigid body was defined about another point, usually the middle of its markers."
@@ -33,6 +38,10 @@ class MarkerMisalignment(Sensing):
     id = "marker_misalignment"
     rank = 1  # the offset is along the vehicle's own axes
     equation = r"R_\text{measured} = R\,\exp([\theta]_\times)"
+    symbols = (
+        (r"R_\text{measured}", "measured attitude"),
+        (r"[\theta]_\times", "cross product with the rotation vector roll, pitch, yaw"),
+    )
     neglects = "markers that move on the vehicle"
     source = "definition"
     cause = "The vehicle was not parallel to the world axes when its rigid body was defined."
@@ -57,6 +66,11 @@ class WorldTilt(Sensing):
 
     id = "world_tilt"
     equation = r"p, R \text{ measured} = \exp([\theta]_\times) \cdot \text{true, in NED}"
+    symbols = (
+        ("p", "position"),
+        ("R", "attitude"),
+        (r"[\theta]_\times", "cross product with the rotation vector roll, pitch"),
+    )
     neglects = "the tilt of the tank's walls and of anchors: these are taken as level"
     source = "definition"
     cause = "The L-frame of the calibration did not stand level."

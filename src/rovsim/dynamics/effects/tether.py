@@ -35,6 +35,10 @@ class TetherTension(Wrench):
 
     id = "tether_tension"
     equation = r"F = k \max(0, L - L_0) \text{ towards the anchor}"
+    symbols = (
+        ("F", "force on the vehicle"),
+        ("L", "distance from the attachment to the anchor"),
+    )
     neglects = "weight, drag and dynamics of the tether"
     source = "Hooke's law"
     cause = "The tether came taut, or its floats pull."
@@ -88,6 +92,11 @@ class TetherDrag(Wrench):
 
     id = "tether_drag"
     equation = r"F = -c\,r\,|v_r|\,v_r \text{ at the attachment}"
+    symbols = (
+        ("F", "force on the vehicle"),
+        ("r", "distance to the anchor"),
+        ("v_r", "velocity of CO through the water"),
+    )
     neglects = "the tether's shape, and that its far end moves slower"
     source = "quadratic drag of a wetted length that grows with the distance from the anchor"
     cause = (

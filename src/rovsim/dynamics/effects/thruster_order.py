@@ -19,6 +19,10 @@ class ThrusterOrder(Shaping):
     id = "thruster_order"
     rank = -1  # before a dead band
     equation = r"c_i \leftrightarrow c_j"
+    symbols = (
+        ("c_i", "command of output i"),
+        ("c_j", "command of output j"),
+    )
     neglects = "more than two outputs in another order"
     source = "definition"
     cause = "Two cables are swapped, or the log counts the outputs in another order than the file."

@@ -17,6 +17,7 @@ class ThrusterDeadband(Shaping):
 
     id = "thruster_deadband"
     equation = r"F = 0 \text{ for } |c| \le w"
+    symbols = (("c", "command, from −1 to 1"),)
     neglects = "hysteresis between starting and stopping"
     source = "definition"
     cause = "The speed controllers do not turn the propellers at small commands."
@@ -40,6 +41,10 @@ class ThrusterGain(Strength):
     steady = True
     id = "thruster_gain"
     equation = r"F_i \to g\,g_i\,F_i"
+    symbols = (
+        ("g", "gain of all"),
+        ("g_i", "gain of thruster i"),
+    )
     neglects = "a change of the curve's shape"
     source = "definition"
     cause = (
@@ -96,6 +101,7 @@ class VoltageSag(Strength):
     id = "voltage_sag"
     rank = 2
     equation = r"F \to F\,\max(0,\ 1 - s\,t/T_\text{run} - r\,t)"
+    symbols = ((r"T_\text{run}", "length of the run"),)
     neglects = "recovery at rest and sag under load"
     source = "definition"
     cause = "The battery empties during the run, and nothing corrects the commands for it."
@@ -126,6 +132,10 @@ class ThrusterLag(Response):
 
     id = "thruster_lag"
     equation = r"T \dot F + F = F_\text{static}"
+    symbols = (
+        (r"\dot F", "rate of change of F"),
+        (r"F_\text{static}", "force that the curve gives for the command"),
+    )
     neglects = "that spinning up and down differ"
     source = "Fossen 2021, sec. 9.4 (first-order actuator)"
     cause = "The propellers take time to spin up, or their controllers smooth the command."
@@ -157,6 +167,10 @@ class AdvanceLoss(Coefficients):
     id = "advance_loss"
     through = "thrusters"
     equation = r"F \to F\,(1 - c\,\mathrm{sign}(F)\,d_i \cdot v_r)"
+    symbols = (
+        ("d_i", "direction of thruster i"),
+        ("v_r", "velocity of CO through the water"),
+    )
     neglects = "the velocity of the thruster relative to CO"
     source = "Fossen 2021, sec. 9.4 (linear in the advance speed)"
     cause = (
@@ -181,6 +195,11 @@ class PropellerTorque(Coefficients):
     id = "propeller_torque"
     through = "thrusters"
     equation = r"\tau_\text{rotation} \to \tau_\text{rotation} + q\,s_i F_i d_i"
+    symbols = (
+        (r"\tau_\text{rotation}", "moment on the vehicle"),
+        ("s_i", "sense of rotation of propeller i"),
+        ("d_i", "direction of thruster i"),
+    )
     neglects = "the torque of spinning up"
     source = "Fossen 2021, sec. 9.4 (torque proportional to thrust)"
     cause = (

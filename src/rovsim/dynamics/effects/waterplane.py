@@ -11,6 +11,13 @@ class WaterplaneStiffness(Coefficients):
     id = "waterplane_stiffness"
     through = "waterplane"
     equation = r"\tau = -\Delta k \cdot (z - z_0,\ \phi,\ \theta)"
+    symbols = (
+        (r"\Delta k", "stiffness that is missing"),
+        ("z", "depth"),
+        ("z_0", "depth at rest"),
+        (r"\phi", "roll"),
+        (r"\theta", "pitch"),
+    )
     neglects = "large angles, coupling of heave and pitch, waves, and sides that are not vertical"
     source = "Fossen 2021, sec. 4.2 (the diagonal of G, small angles)"
     cause = (

@@ -23,6 +23,7 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.effects.parameters import Signature
+from rovsim.reporting.words.symbols import explain_symbols
 
 PAGE, PICTURES = "catalogue.md", "images/effects"
 LONG = 8  # rows of a table that is folded away
@@ -86,7 +87,7 @@ def _contents(title: str, found: Iterable[type[Effect]]) -> str:
 
 
 def entry(cls: type[Effect]) -> str:
-    """One effect: sentence, equation, picture, cause, what settles it, parameters."""
+    """One effect: sentence, equation, symbols, picture, cause, what settles it, parameters."""
     first, _, rest = (inspect.getdoc(cls) or "").partition("\n\n")
     more = f"\n{_flat(rest)}\n" if rest else ""
     return f"""\
@@ -98,7 +99,7 @@ def entry(cls: type[Effect]) -> str:
 {cls.equation}
 ```
 
-{_picture(cls.id, cls.signature, {p.name: p.unit for p in cls.parameters})}
+{_where(cls)}{_picture(cls.id, cls.signature, {p.name: p.unit for p in cls.parameters})}
 **Cause.** {cls.cause}
 
 **What settles it.** {cls.revealed_by}
@@ -107,6 +108,11 @@ def entry(cls: type[Effect]) -> str:
 
 {_table(cls.parameters)}
 """
+
+
+def _where(cls: type[Effect]) -> str:
+    told = "; ".join(f"$`{symbol}`$: {meaning}" for symbol, meaning in explain_symbols(cls))
+    return f"where {told}.\n\n" if told else ""
 
 
 def _picture(name: str, signature: Signature | None, units: Mapping[str, str]) -> str:

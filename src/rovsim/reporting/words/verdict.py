@@ -10,6 +10,7 @@ from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import listed, significant
+from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
     Diagnosis,
@@ -38,7 +39,8 @@ NO_TEST = (
 class Missing:
     """A selected effect: its id, what it is, its parameters as text, and how sure it is.
 
-    `equation` in LaTeX and `cause` are empty where the effect is not in the catalogue any more.
+    `equation` in LaTeX, its `symbols` with their meanings and `cause` are empty where the effect is
+    not in the catalogue any more.
     """
 
     effect: str
@@ -46,6 +48,7 @@ class Missing:
     parameters: tuple[str, ...]
     worth: str
     equation: str
+    symbols: tuple[Meaning, ...]
     cause: str
 
 
@@ -103,12 +106,13 @@ def _missing(one: FittedEffect, known: type[Effect] | None, above: bool) -> Miss
     """`above`: whether effects stand above it, on top of which it removes its share."""
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
     equation, cause = (known.equation, known.cause) if known else ("", "")
+    symbols = explain_symbols(known, one.parameters) if known else []
     values = tuple(f"{name} {interval(v)}" for name, v in one.parameters.items())
     removed = _removed(one.error_reduction, above)
     if known and issubclass(known, Wander):
         removed = "cannot be foreseen"
     worth = f"{removed}, {_sure(one.probability)}"
-    return Missing(one.effect, meaning, values, worth, equation, cause)
+    return Missing(one.effect, meaning, values, worth, equation, tuple(symbols), cause)
 
 
 def _removed(share: float | None, above: bool) -> str:

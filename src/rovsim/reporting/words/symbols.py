@@ -1,0 +1,64 @@
+"""What the symbols of an effect's equation stand for, from what the effect declares."""
+
+import re
+from typing import Collection, Iterator
+
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.parameters import Parameter
+
+# What effects share; one that means something else by a symbol declares it (`Effect.symbols`).
+COMMON = {
+    r"\tau_i": "force or moment on the vehicle along axis i",
+    r"\tau": "force and moment on the vehicle",
+    r"\nu_{r,i}": "velocity through the water along axis i",
+    r"\nu_{r,j}": "velocity through the water along axis j",
+    r"\nu_r": "velocity through the water",
+    r"\nu_i": "velocity along axis i",
+    r"\nu": "velocity of the vehicle",
+    "F": "force of a thruster",
+    "F_i": "force of thruster i",
+    "R": "rotation from the body's axes to those of the world",
+    "t": "time",
+    "u": "command",
+}
+WORDS = re.compile(r"(?<!_)\\text\{[^}]*\}|\\mathrm\{[^}]*\}")  # no symbols inside
+INDEXED = re.compile(r"(.+)_\{(.+)\}")  # a parameter for each axis, pair or thruster
+Meaning = tuple[str, str]  # symbol in LaTeX, what it is
+
+
+def explain_symbols(effect: type[Effect], values: Collection[str] | None = None) -> list[Meaning]:
+    """The symbols of an effect's equation in the order in which they appear.
+
+    Of parameters that have no `values` it says what stands for them; without, that is left out.
+    """
+    known = COMMON | dict(effect.symbols) | dict(_name_parameters(effect, values))
+    left, found = WORDS.sub(lambda words: " " * len(words[0]), effect.equation), {}
+    for symbol in sorted(known, key=len, reverse=True):
+        begin = "" if symbol.startswith("\\") else r"(?<![A-Za-z\\])"
+        pattern = rf"{begin}{re.escape(symbol)}(?![A-Za-z_])"
+        if match := re.search(pattern, left):
+            found[match.start()] = (symbol, known[symbol])
+            left = re.sub(pattern, lambda seen: " " * len(seen[0]), left)
+    return [found[place] for place in sorted(found)]
+
+
+def _name_parameters(effect: type[Effect], values: Collection[str] | None) -> Iterator[Meaning]:
+    """Parameters by name; those that share an indexed symbol together: d_i is surge and sway."""
+    together: dict[str, list[str]] = {}
+    for parameter in effect.parameters:
+        yield parameter.symbol, _name(parameter, values)
+        if indexed := INDEXED.fullmatch(parameter.symbol):
+            base, index = indexed.groups()
+            symbol = f"{base}_{{ij}}" if "," in index else f"{base}_i"
+            together.setdefault(symbol, []).append(parameter.name)
+    for symbol, names in together.items():
+        shown = [name for name in names if values is None or name in values]
+        if shown and symbol not in dict(effect.symbols):
+            told = shown if values else [shown[0], "…", shown[-1]]
+            yield symbol, ", ".join(told).replace(", …,", " …")
+
+
+def _name(parameter: Parameter, values: Collection[str] | None) -> str:
+    if values is None or parameter.name in values:
+        return parameter.name
+    return f"{parameter.name}, {parameter.absence:g} here"
