@@ -16,7 +16,7 @@ from rovsim.apps.workbench.folders import MOST
 from rovsim.apps.workbench.traces import HORIZONS
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import describe_effect, read_model
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import rounded
 
 pytestmark = pytest.mark.browser
 DARK = "document.body.classList.contains('body--dark')"
@@ -326,7 +326,7 @@ def test_what_was_added_is_typed_undone_and_put_back(tab, workbench):
     number.press("Enter")
     tab.page.wait_for_function(CHANGED, arg=["run/now", first])
     tab.page.get_by_role("button", name="back to where it began").click()
-    begun = float(significant(fitted["parameters"]["time_constant"]["value"]))
+    begun = rounded(fitted["parameters"]["time_constant"]["value"])
     tab.page.wait_for_function(f"Number({NUMBER}.value) == {begun}")
 
 

@@ -156,7 +156,7 @@ def test_the_ranking_shows_a_share_beyond_its_ends_as_an_arrow_there():
     figure = drawn("ranking", {"diagnosis": far})
     mark = next(line for line in figure.axes[0].lines if line.get_marker() == "<")
     assert mark.get_xdata()[0] == -20.0
-    assert any(text.get_text().startswith("-200") for text in figure.axes[0].texts)
+    assert any(text.get_text().startswith("−200") for text in figure.axes[0].texts)
     show(figure)  # the layout finds room
 
 

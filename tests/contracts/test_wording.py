@@ -3,14 +3,17 @@
 import re
 
 import pytest
+from pandas import DataFrame
 
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.html import report
 from rovsim.reporting.report_data import ReportData
-from rovsim.reporting.wording import listed
+from rovsim.reporting.tables import Column, Table
+from rovsim.reporting.wording import listed, rounded, significant
 from rovsim.reporting.words import terminal
 from rovsim.reporting.words.symbols import explain_symbols
-from rovsim.reporting.words.verdict import explain
+from rovsim.reporting.words.verdict import explain, interval
+from rovsim.results.fitted import FittedValue
 from synthetic_study import study
 
 FUNCTIONS = "exp|max|tanh|min|to|cdot|le|leftrightarrow|quad|sqrt|sim|pi|top"
@@ -67,3 +70,17 @@ def test_the_report_explains_symbols(content):
         report.Report("x", ReportData(diagnosis=content["diagnosis"]), catalogue=built_in())
     )
     assert "velocity through the water along axis i" in page
+
+
+def test_numbers_below_zero_have_a_minus_sign():
+    assert significant(-3.9444) == "−3.94"
+    assert significant(-2e-7, 2) == "−2.0e−07"
+    assert interval(FittedValue(value=-3.944, std=0.1, unit="N")) == "−3.94 ± 0.20 N"
+    assert interval(FittedValue(value=-3.944, unit="N")) == "−3.944 N"
+    assert rounded(-3.9444) == -3.94
+    assert (
+        "{\\num{-2.00e-07}}"
+        in Table(
+            "x", "y", [Column("a", "a", "–")], DataFrame({"a": [-2e-7, -1.5]}, index=["p", "q"])
+        ).latex()
+    )

@@ -160,7 +160,7 @@ def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, monkeypatch,
 
 @pytest.mark.parametrize(
     ("value", "told"),
-    [(3.0, "13.7 + 3.00 = 16.7"), (-20.0, "13.7 − 20.0 = -6.30: water would push, not brake")],
+    [(3.0, "13.7 + 3.00 = 16.7"), (-20.0, "13.7 − 20.0 = −6.30: water would push, not brake")],
 )
 def test_a_coefficient_is_told_with_what_it_comes_to(bench, value, told):
     body = replace(bench.base.body, linear=np.array([13.7, 0, 33, 0, 0.8, 0]))

@@ -110,7 +110,7 @@ class Table:
 
 def _number(value: float) -> str:
     """A number as siunitx reads it; in braces, and not aligned, a power of ten, and a dash."""
-    shown = significant(value)
+    shown = significant(value).replace("−", "-")
     if "e" in shown:
         return rf"{{\num{{{shown}}}}}"
     return shown if math.isfinite(value) else f"{{{shown}}}"

@@ -90,6 +90,16 @@ def significant(value: float, digits: int = 3) -> str:
     if value == 0:
         return "0"
     if not 1e-4 <= abs(value) < 1e6:
-        return f"{value:.{digits - 1}e}"
-    places = digits - 1 - math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
-    return f"{round(value, places):.{max(places, 0)}f}"
+        return minus(f"{value:.{digits - 1}e}")
+    places = digits - 1 - math.floor(math.log10(abs(rounded(value, digits))))
+    return minus(f"{round(value, places):.{max(places, 0)}f}")
+
+
+def rounded(value: float, digits: int = 3) -> float:
+    """Return `value` to so many significant figures, as a number."""
+    return float(f"{value:.{digits - 1}e}")
+
+
+def minus(number: str) -> str:
+    """A number as people write it: with a minus sign, not a hyphen."""
+    return number.replace("-", "−")

@@ -31,7 +31,7 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
 from rovsim.reporting.catalogue.entries import unit
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import rounded
 from rovsim.results.comparison import WINDOW
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
@@ -126,7 +126,7 @@ class Add:
             ui.label(parameter.name).classes("name")
             slider = Slider(min=low, max=high, step=(high - low) / STEPS, value=value)
             slider.props(f'aria-label="{effect}, {parameter.name}"')
-            number = ui.number(value=float(significant(value)), suffix=shown).classes("value")
+            number = ui.number(value=rounded(value), suffix=shown).classes("value")
             number.props(f'dense borderless aria-label="{effect}, {parameter.name}, number"')
             back = ui.button(icon="settings_backup_restore").classes("reset")
             about = f"{effect}, {parameter.name}: back to where it began"
@@ -141,7 +141,7 @@ class Add:
             await self.update()
 
         async def moved(event: Any) -> None:
-            number.set_value(float(significant(event.args)))
+            number.set_value(rounded(event.args))
             await change(float(event.args))
 
         async def typed() -> None:

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import short
+from rovsim.reporting.wording import minus, short
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 
@@ -71,10 +71,10 @@ def _row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
 
 
 def _text(alone: float, together: float) -> str:
-    by_itself = f"{100 * alone:.0f}" if np.isfinite(alone) else ""
+    by_itself = minus(f"{100 * alone:.0f}") if np.isfinite(alone) else ""
     if not np.isfinite(together):
         return by_itself
-    return f"{100 * together:.0f}" + (f" ({by_itself} alone)" if by_itself else "")
+    return minus(f"{100 * together:.0f}") + (f" ({by_itself} alone)" if by_itself else "")
 
 
 def _handles(chosen: bool) -> list[Line2D | Patch]:

@@ -4,7 +4,7 @@ import textwrap
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.wording import fit, several, significant, title
+from rovsim.reporting.wording import fit, minus, several, significant, title
 from rovsim.reporting.words.sentences import band_sentences
 from rovsim.reporting.words.verdict import NO_TEST, Missing, explain
 from rovsim.results.bands import Bands
@@ -48,7 +48,9 @@ def _errors(errors: Mapping[str, float | None]) -> list[str]:
 
 
 def _told(error: float | None) -> str:
-    return significant(or_nan(error)) + (f", fit {fit(error):.0f} %" if error is not None else "")
+    return significant(or_nan(error)) + (
+        f", fit {minus(f'{fit(error):.0f}')} %" if error is not None else ""
+    )
 
 
 def _findings(where: ErrorConditions) -> list[str]:

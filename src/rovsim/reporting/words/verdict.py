@@ -9,7 +9,7 @@ from rovsim import AXES
 from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.reporting.units import FORCE_UNITS
-from rovsim.reporting.wording import listed, significant
+from rovsim.reporting.wording import listed, minus, significant
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
@@ -130,7 +130,8 @@ def interval(value: FittedValue) -> str:
     if not math.isfinite(half) or half <= 0.0:
         return f"{significant(or_nan(value.value), 4)} {unit}".strip()
     places = max(0, 1 - math.floor(math.log10(half)))
-    return f"{or_nan(value.value):.{places}f} ± {half:.{places}f} {unit}".strip()
+    told = minus(f"{or_nan(value.value):.{places}f}")
+    return f"{told} ± {half:.{places}f} {unit}".strip()
 
 
 def differs_from_zero(value: FittedValue) -> bool:
