@@ -42,7 +42,7 @@ USUAL = {
 def say(found: Finding) -> str:
     """A finding in plain language, complete in itself."""
     after = f", beyond {' and '.join(found.after)}" if found.after else ""
-    return f"{found.axis.capitalize()}{after}: {_what(found)} {_share(found)} {_usual(found)}"
+    return f"{_begin(found.axis)}{after}: {_what(found)} {_share(found)} {_usual(found)}"
 
 
 def summarize(explanation: Explanation) -> list[str]:
@@ -81,7 +81,7 @@ def _what(found: Finding) -> str:
     own = RELATIONS.get(condition.kind) if condition.axis == found.axis else None
     r = relation(found)
     if own and condition.name != "heading" and abs(r) > 0.6:
-        return f"the model {own[0] if r > 0 else own[1]}; {_extreme(found, unit)}."
+        return f"the model {own[0] if r > 0 else own[1]}. {_extreme(found, unit)}."
     return f"the error changes with {condition.name}: {_range(found, unit)}."
 
 
@@ -99,8 +99,7 @@ def _extreme(found: Finding, unit: str) -> str:
     b = int(np.argmax(np.where(found.table.binning.judged, np.abs(found.table.mean), -1.0)))
     mean, condition = abs(float(found.table.mean[b])), found.table.binning.condition
     return (
-        f"the error varies with {condition.name} and reaches {amount(mean)} {unit} "
-        f"{_span(found, b)}"
+        f"The error is largest, {amount(mean)} {unit}, where {condition.name} is {_span(found, b)}"
     )
 
 
@@ -138,15 +137,20 @@ def _plain(value: float) -> str:
 
 def _share(found: Finding) -> str:
     """Share of the error, and which other conditions would do as well."""
-    share = f"{100 * found.share_of_error:.0f} % of the squared {found.axis} error"
-    at = found.table.binning.condition
-    text = f"{share} is constant." if at.kind == THROUGHOUT else f"{share} varies with it."
+    share, at = f"{100 * found.share_of_error:.0f} %", found.table.binning.condition
+    if at.kind == THROUGHOUT:
+        return f"{share} of the squared error is constant."
+    text = f"{_begin(at.name)} explains {share} of the squared error."
     others = [c.name for c in found.alike[:2]]
-    return (
-        f"{text} (It varies as well with {' or '.join(others)}: they varied together.)"
-        if others
-        else text
-    )
+    if not others:
+        return text
+    would = " or ".join(others)
+    return f"{text} ({_begin(would)} would explain about as much: they varied together.)"
+
+
+def _begin(words: str) -> str:
+    """As a sentence begins; what is a name already stays."""
+    return words[0].upper() + words[1:]
 
 
 def _usual(found: Finding) -> str:
