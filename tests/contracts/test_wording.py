@@ -6,11 +6,14 @@ import pytest
 from pandas import DataFrame
 
 from rovsim.dynamics.catalogue import built_in
+from rovsim.reporting.figures import kind
+from rovsim.reporting.figures.pooled import pool
 from rovsim.reporting.html import report
 from rovsim.reporting.report_data import ReportData
-from rovsim.reporting.tables import Column, Table
-from rovsim.reporting.wording import listed, rounded, significant
+from rovsim.reporting.tables import Column, Table, tabulate_ladder
+from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, listed, rounded, significant
 from rovsim.reporting.words import terminal
+from rovsim.reporting.words.sentences import residual_sentences
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
 from rovsim.results.fitted import FittedValue
@@ -91,3 +94,27 @@ def test_a_finding_says_where_the_error_is_largest_and_what_explains_it(content)
     assert "The error is largest, " in said
     assert re.search(r" explains \d+ % of the squared error\.", said)
     assert "varies with it" not in said
+
+
+def test_the_error_that_ranks_has_one_name_and_one_meaning(content):
+    ladder = tabulate_ladder(content["ladder"])
+    told = terminal.tell_diagnosis(content["diagnosis"], built_in())
+    compared = terminal.tell_comparison({"nominal": 0.3}, content["where"], tested=True)
+    for said in (ladder.caption, told, compared):
+        assert ERROR_MEANING in " ".join(said.split())
+    assert ladder.columns[0].heading == ERROR
+    assert f"the {ERROR} falls from" in told
+    assert ERROR in kind("ladder").caption
+
+
+def test_the_ladder_says_which_rows_build_on_each_other(content):
+    assert LADDER in tabulate_ladder(content["ladder"]).caption
+
+
+def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
+    errors = pool(content["comparison"], "velocity_rmse")
+    steps = {"nominal": 1.0, "+lift": 0.5, "+current": 0.23, "effects+gp_6dof": 0.24}
+    said = residual_sentences(errors, steps)
+    assert "But the effects alone lower it by 77\u202f%." in said
+    said = residual_sentences(errors, steps | {"effects+gp_6dof": 0.22})
+    assert not any("effects alone" in sentence for sentence in said)

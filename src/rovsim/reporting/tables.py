@@ -13,7 +13,7 @@ from rovsim.core.files import write_text
 from rovsim.evaluation.held_out.published_errors import METRICS
 from rovsim.reporting.figures.pooled import name_horizon, pool
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
-from rovsim.reporting.wording import fit, significant, title
+from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, fit, significant, title
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import HORIZON, Comparison
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
@@ -149,7 +149,7 @@ def tabulate_errors(
 def tabulate_ladder(ladder: Ladder) -> Table:
     """One row per step of a ladder; velocity MAE only in the CSV, to fit the page."""
     columns = [
-        Column("windows_2s", "error", "–"),
+        Column("windows_2s", ERROR, "–"),
         Column("fit", "fit", "%", high_is_good=True),
     ]
     for quantity, printed in (("acceleration_rmse", True), ("velocity_mae", False)):
@@ -166,9 +166,9 @@ def tabulate_ladder(ladder: Ladder) -> Table:
         for step in ladder.steps
     }  # fmt: skip
     return Table(
-        caption="Each step on the test runs. Error: velocity RMSE of 2 s windows in units of the "
-        "measured velocity's standard deviation. Fit: 1 minus the error. Per axis: acceleration "
-        "RMSE. Best of each column in bold, ties too; the noise floor is a bound, not a model.",
+        caption=f"Models on the test runs. {LADDER} {ERROR_MEANING}. Fit: 1 minus this. Per "
+        "axis: acceleration RMSE. Best of each column in bold, ties too; the noise floor is a "
+        "bound, not a model.",
         label="tab:ladder",
         columns=columns,
         frame=_frame(rows, columns),

@@ -25,6 +25,14 @@ LEARNERS = {  # id: what people say, and in full
 CONTROLS = {"3dof": "3-DoF", "6dof": "6-DoF", "all": "all runs"}
 LEARNED = re.compile(rf"(?:(.*)\+)?({'|'.join(LEARNERS)})_({'|'.join(CONTROLS)})")
 STEP = re.compile(r"\+(\w+)")  # of a diagnosis' ladder
+# The one error by which models are ranked (`windows_2s` in files), wherever it is shown.
+ERROR = "2 s error"
+ERROR_MEANING = (
+    "The 2 s error is the RMSE of the predicted velocity, the model restarted from the measured "
+    "state every 2 s, in standard deviations of the measured velocity, averaged over the axes "
+    "that moved"
+)
+LADDER = "Rows stand side by side; only a row that begins with + builds on the row above it."
 MOST = 8  # names told of many: a line of run ids
 
 

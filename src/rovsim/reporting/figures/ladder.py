@@ -11,15 +11,11 @@ from rovsim.reporting.charts import chart_ladder
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import significant, title
+from rovsim.reporting.wording import ERROR, LADDER, STEP, significant, title
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 
 SECTION = "ladder"
-CAPTION = (
-    "Error of every step on runs none of them was fitted to: the velocity error of 2 s windows "
-    "in units of the measured velocity's standard deviation, averaged over the excited axes. Lower "
-    "is better."
-)
+CAPTION = "The 2 s error of each model on runs none of them was fitted to. Lower is better."
 ROOM = 1.14  # for the values behind the bars
 BASELINE = "zero_acceleration"
 FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the models can be told apart
@@ -42,7 +38,7 @@ def draw(*, ladder: Ladder) -> Figure:
     axes.set_xlim(0, top)
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
-    axes.set_xlabel("velocity RMSE of 2 s windows / standard deviation (–)")
+    axes.set_xlabel(f"{ERROR} (velocity RMSE / standard deviation)")
     if not steps:
         nothing(axes, "no steps")
     if np.isfinite(floor):
@@ -77,5 +73,6 @@ def _remarks(ladder: Ladder, steps: Mapping[str, float], top: float) -> list[str
     beyond = [title(name) for name, value in steps.items() if value > top]
     return [
         f"Runs of the {' and '.join(splits)} split." if splits else "",
+        LADDER if any(STEP.fullmatch(step.model) for step in ladder.steps) else "",
         f"The bar of {beyond[0]} is longer than the axis." if beyond else "",
     ]

@@ -11,7 +11,7 @@ from rovsim.reporting.figures.palette import RESIDUALS, family
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import listed, significant, title
+from rovsim.reporting.wording import ERROR, STEP, listed, significant, title
 from rovsim.reporting.words.speed import timing_sentences
 from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.comparison import HORIZON
@@ -132,6 +132,7 @@ def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[st
     best = min(learned, key=lambda name: learned[name])
     return [
         _best_sentence(title(best), learned[best], len(learned), measure),
+        *_effects_alone(ratios, learned[best]),
         *_per_axis(relate(errors).reindex([best]).loc[best]),
         *_others(learned, best),
     ]
@@ -141,14 +142,14 @@ def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, f
     """One error per model, relative to nominal, and what it measures."""
     if steps.get("nominal") and any(family(name) in RESIDUALS for name in steps):
         ratios = {name: value / steps["nominal"] for name, value in steps.items()}
-        return ratios, "the velocity error of 2 s windows, averaged over the excited axes"
+        return ratios, f"the {ERROR}"
     rows = relate(errors)
     counted = rows.reindex(["nominal"]).loc["nominal"].notna()
     if not counted.any():
         return {}, ""
     return (
         rows.loc[:, counted].mean(axis=1, skipna=False).to_dict(),
-        "the velocity error of 2 s windows, relative to nominal and averaged over the axes",
+        "the velocity RMSE in 2 s windows, relative to nominal, mean over the axes",
     )
 
 
@@ -169,6 +170,13 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
     if count == 1:
         return f"The learned residual {best} does not help: it {change} ({measure})."
     return f"None of the {count} learned residuals helps; the best, {best}, {change} ({measure})."
+
+
+def _effects_alone(ratios: Mapping[str, float], learned: float) -> list[str]:
+    """That physics without a residual does better, where it does."""
+    # a ladder has the effects one by one, the last of them on top of all others
+    alone = [r for name, r in ratios.items() if name == "effects" or STEP.fullmatch(name)][-1:]
+    return [f"But the effects alone lower it by {_percent(1 - r)}." for r in alone if r < learned]
 
 
 def _per_axis(row: Series) -> list[str]:
@@ -197,7 +205,7 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
     if len(models) < 2:
         return []
     best = min(models, key=lambda name: models[name])
-    text = f"On the ladder {title(best)} has the lowest error, {significant(models[best])}"
+    text = f"On the ladder {title(best)} has the lowest {ERROR}, {significant(models[best])}"
     others = [f"{title(n)} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
               if n in models and n != best]  # fmt: skip
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]

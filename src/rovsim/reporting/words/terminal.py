@@ -4,7 +4,7 @@ import textwrap
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.wording import fit, minus, several, significant, title
+from rovsim.reporting.wording import ERROR_MEANING, fit, minus, several, significant, title
 from rovsim.reporting.words.sentences import band_sentences
 from rovsim.reporting.words.verdict import NO_TEST, Missing, explain
 from rovsim.results.bands import Bands
@@ -16,11 +16,7 @@ from rovsim.results.fitted import FittedEffect
 WIDTH, BAR = 80, 24  # a terminal has 80 columns unless it was made wider
 MOST = 6  # findings printed; the report has them all
 RANKED = 5  # effects of the ranking printed
-MEANING = (
-    "error on the test runs: of the velocity, the model restarted from the measured state every "
-    "2 s; in units of the measured velocity's standard deviation; mean over the excited axes. "
-    "Fit is 100 % minus this error (NRMSE fit)"
-)
+MEANING = f"{ERROR_MEANING}; here on the test runs. Fit is 100 % minus it (NRMSE fit)."
 
 
 def tell_comparison(

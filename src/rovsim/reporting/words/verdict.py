@@ -9,7 +9,7 @@ from rovsim import AXES
 from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.reporting.units import FORCE_UNITS
-from rovsim.reporting.wording import listed, minus, significant
+from rovsim.reporting.wording import ERROR, ERROR_MEANING, listed, minus, significant
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
@@ -157,12 +157,13 @@ def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
     if not math.isfinite(before):
         return NO_TEST
     now = f"falls from {significant(before)} to {significant(after)}"
-    text = f"On the test runs the error {now if changed else 'is ' + significant(before)}"
-    text += " (velocity in 2 s windows, in units of its standard deviation)."
+    text = f"On the test runs the {ERROR} {now if changed else 'is ' + significant(before)}."
     if not math.isfinite(floor):
         why = "not all that is left is noise, or only parts of the pose were measured"
-        return f"{text} What a perfect model would show cannot be estimated: {why}."
-    return f"{text} A perfect model would show about {significant(floor)} (noise floor)."
+        text += f" What a perfect model would show cannot be estimated: {why}."
+    else:
+        text += f" A perfect model would show about {significant(floor)} (noise floor)."
+    return f"{text} {ERROR_MEANING}."
 
 
 def apart_sentences(found: Diagnosis) -> list[str]:
@@ -238,7 +239,7 @@ def _law_sentences(found: Diagnosis) -> list[str]:
     worth = f"It removes {percent(law.error_reduction)} of the error on the train runs"
     step = next((s for s in found.ladder.models if s.model == f"+{law.effect}"), None)
     if step is not None and step.windows_2s is not None:
-        worth += f"; with it the error on the test runs is {significant(step.windows_2s)}"
+        worth += f"; with it the {ERROR} on the test runs is {significant(step.windows_2s)}"
     return [
         f"A law for it: {law.meaning} {law.equation} with {values}. {worth}.",
         f"It is in the file {law.file}. Read it, change it if you like, and add it with "
