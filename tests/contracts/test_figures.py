@@ -143,8 +143,18 @@ def test_the_ranking_shows_each_share_and_what_the_selected_add():
     names = [label.get_text() for label in axes.get_yticklabels()]
     assert names[:2] == ["thruster_lag", "quadratic_damping"]
     widths = [bar.get_width() for bar in axes.patches]
-    assert widths == pytest.approx([0.0, 38.0, 36.0, 18.0, 0.0])
+    assert widths == pytest.approx([0.0, 38.0, 36.0, 18.0])  # less than 1 % is left out
     assert [line.get_xdata()[0] for line in axes.lines] == pytest.approx([42.0, 36.0])
+    assert 42.0 < axes.get_xlim()[1] < 60.0
+
+
+def test_a_ranking_of_effects_that_remove_nothing_says_so():
+    found = study()["diagnosis"]
+    useless = [r.model_copy(update={"error_reduction": 0.002}) for r in found.ranking]
+    none = found.model_copy(update={"selected": (), "ranking": tuple(useless)})
+    axes = drawn("ranking", {"diagnosis": none}).axes[0]
+    assert not axes.patches
+    assert [text.get_text() for text in axes.texts] == ["no effect removes 1 % by itself"]
 
 
 def test_the_ranking_shows_a_share_beyond_its_ends_as_an_arrow_there():

@@ -13,7 +13,7 @@ from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import Column, Table, tabulate_ladder
 from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, listed, rounded, significant
 from rovsim.reporting.words import terminal
-from rovsim.reporting.words.sentences import residual_sentences
+from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
 from rovsim.results.fitted import FittedValue
@@ -118,3 +118,22 @@ def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
     assert "But the effects alone lower it by 77\u202f%." in said
     said = residual_sentences(errors, steps | {"effects+gp_6dof": 0.22})
     assert not any("effects alone" in sentence for sentence in said)
+
+
+def test_what_is_unexplained_is_not_said_to_be_all_that_a_perfect_model_leaves(content):
+    found = content["diagnosis"]
+    left = found.unexplained.model_copy(update={"significant": True, "proposal": None})
+    said = explain(found.model_copy(update={"unexplained": left}), built_in()).remarks[0]
+    assert "counts what is unexplained as noise" in said
+    assert "perfect model" not in said
+    steps = {"nominal": 0.2, "zero_acceleration": 0.9, "noise_floor": 0.19}
+    assert "counts what is unexplained as noise" in ladder_sentences(steps, True)[-1]
+    assert "reaches the noise floor" in ladder_sentences(steps | {"noise_floor": 0.2}, False)[-1]
+
+
+def test_effects_that_remove_nothing_are_not_ranked_on_the_terminal(content):
+    useless = [
+        r.model_copy(update={"error_reduction": 0.004}) for r in content["diagnosis"].ranking
+    ]
+    found = content["diagnosis"].model_copy(update={"ranking": tuple(useless)})
+    assert "removes alone" not in terminal.tell_diagnosis(found, built_in())

@@ -33,6 +33,10 @@ ERROR_MEANING = (
     "that moved"
 )
 LADDER = "Rows stand side by side; only a row that begins with + builds on the row above it."
+FLOOR_COUNTS_ALL = (
+    "The noise floor, {}, counts what is unexplained as noise: a model that knew it could be below."
+)
+LEAST = 0.01  # share of the error below which an effect by itself is not shown
 MOST = 8  # names told of many: a line of run ids
 
 

@@ -1,22 +1,26 @@
 """The ranking: how much of the error each effect removes by itself, the selected ones marked."""
 
+from typing import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import minus, short
+from rovsim.reporting.wording import LEAST, minus, short
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 
 SECTION = "verdict"
 CAPTION = (
     "Share of the model's error that each of the likeliest effects removes by itself, at its first "
-    "estimate; for the selected ones also what each adds in the final model, fitted together."
+    "estimate; for the selected ones, above, also what each adds in the final model, fitted "
+    "together. Effects that remove less than 1 % are left out."
 )
 OTHER = "#BBBBBB"
 LOWEST, HIGHEST = -0.2, 1.0  # a share outside is drawn as an arrow at that end
@@ -24,16 +28,16 @@ LOWEST, HIGHEST = -0.2, 1.0  # a share outside is drawn as an arrow at that end
 
 @styled()
 def draw(*, diagnosis: Diagnosis) -> Figure:
-    """Draw `ranking` and `selected` of `diagnosis.json`, a bar an effect, largest share first.
+    """Draw `ranking` and `selected` of `diagnosis.json`, a bar an effect: the selected ones first.
 
-    A diamond is what a selected effect adds in the final model. One that the ranking does not list
-    has no bar: others had to be there to bring it to light.
+    Those follow each other as in the verdict, the others by their share. A diamond is what a
+    selected effect adds in the final model. One that the ranking does not list has no bar: others
+    had to be there to bring it to light.
     """
     alone = {one.effect: or_nan(one.error_reduction) for one in diagnosis.ranking}
     chosen = {one.effect: or_nan(one.error_reduction) for one in diagnosis.selected}
-    most = {name: np.nan_to_num([alone.get(name, 0.0), chosen.get(name, 0.0)]).max()
-            for name in (*alone, *chosen)}  # fmt: skip
-    names = sorted(most, key=lambda name: -most[name])
+    others = [name for name, share in alone.items() if share >= LEAST and name not in chosen]
+    names = [*chosen, *sorted(others, key=lambda name: -alone[name])]
     figure = sheet(28 + 6.0 * max(len(names), 3))
     axes = figure.subplots()
     for y, name in enumerate(names):
@@ -44,18 +48,26 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
         label.set_fontweight("bold" if label.get_text() in chosen else "normal")
     axes.set_ylim(max(len(names), 1) - 0.4, -0.6)
     harm = any(share < 0.0 for share in chosen.values())
-    axes.set_xlim(-25 if harm else 0, 122)
-    axes.set_xticks(range(-20 if harm else 0, 101, 20))
     if harm:
         axes.axvline(0, color="black", linewidth=0.5)
+    _scale(axes, [*alone.values(), *chosen.values()], harm)
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
     axes.set_xlabel("share of the error removed (%)")
     if not names:
-        nothing(axes, "no effect was judged")
+        axes.set_xticks([])
+        nothing(axes, "no effect removes 1 % by itself" if alone else "no effect was judged")
     legend(figure, _handles(bool(chosen)) if names else [])
     note(figure, _remarks(diagnosis))
     return figure
+
+
+def _scale(axes: Axes, shares: Sequence[float], harm: bool) -> None:
+    """As wide as the largest share and its number need; no mark beyond the whole error."""
+    most = 100 * float(np.clip(np.nan_to_num([*shares, 0.1]).max(), 0.0, HIGHEST))
+    axes.set_xlim(-25 if harm else 0, 1.25 * most)
+    marks = MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(100 * LOWEST if harm else 0, most)
+    axes.set_xticks([mark for mark in marks if 100 * LOWEST <= mark <= most])
 
 
 def _row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:

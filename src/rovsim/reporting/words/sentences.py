@@ -11,8 +11,9 @@ from rovsim.reporting.figures.palette import RESIDUALS, family
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import ERROR, STEP, listed, significant, title
+from rovsim.reporting.wording import ERROR, FLOOR_COUNTS_ALL, STEP, listed, significant, title
 from rovsim.reporting.words.speed import timing_sentences
+from rovsim.reporting.words.verdict import leaves_unexplained
 from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.comparison import HORIZON
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
@@ -32,7 +33,7 @@ def summarize(data: ReportData) -> list[str]:
         runs_sentences(data.quality),
         nominal_sentences(errors) + quiet_sentences(data.quality),
         residual_sentences(errors, steps),
-        ladder_sentences(steps),
+        ladder_sentences(steps, bool(data.diagnosis and leaves_unexplained(data.diagnosis))),
         timing_sentences(data.timing) if data.timing else [],
         band_sentences(data.coverage) if data.coverage else [],
     ]
@@ -199,8 +200,11 @@ def _others(learned: Mapping[str, float], best: str) -> list[str]:
     return [f"Not better than nominal: {listed(failing)}."] if failing else []
 
 
-def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
-    """Say how far the best step has come and how far the noise floor is."""
+def ladder_sentences(steps: Mapping[str, float], unexplained: bool) -> list[str]:
+    """Say how far the best step has come and how far the noise floor is.
+
+    `unexplained`: whether the floor counts as noise what is none.
+    """
     models = {name: value for name, value in steps.items() if name != NOISE_FLOOR}
     if len(models) < 2:
         return []
@@ -210,7 +214,9 @@ def ladder_sentences(steps: Mapping[str, float]) -> list[str]:
               if n in models and n != best]  # fmt: skip
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]
     floor = steps.get(NOISE_FLOOR, 0.0)
-    if floor > 0:
+    if floor > 0 and unexplained:
+        sentences.append(FLOOR_COUNTS_ALL.format(significant(floor)))
+    elif floor > 0:
         sentences.append(_floor_sentence(models[best] / floor, floor))
     return sentences
 

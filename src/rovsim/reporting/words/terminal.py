@@ -4,7 +4,7 @@ import textwrap
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.wording import ERROR_MEANING, fit, minus, several, significant, title
+from rovsim.reporting.wording import ERROR_MEANING, LEAST, fit, minus, several, significant, title
 from rovsim.reporting.words.sentences import band_sentences
 from rovsim.reporting.words.verdict import NO_TEST, Missing, explain
 from rovsim.results.bands import Bands
@@ -83,7 +83,7 @@ def _effect(share: float, words: Missing) -> list[str]:
 
 def _ranking(ranking: Sequence[FittedEffect]) -> list[str]:
     helping = [(r.error_reduction or 0.0, r.effect) for r in ranking]
-    shown = sorted((one for one in helping if one[0] > 0.0), reverse=True)[:RANKED]
+    shown = sorted((one for one in helping if one[0] >= LEAST), reverse=True)[:RANKED]
     if not shown:
         return []
     rows = [f"  {effect:<22}{_bar(share)} {100 * share:.0f} %" for share, effect in shown]

@@ -9,12 +9,18 @@ from rovsim import AXES
 from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.reporting.units import FORCE_UNITS
-from rovsim.reporting.wording import ERROR, ERROR_MEANING, listed, minus, significant
+from rovsim.reporting.wording import (
+    ERROR,
+    ERROR_MEANING,
+    FLOOR_COUNTS_ALL,
+    listed,
+    minus,
+    significant,
+)
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
     Diagnosis,
-    DiagnosisErrors,
     LookedAt,
     RivalEffect,
     ScaleOfForces,
@@ -70,7 +76,7 @@ class Verdict:
 def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
     """A diagnosis in words; the catalogue says what its effects are."""
     remarks = [
-        error_sentence(found.error, bool(found.selected)),
+        error_sentence(found),
         *apart_sentences(found),
         *scale_sentences(found.common_scale),
         *unexplained_sentences(found),
@@ -151,19 +157,27 @@ def _sure(probability: float | None) -> str:
     return "probability above 0.999" if p > 0.999 else f"probability {p:.3f}"
 
 
-def error_sentence(error: DiagnosisErrors, changed: bool) -> str:
+def error_sentence(found: Diagnosis) -> str:
     """The error on the test runs before and after, and what a perfect model would show."""
+    error = found.error
     before, after, floor = map(or_nan, (error.nominal, error.with_effects, error.noise_floor))
     if not math.isfinite(before):
         return NO_TEST
     now = f"falls from {significant(before)} to {significant(after)}"
-    text = f"On the test runs the {ERROR} {now if changed else 'is ' + significant(before)}."
+    text = f"On the test runs the {ERROR} {now if found.selected else 'is ' + significant(before)}."
     if not math.isfinite(floor):
         why = "not all that is left is noise, or only parts of the pose were measured"
         text += f" What a perfect model would show cannot be estimated: {why}."
+    elif leaves_unexplained(found):
+        text += f" {FLOOR_COUNTS_ALL.format(significant(floor))}"
     else:
         text += f" A perfect model would show about {significant(floor)} (noise floor)."
     return f"{text} {ERROR_MEANING}."
+
+
+def leaves_unexplained(found: Diagnosis) -> bool:
+    """Whether something is left for which no law was found: it was fitted as noise."""
+    return found.unexplained.significant and found.unexplained.proposal is None
 
 
 def apart_sentences(found: Diagnosis) -> list[str]:
