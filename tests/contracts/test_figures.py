@@ -261,3 +261,11 @@ def test_a_mean_over_time_is_that_of_its_neighbours_and_gaps_stay_gaps():
     values = np.array([1.0, 2.0, 3.0, np.nan, 5.0, 6.0, 7.0, 9.0])[:, None]
     found = averaged(time, values, 2.0)[:, 0]
     np.testing.assert_allclose(found, [1.5, 2.0, 2.5, np.nan, 5.5, 6.0, 22 / 3, 8.0])
+
+
+@pytest.mark.parametrize("name", ["residual_series", "budget"])
+def test_noise_on_an_axis_at_rest_is_as_small_as_it_is(name):
+    figure = drawn(name, study())
+    scales = [axes.get_ylim() for axes in figure.axes]
+    assert len(set(scales[:3])) == len(set(scales[3:])) == 1
+    assert "share their scale" in figure._supxlabel.get_text()

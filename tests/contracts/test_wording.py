@@ -137,3 +137,12 @@ def test_effects_that_remove_nothing_are_not_ranked_on_the_terminal(content):
     ]
     found = content["diagnosis"].model_copy(update={"ranking": tuple(useless)})
     assert "removes alone" not in terminal.tell_diagnosis(found, built_in())
+
+
+def test_the_noise_of_recordings_is_in_mm_and_mrad_and_lost_frames_are_counted(content):
+    page = report.render(report.Report("x", ReportData(quality=content["quality"])))
+    (one, *_) = content["quality"].values()
+    assert f'data-value="{1e3 * one.noise.position_m}"' in page
+    assert '<span class="unit">mm</span>' in page
+    assert "frames<br>without pose" in page
+    assert f'data-value="{one.not_found}">{one.not_found}' in page

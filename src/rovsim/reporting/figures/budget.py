@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.evaluation.budget import Budget
 from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import Look
-from rovsim.reporting.figures.panels import plot_all, six_panels
+from rovsim.reporting.figures.panels import SHARED, plot_all, share_scales, six_panels
 from rovsim.reporting.figures.series import excerpt
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.units import FORCE, FORCE_UNITS
@@ -49,14 +49,17 @@ def draw(*, budget: Budget) -> Figure:
     drawn = {n: v[at] for n, v in curves.items()}
     remarks = plot_all(axes, time[at], _common(drawn), style)
     for k, axis in enumerate(axes):
-        axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
         axis.set_ylim(*_limits([v[:, k] for v in drawn.values()]))
+    share_scales(axes)
+    for axis in axes:
+        axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     left = [n for n in parts if n not in names]
     legend(figure, lines(style))
     note(figure, [
         f"Missing: mean over {significant(SMOOTH, 1)} s.",
         f"Too small to be drawn: {', '.join(left)}." if left else "",
         _excerpt_told(time, at),
+        SHARED,
         *(r for r in remarks if r.startswith("No values")),
     ])  # fmt: skip
     return figure

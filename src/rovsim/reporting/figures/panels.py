@@ -14,6 +14,8 @@ from rovsim.reporting.figures.series import broken, limits
 from rovsim.reporting.figures.style import sheet
 from rovsim.reporting.wording import listed, title
 
+SHARED = "Axes of one unit share their scale."
+
 
 def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, list[Axes]]:
     """Return an empty sheet with six labelled panels that share the time axis."""
@@ -28,15 +30,21 @@ def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, li
 
 
 def plot_all(
-    axes: list[Axes], time: Array, curves: Mapping[str, Array], looks: Mapping[str, Look]
-) -> list[str]:
-    """Plot curves {name: (n, 6)}; the first, measured, sets the scale. Returns remarks."""
-    leaving: set[str] = set()
+    axes: list[Axes], time: Array, curves: Mapping[str, Array], looks: Mapping[str, Look],
+    shared: bool = False,
+) -> list[str]:  # fmt: skip
+    """Plot curves {name: (n, 6)}; the first, measured, sets the scale. Returns remarks.
+
+    `shared`: axes of one unit have one scale, so that noise on an axis at rest stays small.
+    """
     for k, axis in enumerate(axes):
         for order, (name, values) in enumerate(curves.items()):
             t, y = broken(time, values[:, k])
             axis.plot(t, y, label=name, zorder=2 + order, **looks[name].line())
-        leaving |= _scale(axis, {name: values[:, k] for name, values in curves.items()})
+        _scale(axis, [values[:, k] for values in curves.values()])
+    if shared:
+        share_scales(axes)
+    leaving = {name for name, values in curves.items() if _leaves(axes, values)}
     if len(time):
         axes[-1].set_xlim(float(time[0]), float(max(time[-1], time[0] + 1e-6)))
     empty = [name for name, values in curves.items() if not np.isfinite(values).any()]
@@ -46,7 +54,26 @@ def plot_all(
         f"Nothing was measured of {listed(silent)}." if silent else "",
         f"Partly beyond the axes: {listed(map(title, sorted(leaving)))}." if leaving else "",
         f"No values: {listed(map(title, empty))}." if empty else "",
+        SHARED if shared else "",
     ]
+
+
+def share_scales(axes: Sequence[Axes]) -> None:
+    """Give the panels of one unit the widest scale of those that show something."""
+    for group in (axes[:3], axes[3:]):
+        shown = [axis.get_ylim() for axis in group if _shows(axis)]
+        for axis in group if shown else ():
+            axis.set_ylim(min(low for low, _ in shown), max(high for _, high in shown))
+
+
+def _shows(axis: Axes) -> bool:
+    return any(np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in axis.lines)
+
+
+def _leaves(axes: Sequence[Axes], values: Array) -> bool:
+    """Whether a curve (n, 6) is partly beyond its panels."""
+    low, high = np.array([axis.get_ylim() for axis in axes]).T
+    return bool(((values < low) | (values > high)).any())
 
 
 def shade(axes: list[Axes], time: Array, band: Array, look: Look) -> None:
@@ -58,12 +85,8 @@ def shade(axes: list[Axes], time: Array, band: Array, look: Look) -> None:
         axis.set_ylim(shown)
 
 
-def _scale(axis: Axes, curves: dict[str, Array]) -> set[str]:
-    first, *others = curves.values()
-    low, high, clipped = limits(first, others)
-    if not any(np.isfinite(values).any() for values in curves.values()):
+def _scale(axis: Axes, curves: Sequence[Array]) -> None:
+    first, *others = curves
+    if not any(np.isfinite(values).any() for values in curves):
         nothing(axis, "no values")
-    axis.set_ylim(low, high)
-    if not clipped:
-        return set()
-    return {n for n, v in curves.items() if ((v < low) | (v > high)).any()}
+    axis.set_ylim(*limits(first, others))

@@ -40,7 +40,7 @@ def draw(
     }
     style = looks(curves)
     figure, axes = six_panels(LETTERS, ACCELERATION_UNITS)
-    remarks = plot_all(axes, time[part], curves, style) if curves else ["No model was given."]
+    remarks = plot_all(axes, time[part], curves, style, True) if curves else ["No model was given."]
     remarks.append(f"Means over {BLOCK:g} s.")
     for axis in axes:
         axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)

@@ -61,16 +61,15 @@ def excerpt(time: Array, values: Array, length: float = EXCERPT) -> slice:
     return slice(int(first[best]), int(last[best]))
 
 
-def limits(reference: Array, others: Iterable[Array]) -> tuple[float, float, bool]:
-    """Return low and high of an axis that shows `reference`, and whether `others` leave it."""
+def limits(reference: Array, others: Iterable[Array]) -> tuple[float, float]:
+    """Return low and high of an axis that shows `reference`; `others` may leave it."""
     stacked = [a[np.isfinite(a)] for a in (reference, *others)]
     everything = np.concatenate(stacked)
     if not len(everything):
-        return -1.0, 1.0, False
+        return -1.0, 1.0
     base = stacked[0] if len(stacked[0]) else everything
     low, high = float(base.min()), float(base.max())
     room = max(high - low, 1e-6) * (HEADROOM - 1) / 2
     shown = everything[(everything >= low - room) & (everything <= high + room)]
-    clipped = len(shown) < len(everything)
     margin = 0.05 * max(float(np.ptp(shown)), 1e-6)
-    return float(shown.min()) - margin, float(shown.max()) + margin, clipped
+    return float(shown.min()) - margin, float(shown.max()) + margin

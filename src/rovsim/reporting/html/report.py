@@ -137,6 +137,7 @@ def _environment() -> Environment:
     environment.filters["mathml"] = lambda latex: Markup(mathml(latex))
     environment.filters["several"] = several
     environment.filters["title"] = title
+    environment.filters["milli"] = lambda value: None if value is None else 1e3 * value
     environment.filters["percent"] = lambda share: f"{100 * share:.1f}\u202f%"
     return environment
 
