@@ -146,3 +146,8 @@ def test_the_noise_of_recordings_is_in_mm_and_mrad_and_lost_frames_are_counted(c
     assert '<span class="unit">mm</span>' in page
     assert "frames<br>without pose" in page
     assert f'data-value="{one.not_found}">{one.not_found}' in page
+
+
+def test_the_report_says_once_which_way_heave_is_positive(content):
+    page = report.render(report.Report("x", ReportData(where=content["where"])))
+    assert page.count("heave down") == 1
