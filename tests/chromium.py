@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Iterator
 from urllib.request import urlopen
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
@@ -18,8 +19,7 @@ FLAGS = (
 SLOW_DRAWING = "GL Driver Message (OpenGL, Performance"  # of these flags: no user has them
 DESK, PHONE = (1280, 720), (390, 844)
 PICTURES = os.environ.get("ROVSIM_SCREENSHOTS")  # a folder: `make screenshots`
-
-
+DARK = "document.body.classList.contains('body--dark')"
 LOG = "workbench.log"  # what it says on the way: no traceback, if all is well
 
 
@@ -96,6 +96,20 @@ class Tab:
             "[data-name][data-value]", "all => all.map(e => [e.dataset.name, e.dataset.value])"
         )
         return {name: float(value) for name, value in pairs if name.startswith(prefix)}
+
+    def schemes(self) -> Iterator[str]:
+        """Light, then dark, each once the page shows it."""
+        for scheme in ("light", "dark"):
+            self.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+            self.page.wait_for_function(f"{DARK} === {str(scheme == 'dark').lower()}")
+            yield scheme
+
+    def violations(self) -> list[str]:
+        """What axe-core finds to complain about, and in which element."""
+        from axe_playwright_python.sync_playwright import Axe
+
+        found = Axe().run(self.page).response["violations"]
+        return [f"{one['id']}, {one['nodes'][0]['html'][:120]}" for one in found]
 
     def picture(self, name: str) -> None:
         """A screenshot for the docs, where they were asked for."""

@@ -268,6 +268,38 @@ def diagnosis(ladder: dict[str, Any]) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def several_effects() -> Diagnosis:
+    """A diagnosis of four effects, with a ranking as sharp as real ones, and a disturbance.
+
+    The one effect that the ranking is sure of removes the least error by itself.
+    """
+    lag = {"time_constant": {"value": 0.15, "std": 0.004, "unit": "s"}}
+    values = {
+        "thruster_lag": lag,
+        "thrust_asymmetry": {"ratio": {"value": 0.9, "std": 0.01, "unit": "1"}},
+        "voltage_sag": {"fraction": {"value": 0.1, "std": 0.01, "unit": "1"},
+                        "rate": {"value": 0.002, "std": 0.0001, "unit": "1/s"}},
+        "net_buoyancy": {"force": {"value": -3.0, "std": 0.1, "unit": "N"}},
+    }  # fmt: skip
+    selected = [
+        {"effect": name, "parameters": given, "error_reduction": 0.2, "probability": 1.0}
+        for name, given in values.items()
+    ]
+    alone = {
+        "quadratic_damping": (0.4, 0.0), "linear_damping": (0.39, 1.84e-128), "lift": (0.3, 0.0),
+        "thruster_lag": (0.29, 4e-7), "cubic_damping": (0.28, 0.0), "current": (0.27, 0.0),
+        "thruster_gain": (0.26, 0.0), "net_buoyancy": (0.25, 0.0), "voltage_sag": (0.2, 0.03),
+        "thrust_asymmetry": (0.02, 0.97), "input_delay": (0.0, 0.0),
+    }  # fmt: skip
+    ranking = [
+        {"effect": name, "error_reduction": share, "probability": sure,
+         "parameters": values.get(name, {})}
+        for name, (share, sure) in alone.items()
+    ]  # fmt: skip
+    found = diagnosis({"steps": []}) | {"verdict": "missing_effects", "selected": selected}
+    return Diagnosis.model_validate(found | {"ranking": ranking, "indistinguishable": []})
+
+
 def disturbance() -> dict[str, Any]:
     """A push in sway at 24 s, as a vehicle goes round."""
     t = np.arange(0.0, 60.0, 0.5)

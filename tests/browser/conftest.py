@@ -14,6 +14,7 @@ from rovsim.design.settings import Question
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.figures.planned_flight import PlannedFlight
 from rovsim.results.experiment import Experiment, Keeps, RivalOdds, Start, Surer, UsualManoeuvre
+from synthetic_study import several_effects
 
 RIVALS = ("thruster_lag", "input_delay")
 
@@ -48,6 +49,19 @@ def workbench(campaign, tmp_path_factory):
     process.terminate()
     process.wait(20)
     # of ours: a page that leaves in the middle of an answer may end in one of the server's own
+    assert "src/rovsim/" not in (folder / LOG).read_text()
+
+
+@pytest.fixture(scope="session")
+def diagnosed(campaign, tmp_path_factory):
+    """Address of a workbench that was given a diagnosis, and its file; nothing is searched."""
+    folder = tmp_path_factory.mktemp("diagnosed")
+    file = folder / "diagnosis.json"
+    several_effects().write(file)
+    process, address = started(folder, f"campaign={campaign}", f"diagnosis={file}")
+    yield address, file
+    process.terminate()
+    process.wait(20)
     assert "src/rovsim/" not in (folder / LOG).read_text()
 
 
@@ -98,6 +112,12 @@ def profile(chromium):
 def tab(profile, workbench):
     """A tab of a desk's size; in the end there is nothing to complain about."""
     yield from _tab(profile, workbench[0], DESK)
+
+
+@pytest.fixture
+def diagnosed_tab(profile, diagnosed):
+    """The same on the workbench with that diagnosis."""
+    yield from _tab(profile, diagnosed[0], DESK)
 
 
 @pytest.fixture

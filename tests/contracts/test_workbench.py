@@ -16,7 +16,7 @@ from chores import counting, dying, failing
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
-from rovsim.apps.workbench import app, charts, path, tasks
+from rovsim.apps.workbench import app, charts, path, tasks, why
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.place import Place
@@ -66,6 +66,13 @@ def test_its_ladder_holds_the_diagnosis_the_models_and_the_floor_last(bench, mon
     monkeypatch.setattr(bench, "diagnosis", diagnosis().model_copy(update={"ladder": ladder}))
     names = [s.model for s in bench.ladder().steps]
     assert names == ["zero_acceleration", "nominal", "+lag", "noise_floor"]
+
+
+def test_a_disturbance_is_drawn(tmp_path):
+    found = synthetic_study.several_effects().unexplained.disturbance
+    file = tmp_path / "pictures" / "disturbance.png"
+    why.draw_disturbance(found, file)
+    assert file.read_bytes().startswith(b"\x89PNG")
 
 
 LAW = """

@@ -176,5 +176,6 @@ def in_a_terminal(line: str) -> None:
 
 
 def formula(latex: str) -> None:
-    """An equation."""
-    ui.html(mathml(latex), sanitize=False).classes("formula")
+    """An equation; a wide one scrolls sideways, with the keyboard too."""
+    shown = ui.html(mathml(latex), sanitize=False).classes("formula")
+    shown.props('role="group" tabindex="0" aria-label="Equation"')

@@ -27,7 +27,7 @@ from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.reporting.words.verdict import Missing, explain, interval, percent
-from rovsim.results.diagnosis import Diagnosis, DiagnosisErrors
+from rovsim.results.diagnosis import Diagnosis, DiagnosisErrors, Disturbance
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
 SHOWN = 8  # effects of the ranking
@@ -129,7 +129,7 @@ async def _left(bench: Workbench, found: Diagnosis) -> None:
     elif found.unexplained.disturbance is not None:
         section("A disturbance, and no law")
         path = bench.out / "pictures" / "disturbance.png"
-        await computed(_draw_disturbance, found, path)
+        await computed(draw_disturbance, found.unexplained.disturbance, path)
         png(path, "What pushes and follows no law, on the path and in time")
 
 
@@ -142,11 +142,12 @@ def _take(bench: Workbench) -> None:
     ui.navigate.to("/add")
 
 
-def _draw_disturbance(found: Diagnosis, path: Path) -> None:
+def draw_disturbance(force: Disturbance, path: Path) -> None:
+    """The report's figure of a force in time, as a file."""
     from rovsim.reporting.figures import kind
     from rovsim.reporting.figures.style import save
 
-    save(kind("disturbance").draw(diagnosis=found), path.parent, path.stem)
+    save(kind("disturbance").draw(disturbance=force), path.parent, path.stem)
 
 
 def _ranking(found: Diagnosis) -> None:
