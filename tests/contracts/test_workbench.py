@@ -16,7 +16,7 @@ from chores import counting, dying, failing
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
-from rovsim.apps.workbench import app, charts, path, tasks, why
+from rovsim.apps.workbench import app, charts, parts, path, tasks, why
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.place import Place
@@ -73,6 +73,21 @@ def test_a_disturbance_is_drawn(tmp_path):
     file = tmp_path / "pictures" / "disturbance.png"
     why.draw_disturbance(found, file)
     assert file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_likely_effects_are_shown_however_little_they_remove_alone():
+    shown = [r.effect for r in why.list_worth_showing(synthetic_study.several_effects().ranking)]
+    assert shown[:3] == ["thrust_asymmetry", "voltage_sag", "quadratic_damping"]
+    assert len(shown) == why.SHOWN
+    assert "input_delay" not in shown  # neither likely nor of any use
+
+
+@pytest.mark.parametrize(
+    ("probability", "told"),
+    [(0.0, "< 0.001"), (1.84e-128, "< 0.001"), (0.03, "0.030"), (0.9995, "> 0.999"), (None, "–")],
+)
+def test_a_probability_is_told_as_people_write_it(probability, told):
+    assert parts.tell_probability(probability) == told
 
 
 LAW = """

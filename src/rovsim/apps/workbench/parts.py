@@ -15,6 +15,7 @@ from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
+IMPROBABLE = 0.001  # a probability below this, or as near to one, is told as no more than that
 # Functions of charts.js
 SAVE = {"PNG": "savePicture", "SVG": "saveVectors", "CSV": "saveValues"}
 
@@ -71,11 +72,24 @@ def section(title: str) -> None:
     ui.html(f"<h2>{escape(title)}</h2>", sanitize=False)
 
 
-def cell(value: float | None, name: str = "") -> str:
-    """A number in a table, its full value in `data-value`, its name in `data-name`."""
+def cell(value: float | None, name: str = "", told: str = "") -> str:
+    """A number in a table, its full value in `data-value`, its name in `data-name`.
+
+    `told`: the number in words, where three digits of it are not what people would write.
+    """
     known = "" if value is None else f' data-value="{value!r}"'
-    shown = str(value) if isinstance(value, int) else significant(or_nan(value))
+    digits = str(value) if isinstance(value, int) else significant(or_nan(value))
+    shown = escape(told or digits)
     return f'<td class="number" data-name="{escape(name)}"{known}>{shown}</td>'
+
+
+def tell_probability(probability: float | None) -> str:
+    """A probability to three decimals, also at its ends, where nobody knows more of them."""
+    if probability is None:
+        return "–"
+    if probability < IMPROBABLE:
+        return f"< {IMPROBABLE:g}"
+    return f"> {1 - IMPROBABLE:g}" if probability > 1 - IMPROBABLE else f"{probability:.3f}"
 
 
 def words(value: Any) -> str:

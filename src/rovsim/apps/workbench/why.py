@@ -2,6 +2,7 @@
 
 from html import escape
 from pathlib import Path
+from typing import Sequence
 
 from nicegui import ui
 
@@ -9,6 +10,7 @@ from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.gallery import picture
 from rovsim.apps.workbench.on_your_data import show_lowered
 from rovsim.apps.workbench.parts import (
+    IMPROBABLE,
     bar,
     cell,
     computed,
@@ -18,6 +20,7 @@ from rovsim.apps.workbench.parts import (
     png,
     section,
     table,
+    tell_probability,
     text,
     tile,
     while_idle,
@@ -28,9 +31,10 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.reporting.words.verdict import Missing, explain, interval, percent
 from rovsim.results.diagnosis import Diagnosis, DiagnosisErrors, Disturbance
+from rovsim.results.fitted import FittedEffect
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
-SHOWN = 8  # effects of the ranking
+SHOWN = 8  # effects of the ranking, unless more are likely
 
 
 async def show(bench: Workbench, place: Place) -> None:
@@ -46,6 +50,8 @@ async def show(bench: Workbench, place: Place) -> None:
         sanitize=False,
     ).classes("verdict")
     _errors(found.error)
+    if len(said.missing) > 1:
+        text("The share of the error that an effect removes is on top of those above it.", "soft")
     seen = {missing.effect: _effect(missing) for missing in said.missing}
     await _left(bench, found)
     if found.selected:
@@ -151,23 +157,26 @@ def draw_disturbance(force: Disturbance, path: Path) -> None:
 
 
 def _ranking(found: Diagnosis) -> None:
-    helping = [r for r in found.ranking if (r.error_reduction or 0.0) > 0.0]
-    ranking = sorted(helping, key=lambda r: -(r.error_reduction or 0.0))[:SHOWN]
-    if ranking:
+    if ranking := list_worth_showing(found.ranking):
         section("Each effect alone")
+        text(
+            "As if one effect alone were missing, the likeliest first. Where several are missing "
+            "one that is certain beside the others may be unlikely alone.", "soft",
+        )  # fmt: skip
         rows = [
             (
                 r.effect,
                 [
                     bar(r.error_reduction or 0.0, f"ranking/{r.effect}/error_reduction"),
-                    cell(r.probability, f"ranking/{r.effect}/probability"),
+                    cell(r.probability, f"ranking/{r.effect}/probability",
+                         tell_probability(r.probability)),
                 ],
             )
             for r in ranking
-        ]
+        ]  # fmt: skip
         table(
             "Error that each effect removes by itself, at its first estimate",
-            ["effect", "error removed", "probability that it, and nothing else, is missing"], rows,
+            ["effect", "error removed", "probability, if one alone is missing"], rows,
         )  # fmt: skip
     if found.where:
         section("Where the model fails")
@@ -175,3 +184,12 @@ def _ranking(found: Diagnosis) -> None:
             (w.axis, [words(w.condition), words(percent(w.share_of_error))]) for w in found.where
         ]
         table("Conditions the error varies with", ["axis", "condition", "share of error"], rows)
+
+
+def list_worth_showing(ranking: Sequence[FittedEffect]) -> list[FittedEffect]:
+    """Every effect that is not improbable, the likeliest first; then those that remove most."""
+    likely = [r for r in ranking if (r.probability or 0.0) >= IMPROBABLE]
+    likely.sort(key=lambda r: -(r.probability or 0.0))
+    rest = [r for r in ranking if r not in likely and (r.error_reduction or 0.0) > 0.0]
+    rest.sort(key=lambda r: -(r.error_reduction or 0.0))
+    return likely + rest[: max(0, SHOWN - len(likely))]
