@@ -415,12 +415,22 @@ def test_every_screen_fits_a_desk_and_a_phone(tab, phone, screen):
 
 
 def test_another_campaign_is_opened_and_a_bad_one_explained(tab, campaign, tmp_path):
+    tab.go("data")
+    tab.page.wait_for_selector(READY["data"])
+    opened = tab.page.locator("header .campaign").inner_text()
     tab.go("open")
     tab.page.get_by_label("Folder of a campaign, or of recordings").fill(str(tmp_path / "nowhere"))
     tab.page.get_by_role("button", name="Open", exact=True).click()
     tab.page.get_by_text("no such file").wait_for()
     typed = tab.page.get_by_label("Folder of a campaign, or of recordings")
     assert typed.input_value() == str(tmp_path / "nowhere")  # to be corrected
+    assert tab.page.locator("header .campaign").inner_text() == opened != "nowhere"
+    tab.page.get_by_role("link", name="Data").click()  # what was open still is
+    tab.page.wait_for_selector(READY["data"])
+    tab.go("open")
+    assert tab.page.get_by_text("no such file").count() == 0
+    tab.page.get_by_role("button", name="Open", exact=True).click()
+    tab.page.get_by_text("Type a folder first").wait_for()
     tab.page.get_by_label("Folder of a campaign, or of recordings").fill(str(campaign))
     tab.page.get_by_role("button", name="Open", exact=True).click()
     tab.page.get_by_role("heading", name="Compare").wait_for()

@@ -172,15 +172,8 @@ class Page:
     async def _screen(self, name: str, asked: PageArguments) -> None:
         """One of the screens, once the campaign is read."""
         self._active(name)
-        session, waiting = await self._enter(), None
-        if session.bench is None and session.settings.campaign:
-            waiting = ui.label(f"Reading the recordings of {session.name} …").classes("waiting")
-        bench = await session.opened()
-        if waiting:
-            waiting.delete()
-        self._note(session)
+        bench = await self._opened(await self._enter())
         if bench is None:
-            self._choose(session)
             return
         with ui.element("div").classes("sheet"):  # goes with the screen
             try:
@@ -188,9 +181,27 @@ class Page:
             except RovsimError as error:
                 ui.label(str(error)).classes("warning")
 
+    async def _opened(self, session: Session) -> Any:
+        """The campaign, read now if need be; None, and the way to another, if that fails."""
+        new = session.unread
+        if new:
+            waiting = ui.label(f"Reading the recordings of {session.name} …").classes("waiting")
+        bench = await session.opened()
+        if new:
+            waiting.delete()
+        self._note(session)
+        if bench is None:
+            self._choose(session)
+        elif new and session.problem:  # the one before is open still
+            ui.navigate.to("/open")
+            return None
+        else:
+            session.problem = ""  # somebody has gone on
+        return bench
+
     async def _effect(self, effect: str) -> None:
         self._active("gallery")
-        if (bench := await (await self._enter()).opened()) is not None:
+        if (bench := await self._opened(await self._enter())) is not None:
             await _module("gallery").entry(bench, effect)
 
     async def _open(self) -> None:
@@ -205,7 +216,7 @@ class Page:
                 session.proposal, str(session.described), session.write, session.leave
             )
             return
-        typed = session.settings.campaign or "" if session.problem else ""
+        typed = session.typed if session.problem else ""
         campaigns.show(session.choose, session.practise, session.problem, typed)
 
 

@@ -23,33 +23,41 @@ MOST = 200  # tabs remembered: one that slept for days finds its campaign
 class Session:
     """One tab: the settings with its campaign, and long work that belongs to none.
 
-    `bench` is the open campaign, `problem` why it could not be opened, `proposal` of a folder that
-    nobody has described. `pages` of the tab that are there: a reload is the next before the last
-    is gone.
+    `bench` is the open campaign; where another folder, as it was `typed`, could not be opened,
+    `problem` says why, and the campaign stays. `proposal` of a folder that nobody has described.
+    `pages` of the tab that are there: a reload is the next before the last is gone.
     """
 
     def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue, bench: Any) -> None:
         self.settings, self.catalogue, self.bench = settings, catalogue, bench
-        self.problem, self.opened_at = "", 0.0
+        self.problem, self.typed, self.opened_at = "", settings.campaign or "", 0.0
         self.proposal: Any = None
         self.described = Path()
         self.scratch: Any = None
         self.work, self.pages, self._changes = LongWork(), 0, 0
         self._reading: asyncio.Task[None] | None = None
+        self._before: tuple[WorkbenchSettings, Any] | None = None  # while another one is read
 
     @property
     def name(self) -> str:
         """Of the campaign."""
-        folder = self.settings.campaign
-        return self.bench.data.campaign.name if self.bench else Path(folder).name if folder else ""
+        if self.bench is not None:
+            return self.bench.data.campaign.name
+        return "" if self.problem else Path(self.settings.campaign or "").name
 
     def choose(self, folder: str) -> None:
         """Open another campaign, or look into a folder that holds none."""
         place = Path(os.path.expanduser(folder))
-        self.proposal = None
-        if folder and place.is_dir() and not (place / "campaign.yaml").exists():
+        self.proposal, self.typed = None, folder
+        if not folder:
+            self.problem = "Type a folder first, or choose one below."
+            self._changes += 1
+            return
+        if place.is_dir() and not (place / "campaign.yaml").exists():
             self._look_into(place)
             return
+        if self.bench is not None:
+            self._before = (self.settings, self.bench)
         self.settings = self.settings.model_copy(update={"campaign": folder, "diagnosis": None})
         self.bench, self.problem = None, ""
         self._changes += 1
@@ -98,9 +106,14 @@ class Session:
             PRACTICE,
         )
 
+    @property
+    def unread(self) -> bool:
+        """Whether a campaign is chosen that nobody has tried to read yet."""
+        return self.bench is None and bool(self.settings.campaign) and not self.problem
+
     async def opened(self) -> Any:
         """The open campaign, read now if need be; None when there is none, or it cannot be read."""
-        while self.bench is None and self.settings.campaign and not self.problem:
+        while self.unread:
             if self._reading is None:
                 self._reading = asyncio.create_task(self._read(self.settings))
             await asyncio.shield(self._reading)  # a screen that is left does not end it
@@ -120,6 +133,9 @@ class Session:
         if settings is not self.settings:
             return
         self.bench, self.problem = bench, problem
+        before, self._before = self._before, None
+        if problem and before is not None:
+            self.settings, self.bench = before
         if bench is not None:
             self.opened_at = time.monotonic()
             remember(Path(settings.campaign or ""))
@@ -147,7 +163,7 @@ class Session:
         if not self.busy:
             reap()
         for work in list(self.works):
-            if work.settle() == "failed" and self.bench is None:
+            if work.settle() == "failed" and work is self.work:
                 self.problem = work.why
 
 

@@ -160,8 +160,8 @@ def _ranking(found: Diagnosis) -> None:
     if ranking := list_worth_showing(found.ranking):
         section("Each effect alone")
         text(
-            "As if one effect alone were missing, the likeliest first. Where several are missing "
-            "one that is certain beside the others may be unlikely alone.", "soft",
+            "As if one effect alone were missing, the likeliest first. Where several are missing, "
+            "an effect that is certain beside the others may be unlikely alone.", "soft",
         )  # fmt: skip
         rows = [
             (
