@@ -7,18 +7,10 @@ from typing import Any, Mapping, Sequence
 from nicegui import ui
 
 from rovsim import AXES
-from rovsim.apps.workbench.draft import reach
-from rovsim.apps.workbench.parts import (
-    Slider,
-    computed,
-    heading,
-    text,
-    tile,
-    tile_html,
-)
+from rovsim.apps.workbench.add_effects import Effects
+from rovsim.apps.workbench.parts import computed, heading, text, tile, tile_html
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.saving import Saving
-from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.traces import (
     HORIZONS,
     Traces,
@@ -30,12 +22,9 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
-from rovsim.reporting.catalogue.entries import unit
-from rovsim.reporting.wording import rounded
 from rovsim.results.comparison import WINDOW
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
-STEPS = 400  # of a slider
 SENT = 0.002  # s: NiceGUI has sent the curves; beside them it would send the numbers first
 
 
@@ -65,8 +54,7 @@ class Add:
         )  # fmt: skip
         with ui.row().classes("halves"):
             with ui.column().classes("half left"):
-                self.list = ui.column().classes("area")
-                self._effects()
+                self.effects = Effects(self.bench, self.draw, self.update)
                 Saving(self.bench)
             with ui.column().classes("half right"):
                 with ui.row().classes("controls"):
@@ -78,102 +66,6 @@ class Add:
                     self.after = tile("This run, now", None, "run/now")
                 self.area = ui.column().classes("area")
         await self.draw()
-
-    def _effects(self) -> None:
-        """Ticks and sliders: what the diagnosis found, then whatever else was ticked."""
-        self.list.clear()
-        offered = list(dict.fromkeys([*self.draft.fitted, *self.draft.ticked]))
-        with self.list:
-            if unknown := self.draft.unknown:
-                text(
-                    f"The diagnosis also found {', '.join(unknown)}, which nobody knows here: open "
-                    "the workbench with the effects_file=… it was made with.", "warning",
-                )  # fmt: skip
-            for name in offered[:5] + [n for n in offered[5:] if n in self.draft.ticked]:
-                self._effect(name)
-            rest = [name for name in self.bench.catalogue if name not in offered[:5]]
-            more = ui.select(rest, label="Another effect", with_input=True).classes("control wide")
-            more.props("outlined dense")
-            more.on_value_change(lambda e: self._another(e.value))
-            undo = ui.button("Undo", icon="undo", on_click=self._undo).props("flat dense no-caps")
-            undo.bind_enabled_from(self.draft, "changed")
-
-    def _effect(self, name: str) -> None:
-        with ui.column().classes("card"):
-            ticked = name in self.draft.ticked
-            box = ui.checkbox(name, value=ticked)
-            box.on_value_change(lambda e: self._tick(name, e.value))
-            known = self.bench.catalogue[name]
-            if ticked and self._unasked(name):
-                text("Not among what the diagnosis found missing: it may fit noise.", "soft")
-            if not ticked:
-                text((known.__doc__ or "").split("\n")[0], "soft")
-                return
-            units = {p.name: p for p in known.parameters}
-            for parameter, value in self.draft.entry(name).parameters.items():
-                self._slider(name, units[parameter], value.value)
-
-    def _unasked(self, name: str) -> bool:
-        """Whether there is a diagnosis, and it did not select the effect."""
-        return self.draft.diagnosis is not None and name not in {
-            e.effect for e in self.draft.chosen
-        }
-
-    def _slider(self, effect: str, parameter: Any, value: float) -> None:
-        low, high = reach(parameter, value)
-        shown = unit(parameter.unit)
-        with ui.row().classes("slider"):
-            ui.label(parameter.name).classes("name")
-            slider = Slider(min=low, max=high, step=(high - low) / STEPS, value=value)
-            slider.props(f'aria-label="{effect}, {parameter.name}"')
-            number = ui.number(value=rounded(value), suffix=shown).classes("value")
-            number.props(f'dense borderless aria-label="{effect}, {parameter.name}, number"')
-            back = ui.button(icon="settings_backup_restore").classes("reset")
-            about = f"{effect}, {parameter.name}: back to where it began"
-            back.props(f'flat dense aria-label="{about}" title="{about}"')
-            total = ui.label(self._total(effect, parameter.name, value)).classes("total")
-
-        async def change(now: float) -> None:
-            if now == self.draft.entry(effect).parameters[parameter.name].value:
-                return  # a key tells its value twice, and the throttle tells the last one again
-            total.text = self._total(effect, parameter.name, now)
-            self.draft.move(effect, parameter.name, now)
-            await self.update()
-
-        async def moved(event: Any) -> None:
-            number.set_value(rounded(event.args))
-            await change(float(event.args))
-
-        async def typed() -> None:
-            if number.value is not None:
-                slider.set_value(number.value)
-                await change(float(number.value))
-
-        async def reset() -> None:
-            self.draft.reset(effect, parameter.name)
-            self._effects()
-            await self.update()
-
-        slider.on("update:model-value", moved, throttle=0.05)
-        number.on("change", typed)
-        back.on_click(reset)
-
-    def _total(self, effect: str, parameter: str, value: float) -> str:
-        return tell_total(self.bench.base.body, effect, parameter, value)
-
-    async def _tick(self, name: str, yes: bool) -> None:
-        self.draft.tick(name, yes)
-        self._effects()
-        await self.draw()
-
-    async def _undo(self) -> None:
-        self.draft.undo()
-        self._effects()
-        await self.draw()
-
-    async def _another(self, name: str | None) -> None:
-        if name:
-            await self._tick(name, True)
 
     def _choice(self, name: str, control: Any) -> None:
         control.value = self.chosen[name]
@@ -202,10 +94,11 @@ class Add:
             model = self.draft.model()
             motion = self.bench.data.motions[self.run]
             model.check(motion.site, motion.commands.kind)
-            return model
         except RovsimError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
+            self.effects.tell(error)
             return None
+        self.effects.forget()
+        return model
 
     def _replayed(self, model: Model) -> tuple[Any, float | None]:
         """Prediction and error of the run shown."""

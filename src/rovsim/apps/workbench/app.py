@@ -195,8 +195,6 @@ class Page:
         elif new and session.problem:  # the one before is open still
             ui.navigate.to("/open")
             return None
-        else:
-            session.problem = ""  # somebody has gone on
         return bench
 
     async def _effect(self, effect: str) -> None:

@@ -6,7 +6,7 @@ from typing import Callable
 from nicegui import ui
 
 from rovsim.apps.workbench.folders import Inside, Listing, list_recent, look, shown
-from rovsim.apps.workbench.parts import heading, section, text
+from rovsim.apps.workbench.parts import Failure, heading, section, text
 
 TITLE, QUESTION = "Open", "Which campaign do you want to look at?"
 PLACES = ("campaigns/*/campaign.yaml", "results/*/raw/campaign.yaml", "*/campaign.yaml")
@@ -94,8 +94,9 @@ def show(
     `typed` is the folder that could not be opened, for `problem`.
     """
     heading(TITLE, QUESTION)
+    failure = Failure()
     if problem:
-        text(problem, "warning")
+        failure.tell(problem)
     with ui.row().classes("controls"):
         folder = ui.input("Folder of a campaign, or of recordings", value=typed).classes(
             "control wide"

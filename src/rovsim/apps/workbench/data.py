@@ -7,7 +7,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
-from rovsim.apps.workbench.parts import cell, chart, heading, section, table, text, words
+from rovsim.apps.workbench.parts import Failure, cell, chart, heading, section, table, text, words
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
@@ -47,10 +47,13 @@ def _notes(file: Path) -> None:
         try:
             write_text(file, box.value or "")
         except RovsimError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
+            failure.tell(error)
+        else:
+            failure.forget()
 
     box = ui.textarea(f"Kept in {file}", value=known, on_change=keep).classes("notes")
     box.props("outlined autogrow")
+    failure = Failure()
 
 
 def _recordings(quality: Mapping[str, Quality]) -> None:

@@ -7,6 +7,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.parts import (
+    Failure,
     cell,
     computed,
     heading,
@@ -87,6 +88,7 @@ class Models:
             self.file = ui.input("Another model file").classes("control wide")
             self.file.props("outlined dense").on("keydown.enter", self._open)
             ui.button("Open it on the right", on_click=self._open).props("outline no-caps")
+        self.failure = Failure()
         self.area = ui.column().classes("area")
         await self.draw()
 
@@ -107,8 +109,9 @@ class Models:
         try:
             model = await computed(self.bench.open_model, Path(self.file.value.strip()))
         except RovsimError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
+            self.failure.tell(error)
             return
+        self.failure.forget()
         for side in self.sides:
             side.set_options(list(self.bench.known_models()))
         self.sides[1].value = model.name

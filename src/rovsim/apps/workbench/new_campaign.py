@@ -5,7 +5,8 @@ from typing import Callable, Mapping
 from nicegui import ui
 
 from rovsim.application.intake.proposal import Proposal, Question
-from rovsim.apps.workbench.parts import heading, section, text
+from rovsim.apps.workbench.parts import Failure, heading, section, text
+from rovsim.core.errors import RovsimError
 
 TITLE, QUESTION = "New campaign", "What is in these recordings?"
 TOPICS = {
@@ -39,12 +40,17 @@ def show(
         section("What no file tells")
         for question in proposal.questions:
             answers[question.place] = _field(question)
+
+    def answered() -> None:
+        try:
+            write({place: value() for place, value in answers.items()})
+        except RovsimError as error:
+            failure.tell(error)
+
     with ui.row().classes("controls"):
-        ui.button(
-            "Write campaign.yaml and open it",
-            on_click=lambda: write({place: value() for place, value in answers.items()}),
-        ).props("unelevated no-caps")
+        ui.button("Write campaign.yaml and open it", on_click=answered).props("unelevated no-caps")
         ui.button("Another folder", on_click=leave).props("flat no-caps")
+    failure = Failure()
 
 
 def _guesses(proposal: Proposal) -> None:

@@ -55,6 +55,23 @@ class Slider(ui.slider):
     LOOPBACK = False
 
 
+class Failure(ui.label):
+    """Why something failed, beside the control that was used: it stays until that has worked."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.classes("text warning").props('role="alert"')
+        self.visible = False
+
+    def tell(self, error: Exception | str) -> None:
+        """Show it."""
+        self.text, self.visible = str(error), True
+
+    def forget(self) -> None:
+        """Show nothing: it has worked now."""
+        self.text, self.visible = "", False
+
+
 def heading(title: str, question: str) -> None:
     """Title of a screen, and the question it answers."""
     with ui.column().classes("heading"):

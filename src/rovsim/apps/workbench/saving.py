@@ -5,7 +5,15 @@ from pathlib import Path
 
 from nicegui import ui
 
-from rovsim.apps.workbench.parts import computed, in_a_terminal, onward, section, text, tile
+from rovsim.apps.workbench.parts import (
+    Failure,
+    computed,
+    in_a_terminal,
+    onward,
+    section,
+    text,
+    tile,
+)
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 
@@ -21,6 +29,7 @@ class Saving:
         ui.button("Save, and open the test runs", icon="save", on_click=self._save).props(
             "unelevated no-caps"
         ).classes("onward")
+        self.failure = Failure()
         self.result = ui.column().classes("area")
 
     async def _save(self) -> None:
@@ -29,8 +38,9 @@ class Saving:
         try:
             saved = await computed(self.bench.save, path)
         except RovsimError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
+            self.failure.tell(error)
             return
+        self.failure.forget()
         before = (await computed(self.bench.replays.step, self.bench.base)).windows_2s
         after = (await computed(self.bench.replays.step, saved)).windows_2s
         opened = await computed(self.bench.note_opening, saved)

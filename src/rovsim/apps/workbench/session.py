@@ -8,8 +8,6 @@ import time
 from pathlib import Path
 from typing import Any, Iterator, Mapping
 
-from nicegui import ui
-
 from rovsim.application.settings import WorkbenchSettings, compose
 from rovsim.apps.workbench.folders import remember
 from rovsim.apps.workbench.work import LongWork, reap
@@ -67,22 +65,30 @@ class Session:
 
         self.scratch = tempfile.TemporaryDirectory()
         self.problem, self.described = "", folder
-        self.work.begin(
+        self._begin(
             "Looking into the files", self._found, tasks.look_into, folder, Path(self.scratch.name)
         )
+
+    def _begin(self, *work: Any) -> None:
+        """See `LongWork.begin`; where other work goes on, that is the problem."""
+        try:
+            self.work.begin(*work)
+        except RovsimError as error:
+            self.problem = str(error)
+            self._changes += 1
 
     def _found(self, proposal: Any) -> None:
         self.proposal = proposal
 
     def write(self, answers: Mapping[str, str]) -> None:
-        """Write campaign.yaml into the folder that was looked into, and open it."""
+        """Write campaign.yaml into the folder that was looked into, and open it.
+
+        Raises:
+            BadInput: an answer is missing, or the file cannot be written.
+        """
         from rovsim.application.intake.write import write_proposal
 
-        try:
-            write_proposal(self.proposal.fully(answers), self.described)
-        except RovsimError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
-            return
+        write_proposal(self.proposal.fully(answers), self.described)
         self.scratch.cleanup()
         self.choose(str(self.described))
 
@@ -98,7 +104,7 @@ class Session:
         if (PRACTICE / "campaign.yaml").exists():
             self.choose(str(PRACTICE))
             return
-        self.work.begin(
+        self._begin(
             "Making a campaign",
             lambda path: self.choose(str(path)),
             tasks.practise,

@@ -11,6 +11,7 @@ from rovsim.apps.workbench.gallery import picture
 from rovsim.apps.workbench.on_your_data import show_lowered
 from rovsim.apps.workbench.parts import (
     IMPROBABLE,
+    Failure,
     bar,
     cell,
     computed,
@@ -131,7 +132,9 @@ async def _left(bench: Workbench, found: Diagnosis) -> None:
                     ui.label(f"{name} {interval(value)}").classes("value")
             text(f"It removes {percent(law.error_reduction)} of the error. ± is a 95 % interval.")
             text(f"An effect of your own, to be read and changed: {bench.law_path}", "soft")
-            ui.button("Add the law", on_click=lambda: _take(bench)).props("unelevated no-caps")
+            add = ui.button("Add the law").props("unelevated no-caps")
+            failure = Failure()
+            add.on_click(lambda: _take(bench, failure))
     elif found.unexplained.disturbance is not None:
         section("A disturbance, and no law")
         path = bench.out / "pictures" / "disturbance.png"
@@ -139,11 +142,11 @@ async def _left(bench: Workbench, found: Diagnosis) -> None:
         png(path, "What pushes and follows no law, on the path and in time")
 
 
-def _take(bench: Workbench) -> None:
+def _take(bench: Workbench, failure: Failure) -> None:
     try:
         bench.take_law()
     except RovsimError as error:
-        ui.notify(str(error), type="warning", multi_line=True)
+        failure.tell(error)
         return
     ui.navigate.to("/add")
 
