@@ -285,6 +285,7 @@ def several_effects() -> Diagnosis:
         {"effect": name, "parameters": given, "error_reduction": 0.2, "probability": 1.0}
         for name, given in values.items()
     ]
+    values["quadratic_damping"] = {"surge": {"value": 40.0, "unit": "N s2/m2"}}
     alone = {
         "quadratic_damping": (0.4, 0.0), "linear_damping": (0.39, 1.84e-128), "lift": (0.3, 0.0),
         "thruster_lag": (0.29, 4e-7), "cubic_damping": (0.28, 0.0), "current": (0.27, 0.0),

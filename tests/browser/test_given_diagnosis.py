@@ -2,6 +2,7 @@
 
 import pytest
 
+from chromium import Tab, started
 from rovsim.results.diagnosis import Diagnosis
 
 pytestmark = pytest.mark.browser
@@ -42,3 +43,59 @@ def test_the_ranking_keeps_what_is_likely_and_its_values_are_those_of_the_file(
     row = page.get_by_role("row", name="quadratic_damping")
     assert row.get_by_role("cell").last.inner_text() == "< 0.001"
     assert page.get_by_text("on top of those above it").count() == 1
+
+
+REPLAYED = "[data-name='run/now'][data-value]"
+
+
+def type_value(page, effect, parameter, value):
+    """Type the value of an effect, as on a keyboard."""
+    number = page.get_by_label(f"{effect}, {parameter}, number")
+    number.fill(value)
+    number.press("Enter")
+
+
+def test_what_is_wrong_with_a_draft_is_told_in_words_and_colour(diagnosed_tab):
+    pytest.importorskip("axe_playwright_python")
+    page = diagnosed_tab.page
+    diagnosed_tab.go("add?run=3dof-1")
+    page.wait_for_selector(REPLAYED)
+    page.get_by_role("checkbox", name="quadratic_damping").click()
+    card = page.locator(".card", has=page.get_by_role("checkbox", name="quadratic_damping"))
+    card.get_by_text("Warning: the diagnosis did not select it: probability < 0.001").wait_for()
+    type_value(page, "quadratic_damping", "surge", "-230")
+    card.get_by_text("Warning: water would push, not brake").wait_for()
+    page.get_by_text("The replay of the new model diverges after").wait_for()
+    colours = "all => new Set(all.map(e => getComputedStyle(e).color)).size"
+    assert card.locator(".total .alarm, .total").evaluate_all(colours) > 1
+    for scheme in diagnosed_tab.schemes():
+        assert (scheme, diagnosed_tab.violations()) == (scheme, [])
+
+    page.get_by_label("Model file").fill("wild.yaml")
+    page.get_by_role("button", name="Save").click()
+    page.get_by_text("On the test runs its replay diverges").wait_for()
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_text("The replay of the new model diverges after").wait_for(state="hidden")
+    page.get_by_role("button", name="Undo").click()
+
+
+def test_without_a_diagnosis_add_shows_the_way_to_one_and_saves_nothing(
+    chromium, campaign, tmp_path
+):
+    process, address = started(tmp_path, f"campaign={campaign}")
+    try:
+        tab = Tab(chromium.new_page(), address)
+        tab.go("add")
+        tab.page.wait_for_selector(REPLAYED)
+        save = tab.page.get_by_role("button", name="Save")
+        assert save.is_disabled()
+        tab.page.get_by_label("Another effect").click()
+        tab.page.get_by_role("option", name="lift", exact=True).click()
+        tab.page.wait_for_function("!document.querySelector('.left .onward').disabled")
+        assert save.is_enabled()
+        tab.page.get_by_role("link", name="find what is missing").click()
+        tab.page.get_by_role("button", name="Find what is missing").wait_for()
+        tab.page.close()
+    finally:
+        process.terminate()
+        process.wait(20)

@@ -16,7 +16,8 @@ from chores import counting, dying, failing
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
-from rovsim.apps.workbench import app, charts, parts, path, tasks, why
+from rovsim.apps.workbench import app, charts, parts, path, runaway, tasks, why
+from rovsim.apps.workbench.add_effects import tell_doubt
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.place import Place
@@ -182,12 +183,43 @@ def test_saving_never_destroys_or_shadows_anything(bench, tmp_path, monkeypatch,
 
 @pytest.mark.parametrize(
     ("value", "told"),
-    [(3.0, "13.7 + 3.00 = 16.7"), (-20.0, "13.7 − 20.0 = −6.30: water would push, not brake")],
+    [
+        (3.0, ("in all 13.7 + 3.00 = 16.7 kg/s", "")),
+        (-20.0, ("in all 13.7 − 20.0 = −6.30 kg/s", "water would push, not brake")),
+    ],
 )
 def test_a_coefficient_is_told_with_what_it_comes_to(bench, value, told):
     body = replace(bench.base.body, linear=np.array([13.7, 0, 33, 0, 0.8, 0]))
-    assert tell_total(body, "linear_damping", "surge", value) == told
-    assert tell_total(body, "thruster_lag", "time_constant", value) == ""
+    assert tell_total(body, "linear_damping", "surge", value, "kg/s") == told
+    assert tell_total(body, "thruster_lag", "time_constant", value) == ("", "")
+
+
+def test_a_replay_that_diverges_is_told_and_cut_beside_the_measurement(bench):
+    draft = Draft(bench.base, None, built_in())
+    draft.tick("quadratic_damping", True)
+    draft.move("quadratic_damping", "surge", -230.0)
+    motion = bench.data.motions["3dof-1"]
+    wild = bench.replays.prediction(draft.model(), "3dof-1", 2.0)
+    at = runaway.find_divergence(motion.time, wild)
+    assert 0.0 < at < motion.time[-1] - motion.time[0]
+    said = runaway.tell_divergence(motion.time, {"new": wild})
+    assert said.startswith(f"The replay of new diverges after {at:.1f} s;")
+    for quantity in ("nu", "nu_dot", "eta"):
+        shown = panels(motion, {"new": wild}, ["surge", "yaw"], quantity)
+        size = np.nanmax(np.abs(shown[0].curves["measured"]))
+        assert np.nanmax(np.abs(shown[0].curves["new"])) < 5.0 * size
+    lost = bench.replays.prediction(draft.model(), "3dof-1", None)
+    assert "nothing of it can be shown" in runaway.tell_divergence(motion.time, {"new": lost})
+    calm = bench.replays.prediction(bench.base, "3dof-1", 2.0)
+    assert runaway.tell_divergence(motion.time, {"nominal": calm}) == ""
+
+
+def test_an_effect_that_the_diagnosis_did_not_select_says_how_unlikely_it_is():
+    draft = Draft(model(), synthetic_study.several_effects(), built_in())
+    assert tell_doubt("thrust_asymmetry", draft) == ""
+    assert "did not select it: probability < 0.001" in tell_doubt("thruster_gain", draft)
+    assert "may fit noise" in tell_doubt("payload", draft)  # not in the ranking
+    assert tell_doubt("payload", Draft(model(), None, built_in())) == ""
 
 
 def test_a_pose_is_shown_in_the_tank_and_turns_the_short_way(bench):

@@ -10,6 +10,7 @@ from rovsim import AXES
 from rovsim.apps.workbench.add_effects import Effects
 from rovsim.apps.workbench.parts import computed, heading, text, tile, tile_html
 from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.saving import Saving
 from rovsim.apps.workbench.traces import (
     HORIZONS,
@@ -23,6 +24,7 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
 from rovsim.results.comparison import WINDOW
+from rovsim.simulation.prediction import Prediction
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
 SENT = 0.002  # s: NiceGUI has sent the curves; beside them it would send the numbers first
@@ -105,6 +107,10 @@ class Add:
         found = self.bench.replays.prediction(model, self.run, self.chosen["horizon"])
         return found, self.bench.replays.run_error(model, self.run)
 
+    def _remark(self, predicted: Mapping[str, Prediction]) -> str:
+        """What is wrong with replays of the run shown."""
+        return tell_divergence(self.bench.data.motions[self.run].time, predicted)
+
     async def draw(self) -> None:
         """The chart and the two errors, anew."""
         model = self._model()
@@ -124,7 +130,9 @@ class Add:
         self.base = base
         with self.area:
             shown = panels(motion, {self.bench.base.name: base, "new": new}, self.axes)
-            self.traces = Traces(motion.time, shown, f"Run {self.run}, before and with the effects")
+            about = f"Run {self.run}, before and with the effects"
+            remark = self._remark({self.bench.base.name: base, "the new model": new})
+            self.traces = Traces(motion.time, shown, about, remark=remark)
         note = "2 s windows, " + motion.run.split + " run"
         self.before.content = tile_html("This run, before", before, "run/before", note)
         self.after.content = tile_html("This run, now", now, "run/now", note)
@@ -142,7 +150,8 @@ class Add:
                 if model is not None and self.traces is not None:
                     new, now = await computed(self._replayed, model)
                     motion = self.bench.data.motions[self.run]
-                    self.traces.redraw(panels(motion, {"new": new}, self.axes))
+                    remark = self._remark({self.bench.base.name: self.base, "the new model": new})
+                    self.traces.redraw(panels(motion, {"new": new}, self.axes), remark)
                     await asyncio.sleep(SENT)
                     note = "2 s windows, " + motion.run.split + " run"
                     self.after.content = tile_html("This run, now", now, "run/now", note)

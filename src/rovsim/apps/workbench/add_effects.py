@@ -1,11 +1,12 @@
 """The effects of the Add screen: a card each, its tick, and its values on sliders or typed."""
 
+from html import escape
 from typing import Any, Awaitable, Callable
 
 from nicegui import ui
 
-from rovsim.apps.workbench.draft import reach
-from rovsim.apps.workbench.parts import Failure, Slider, text
+from rovsim.apps.workbench.draft import Draft, reach
+from rovsim.apps.workbench.parts import Failure, Slider, alarm, tell_probability, text
 from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.reporting.catalogue.entries import unit
@@ -38,6 +39,9 @@ class Effects:
         self.failures.clear()
         offered = list(dict.fromkeys([*self.draft.fitted, *self.draft.ticked]))
         with self.list:
+            if self.draft.diagnosis is None:
+                text("No diagnosis has said yet what is missing.", "soft")
+                ui.link("Why: find what is missing, with its values", "/why")
             if unknown := self.draft.unknown:
                 text(
                     f"The diagnosis also found {', '.join(unknown)}, which nobody knows here: open "
@@ -69,8 +73,8 @@ class Effects:
             box.on_value_change(lambda e: self._tick(name, e.value))
             self.failures[name] = Failure()
             known = self.bench.catalogue[name]
-            if ticked and self._unasked(name):
-                text("Not among what the diagnosis found missing: it may fit noise.", "soft")
+            if ticked and (doubt := tell_doubt(name, self.draft)):
+                ui.html(alarm(doubt), sanitize=False).classes("text")
             if not ticked:
                 text((known.__doc__ or "").split("\n")[0], "soft")
                 return
@@ -78,15 +82,14 @@ class Effects:
             for parameter, value in self.draft.entry(name).parameters.items():
                 self._slider(name, units[parameter], value.value)
 
-    def _unasked(self, name: str) -> bool:
-        """Whether there is a diagnosis, and it did not select the effect."""
-        return self.draft.diagnosis is not None and name not in {
-            e.effect for e in self.draft.chosen
-        }
-
     def _slider(self, effect: str, parameter: Any, value: float) -> None:
         low, high = reach(parameter, value)
         shown = unit(parameter.unit)
+
+        def told(now: float) -> str:
+            total = tell_total(self.bench.base.body, effect, parameter.name, now, shown)
+            return f"{escape(total.told)} {alarm(total.wrong)}".strip()
+
         with ui.row().classes("slider"):
             ui.label(parameter.name).classes("name")
             slider = Slider(min=low, max=high, step=(high - low) / STEPS, value=value)
@@ -96,13 +99,13 @@ class Effects:
             back = ui.button(icon="settings_backup_restore").classes("reset")
             about = f"{effect}, {parameter.name}: back to where it began"
             back.props(f'flat dense aria-label="{about}" title="{about}"')
-            total = ui.label(self._total(effect, parameter.name, value)).classes("total")
+            total = ui.html(told(value), sanitize=False).classes("total")
 
         async def change(now: float) -> None:
             if now == self.draft.entry(effect).parameters[parameter.name].value:
                 return  # a key tells its value twice, and the throttle tells the last one again
             self.touched = effect
-            total.text = self._total(effect, parameter.name, now)
+            total.content = told(now)
             self.draft.move(effect, parameter.name, now)
             await self.moved()
 
@@ -124,9 +127,6 @@ class Effects:
         number.on("change", typed)
         back.on_click(reset)
 
-    def _total(self, effect: str, parameter: str, value: float) -> str:
-        return tell_total(self.bench.base.body, effect, parameter, value)
-
     async def _tick(self, name: str, yes: bool) -> None:
         self.touched = name
         self.draft.tick(name, yes)
@@ -141,3 +141,14 @@ class Effects:
     async def _another(self, name: str | None) -> None:
         if name:
             await self._tick(name, True)
+
+
+def tell_doubt(effect: str, draft: Draft) -> str:
+    """That the diagnosis did not select an effect, and how likely it is; empty if it did."""
+    if draft.diagnosis is None or effect in {one.effect for one in draft.chosen}:
+        return ""
+    known = {one.effect: one.probability for one in draft.diagnosis.ranking}
+    if known.get(effect) is None:
+        return "the diagnosis did not select it; it may fit noise"
+    odds = tell_probability(known[effect])
+    return f"the diagnosis did not select it: probability {odds}, were it missing alone"

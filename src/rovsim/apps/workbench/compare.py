@@ -9,6 +9,7 @@ from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.parts import cell, computed, heading, onward, table, text
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.traces import (
     BANDED,
     HORIZONS,
@@ -109,7 +110,7 @@ class Compare:
         if self.chosen["horizon"] != horizon:  # moved on meanwhile
             return
         if self.traces:
-            self.traces.redraw(shown)
+            self.traces.redraw(shown, self._remark(predicted))
         self._numbers(predicted)
 
     @property
@@ -142,6 +143,14 @@ class Compare:
                 bands |= {name: band} if band else {}
         return motion, panels(motion, predicted, axes, quantity, thrust, bands)
 
+    def _remark(self, predicted: Predicted) -> str:
+        """Which replays diverge."""
+        told = []
+        for run, models in predicted.items():
+            named = {f"{n}, {run}," if len(predicted) > 1 else n: p for n, p in models.items()}
+            told.append(tell_divergence(self.bench.data.motions[run].time, named))
+        return " ".join(filter(None, told))
+
     def _tell_missing_bands(self) -> None:
         """Say which models have none, and why."""
         if not self.chosen["bands"]:
@@ -162,7 +171,10 @@ class Compare:
         with self.area:
             about = f"Measured and simulated, run {', '.join(self.runs)}"
             self._tell_missing_bands()
-            self.traces = Traces(self.motion.time, shown, about, self.span, self._zoomed)
+            remark = self._remark(predicted)
+            self.traces = Traces(
+                self.motion.time, shown, about, self.span, self._zoomed, remark=remark
+            )
             self.numbers = ui.column().classes("area")
             self._numbers(predicted)
             await self._path(self.traces)

@@ -6,8 +6,10 @@ from typing import Any, Mapping, Sequence
 from nicegui import ui
 
 from rovsim import AXES
+from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.parts import (
     Failure,
+    alarm,
     cell,
     computed,
     heading,
@@ -18,6 +20,7 @@ from rovsim.apps.workbench.parts import (
     words,
 )
 from rovsim.apps.workbench.place import Place
+from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.totals import list_totals, warn
 from rovsim.apps.workbench.traces import (
     HORIZONS,
@@ -119,9 +122,9 @@ class Models:
     async def _horizon(self, horizon: float | None) -> None:
         self.chosen["horizon"] = horizon
         self._tell()
-        shown = await self._panels()
+        shown, remark = await self._panels()
         if self.chosen["horizon"] == horizon and self.traces:  # not moved on meanwhile
-            self.traces.redraw(shown)
+            self.traces.redraw(shown, remark)
 
     def _zoomed(self, span: Span) -> None:
         self.span = span
@@ -140,7 +143,7 @@ class Models:
         try:
             names = dict.fromkeys(self.chosen[side] for side in SIDES)
             self.models = {n: await computed(self.bench.known_model, n) for n in names}
-            shown = await self._panels()
+            shown, remark = await self._panels()
             errors = await computed(self._errors)
         except RovsimError as error:  # of a file, or of a run that lacks what an effect needs
             if mine == self.drawn:
@@ -157,13 +160,14 @@ class Models:
             about = f"Measured and simulated, run {self.chosen['run']}"
             time = self.bench.data.motions[self.chosen["run"]].time
             look = {"measured": FAMILIES["measured"], **dict(zip(self.models, LOOKS, strict=False))}
-            self.traces = Traces(time, shown, about, self.span, self._zoomed, look)
+            self.traces = Traces(time, shown, about, self.span, self._zoomed, look, remark)
             section("What is in them")
             _tell_parameters(self.models)
             _tell_totals(self.models, self.bench.catalogue)
             onward("See the test runs of all models", "/ladder")
 
-    async def _panels(self) -> Any:
+    async def _panels(self) -> tuple[list[Panel], str]:
+        """The curves of both, and what is wrong with them."""
         motion = self.bench.data.motions[self.chosen["run"]]
         predicted = {
             name: await computed(
@@ -172,7 +176,7 @@ class Models:
             for name, model in self.models.items()
         }
         axes = [axis for axis in AXES if axis in self.chosen["axes"]]
-        return panels(motion, predicted, axes)
+        return panels(motion, predicted, axes), tell_divergence(motion.time, predicted)
 
     def _errors(self) -> Errors:
         """Of each model at each horizon that comparison.json has."""
@@ -255,8 +259,8 @@ def _tell_totals(models: Mapping[str, Model], catalogue: Catalogue) -> None:
         if any(value != before for value in values):
             effect, axis = key
             (si,) = (p.unit for p in catalogue[effect].parameters if p.name == axis)
-            told = [significant(value) + warn(effect, value) for value in values]
-            rows.append((f"{effect}, {axis} ({unit(si)})", [words(one) for one in told]))
+            told = [f"<td>{significant(v)} {alarm(warn(effect, v))}</td>" for v in values]
+            rows.append((f"{effect}, {axis} ({unit(si)})", told))
     if rows:
         section("What the coefficients come to")
         table("The vehicle file and what was added, together", ["coefficient", *columns], rows)

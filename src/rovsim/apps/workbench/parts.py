@@ -84,6 +84,14 @@ def text(words: str, classes: str = "") -> None:
     ui.html(f"<p>{escape(words)}</p>", sanitize=False).classes(f"text {classes}")
 
 
+def alarm(words: str) -> str:
+    """A warning inside a line, as HTML: a sign and a colour of its own; empty without words."""
+    if not words:
+        return ""
+    sign = '<i class="q-icon material-icons" aria-hidden="true">warning</i>'
+    return f'<span class="alarm">{sign} Warning: {escape(words)}</span>'
+
+
 def section(title: str) -> None:
     """A heading inside a screen."""
     ui.html(f"<h2>{escape(title)}</h2>", sanitize=False)

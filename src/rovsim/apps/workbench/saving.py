@@ -14,8 +14,11 @@ from rovsim.apps.workbench.parts import (
     text,
     tile,
 )
+from rovsim.apps.workbench.runaway import find_divergence
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
+from rovsim.dynamics.model import Model
+from rovsim.results.comparison import WINDOW
 
 
 class Saving:
@@ -26,9 +29,11 @@ class Saving:
         section("Save it")
         self.path = ui.input("Model file", value=str(bench.free_path())).classes("control wide")
         self.path.props("outlined dense")
-        ui.button("Save, and open the test runs", icon="save", on_click=self._save).props(
-            "unelevated no-caps"
-        ).classes("onward")
+        save = ui.button("Save, and open the test runs", icon="save", on_click=self._save)
+        save.props("unelevated no-caps").classes("onward")
+        save.bind_enabled_from(bench.draft, "ticked", backward=bool)
+        nothing = ui.label(f"Nothing was added to {bench.base.name} yet.").classes("soft")
+        nothing.bind_visibility_from(bench.draft, "ticked", backward=lambda names: not names)
         self.failure = Failure()
         self.result = ui.column().classes("area")
 
@@ -43,11 +48,22 @@ class Saving:
         self.failure.forget()
         before = (await computed(self.bench.replays.step, self.bench.base)).windows_2s
         after = (await computed(self.bench.replays.step, saved)).windows_2s
+        lost = await computed(self._is_lost, saved)
         opened = await computed(self.bench.note_opening, saved)
         self.path.value = str(self.bench.free_path())
-        self._tell(path, before, after, opened)
+        self._tell(path, before, after, lost, opened)
 
-    def _tell(self, path: Path, before: float | None, after: float | None, opened: int) -> None:
+    def _is_lost(self, model: Model) -> bool:
+        """Whether a replay of a test run diverges."""
+        replays, motions = self.bench.replays, self.bench.data.motions
+        return any(
+            find_divergence(motions[run].time, replays.prediction(model, run, WINDOW)) is not None
+            for run in self.bench.data.runs.of("test")
+        )
+
+    def _tell(
+        self, path: Path, before: float | None, after: float | None, lost: bool, opened: int
+    ) -> None:
         diagnosis = self.bench.diagnosis
         floor = diagnosis.error.noise_floor if diagnosis else None
         self.result.clear()
@@ -57,14 +73,16 @@ class Saving:
                 tile("Error now", after, "saved/after", "test runs")
                 if floor is not None:
                     tile("Noise floor", floor, "saved/noise_floor", "of a perfect model, about")
-            text(_sentence(before, after))
+            text(_sentence(before, after, lost))
             text(_counted(opened), "soft")
             words = (f"campaign={self.bench.settings.campaign}", f"model=[nominal,{path}]")
             in_a_terminal(f"rovsim compare {shlex.join(words)} out=COMPARED")
             onward("See the whole ladder", "/ladder")
 
 
-def _sentence(before: float | None, after: float | None) -> str:
+def _sentence(before: float | None, after: float | None, lost: bool) -> str:
+    if lost:
+        return "Saved. On the test runs its replay diverges, so it has no error."
     if before is None or after is None:
         return "Saved. There is no test run to measure it on."
     if after < before:

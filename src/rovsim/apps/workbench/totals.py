@@ -1,6 +1,6 @@
 """What a coefficient comes to: that of the base, the change, and whether such a vehicle brakes."""
 
-from typing import Callable
+from typing import Callable, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -17,21 +17,29 @@ TOTALS: dict[str, Callable[[Body], Array]] = {
 }
 
 
-def tell_total(body: Body, effect: str, parameter: str, value: float) -> str:
-    """The sum of what the base has and a change of it, in words; empty where there is no sum."""
+class Total(NamedTuple):
+    """What a coefficient comes to, and what is wrong with that, in words."""
+
+    told: str
+    wrong: str
+
+
+def tell_total(body: Body, effect: str, parameter: str, value: float, unit: str = "") -> Total:
+    """The sum of what the base has and a change of it; nothing where there is no sum."""
     if effect not in TOTALS or parameter not in AXES:
-        return ""
+        return Total("", "")
     before = float(TOTALS[effect](body)[AXES.index(parameter)])
     sign = "+" if value >= 0.0 else "−"
-    told = f"{significant(before)} {sign} {significant(abs(value))} = {significant(before + value)}"
-    return told + warn(effect, before + value)
+    total = significant(before + value).replace("-", "−")
+    told = f"in all {significant(before)} {sign} {significant(abs(value))} = {total} {unit}"
+    return Total(told.strip(), warn(effect, before + value))
 
 
 def warn(effect: str, total: float) -> str:
     """What is wrong with a coefficient below zero; empty where nothing is."""
     if total >= 0.0:
         return ""
-    return ": no water weighs less" if effect == "added_mass" else ": water would push, not brake"
+    return "no water weighs less" if effect == "added_mass" else "water would push, not brake"
 
 
 def list_totals(body: Body) -> dict[tuple[str, str], float]:

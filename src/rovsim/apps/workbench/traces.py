@@ -11,6 +11,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel, cursor, height, series_data, styles, time_series
 from rovsim.apps.workbench.parts import Slider, chart
+from rovsim.apps.workbench.runaway import cut, find_divergence
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.rotations import short_way, to_euler
 from rovsim.measurement.signals.measured import blank
@@ -75,10 +76,12 @@ def panels(
     """
     _, units = QUANTITIES[quantity]
     measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
+    lost = [n for n, p in predicted.items() if find_divergence(motion.time, p) is not None]
     found = []
     for axis in axes:
         k = AXES.index(axis)
         models = {name: _columns(p, quantity)[:, k] for name, p in predicted.items()}
+        models |= {name: cut(models[name], measured[:, k]) for name in lost}
         missed = {name: measured[:, k] - values for name, values in models.items()}
         ends = {name: getattr(band, BANDED[quantity])[:, :, k] for name, band in bands.items()}
         title = axis
@@ -99,7 +102,10 @@ def panels(
 def _columns(of: Motion | Prediction, quantity: str) -> Array:
     """Six columns (n, 6) of a quantity: of a pose the position, and angles for people."""
     values = getattr(of, quantity)
-    return np.hstack([values[:, :3], to_euler(values[:, 3:])]) if quantity == "eta" else values
+    if quantity != "eta":
+        return values
+    turned = np.where(np.isinf(values[:, 3:]), np.nan, values[:, 3:])  # where a replay diverged
+    return np.hstack([values[:, :3], to_euler(turned)])
 
 
 def _measured(motion: Motion, quantity: str) -> Array:
@@ -133,14 +139,17 @@ NOT_ONE_VALUE = "role=group " + " ".join(
 
 
 class Traces:
-    """The chart on the page, with a range slider that zooms all its panels."""
+    """The chart on the page, a remark above it, a range slider that zooms all its panels below."""
 
     def __init__(
         self, time: Array, shown: Sequence[Panel], about: str, span: Span = (None, None),
         zoomed: Callable[[Span], None] = lambda span: None, look: Mapping[str, Look] | None = None,
+        remark: str = "",
     ) -> None:  # fmt: skip
         self.time, self.shown, self.told = time, list(shown), zoomed
         names = list(dict.fromkeys(n for panel in shown for n in panel.curves))
+        self.remark = ui.label().classes("text warning").props('role="status"')
+        self._remark(remark)
         self.chart = chart(time_series(time, shown, look or styles(names)), about, height(shown))
         first, last = float(time[0]), float(time[-1])
         with ui.row().classes("control wide"):
@@ -186,9 +195,13 @@ class Traces:
             }
             self._tell()
 
-    def redraw(self, shown: Sequence[Panel]) -> None:
+    def _remark(self, words: str) -> None:
+        self.remark.text, self.remark.visible = words, bool(words)
+
+    def redraw(self, shown: Sequence[Panel], remark: str = "") -> None:
         """New values of the same curves: only these travel to the browser."""
         self.shown = list(shown)
+        self._remark(remark)
         self.chart.run_chart_method("setOption", {"series": series_data(self.time, shown, STEADY)})
 
     def mark(self, time: float | None) -> None:
