@@ -21,6 +21,9 @@ def drawn_why(tab):
 def test_a_disturbance_is_shown(diagnosed_tab):
     picture = drawn_why(diagnosed_tab).get_by_role("img", name=PICTURE)
     assert picture.evaluate("e => e.decode().then(() => e.naturalWidth)") > 500
+    with diagnosed_tab.page.expect_download() as kept:
+        diagnosed_tab.page.get_by_role("button", name=f"PNG: {PICTURE}").click()
+    assert kept.value.path().read_bytes().startswith(b"\x89PNG")
 
 
 def test_why_with_several_effects_is_accessible_in_light_and_dark(diagnosed_tab):

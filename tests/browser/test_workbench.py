@@ -1,5 +1,6 @@
 """The workbench as its users meet it: from the recordings to a model in which the error fell."""
 
+import csv
 import itertools
 import json
 import re
@@ -36,6 +37,8 @@ SAME = """() => {
     name => Number(document.querySelector(`[data-name="run/${name}"]`).dataset.value));
   return Math.abs(now / before - 1) < 1e-3;
 }"""
+WHEEL = """document.querySelector('.path canvas').dispatchEvent(
+  new WheelEvent('wheel', {deltaY: 100, bubbles: true, cancelable: true}))"""
 NUMBER = "document.querySelector(\"input[aria-label='thruster_lag, time_constant, number']\")"
 # All folders that are listed, at least one, have this in their names.
 ONLY = """part => { const all = [...document.querySelectorAll('.entry .block')];
@@ -141,6 +144,12 @@ def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbenc
     bands_are_drawn_where_they_are_known(tab)
 
 
+def read_csv(download) -> list[dict[str, str]]:
+    """The rows of a table that was saved, by the names of its columns."""
+    with download.value.path().open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def bands_are_drawn_where_they_are_known(tab) -> None:
     """Of a model that a diagnosis ended with, open loop too; of others it says why not."""
     models = "models=repaired&models=nominal"
@@ -151,9 +160,9 @@ def bands_are_drawn_where_they_are_known(tab) -> None:
     tab.picture("bands")
     with tab.page.expect_download() as values:
         tab.page.get_by_role("button", name="CSV: ").first.click()
-    rows = values.value.path().read_text().splitlines()
-    width = [r.split(",")[2] for r in rows if r.startswith("0/repaired/width of the band,")]
-    known = [float(w) for w in width if w]
+    table = read_csv(values)
+    width = next(name for name in table[0] if "north, repaired, width of the band (m)" in name)
+    known = [float(row[width]) for row in table if row[width]]
     assert len(known) > 100
     assert min(known) >= 0.0
     assert known[-1] > 5.0 * known[10]
@@ -281,6 +290,8 @@ def test_over_the_curves_the_wheel_moves_the_page_and_the_time_is_told_once(tab)
     assert "yaw (rad/s): measured" in told
     tab.page.mouse.wheel(0, 200)
     tab.page.wait_for_function("scrollY > 50")
+    tab.page.wait_for_selector(".path canvas")
+    assert tab.page.evaluate(WHEEL)  # left to the page
 
 
 def test_why_long_work_failed_stays_until_it_was_read(tab):
@@ -584,10 +595,10 @@ def test_light_and_dark_turn_and_are_remembered(tab):
 
 
 def test_a_chart_is_kept_as_a_picture_and_as_values(tab):
-    tab.go("compare")
+    tab.go("compare?run=3dof-1")
     tab.page.wait_for_selector(READY["compare"])
     with tab.page.expect_download() as picture:
-        tab.page.get_by_role("button", name="PNG: ").click()
+        tab.page.get_by_role("button", name="PNG: ").first.click()
     assert picture.value.path().read_bytes().startswith(b"\x89PNG")
     with tab.page.expect_download() as lines:
         tab.page.get_by_role("button", name="SVG: ").click()
@@ -597,12 +608,24 @@ def test_a_chart_is_kept_as_a_picture_and_as_values(tab):
     assert any("measured" in word for word in words)
     assert len([one for one in drawn.iter() if one.tag.endswith("path")]) > 10
     with tab.page.expect_download() as values:
-        tab.page.get_by_role("button", name="CSV: ").click()
-    head, *rows = values.value.path().read_text().splitlines()
-    assert head == "series,x,y"
-    named = {row.split(",")[0] for row in rows}
-    assert {"0/measured", "0/nominal"} <= named
-    known = [
-        float(row.split(",")[2]) for row in rows if row.startswith("0/nominal,") and row[-1] != ","
-    ]
+        tab.page.get_by_role("button", name="CSV: ").first.click()
+    table = read_csv(values)
+    named = "3dof-1 surge velocity, {} (m/s)"
+    assert {"time (s)", *map(named.format, ("measured", "nominal", "measured − nominal"))} <= set(
+        table[0]
+    )
+    known = [row for row in table if all(row[named.format(n)] for n in ("measured", "nominal"))]
     assert len(known) > 100
+    missed = [float(row[named.format("measured − nominal")]) for row in known]
+    for row, one in zip(known, missed, strict=True):
+        apart = float(row[named.format("measured")]) - float(row[named.format("nominal")])
+        assert one == pytest.approx(apart, abs=2e-5)
+    with tab.page.expect_download() as values:
+        tab.page.get_by_role("button", name="CSV: Path in the tank").click()
+    table = read_csv(values)
+    assert list(table[0])[:3] == [
+        "time (s)",
+        "3dof-1 measured, north (m)",
+        "3dof-1 measured, east (m)",
+    ]
+    assert len([row for row in table if row["3dof-1 nominal, down (m)"]]) > 100

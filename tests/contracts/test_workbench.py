@@ -1,10 +1,12 @@
 """The workbench shows what the commands write; long work reports, ends, can be cancelled."""
 
+import csv
 import logging
 import shutil
 import socket
 import time
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +24,7 @@ from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.totals import list_totals, tell_total
-from rovsim.apps.workbench.traces import panels
+from rovsim.apps.workbench.traces import beside, panels
 from rovsim.apps.workbench.work import LongWork, Work, reap
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
@@ -511,6 +513,58 @@ def test_a_path_is_drawn_through_its_points_and_keeps_its_gaps():
         away = np.linalg.norm(drawn[:, None] - points, axis=2).min(axis=1)
         np.testing.assert_allclose(away, 0.0, atol=1e-12)
     np.testing.assert_array_equal(curves[1:, 0], curves[:-1, 2])
+
+
+def test_the_tank_is_named_north_east_and_down_in_metres():
+    tank = np.array([[0.0, 10.0], [-5.0, 0.5], [0.0, 3.0]])  # NED
+    low, high = path.room(np.zeros((1, 3)), tank)
+    assert path.directions(low, high) == {
+        "north 0 to 10 m": [10.0, 5.0, 0.0],
+        "east −5 to 0.5 m": [0.0, -0.5, 0.0],
+        "down 0 to 3 m": [0.0, -0.5, -3.0],
+    }
+
+
+def test_a_replay_that_leaves_the_tank_is_told():
+    time = np.linspace(100.0, 110.0, 11)
+    tank = np.array([[0.0, 10.0], [np.nan, np.nan], [0.0, 3.0]])
+    still = np.tile([5.0, 0.0, 1.0], (11, 1))
+    flown = still + np.outer(time - 100.0, [0.0, -9.0, 0.5])  # no wall is known in the west
+    paths = {"measured": flown, "lost": flown, "good": still}
+    assert path.tell_leaving(time, paths, tank) == [
+        "The replay of lost leaves the tank after 5.0 s."
+    ]
+
+
+def test_a_path_is_saved_by_run_model_and_direction():
+    time = np.array([0.0, 0.5])
+    paths = {"measured": np.array([[1.0, 2.0, 3.0], [np.nan] * 3]), "a, b": np.ones((2, 3))}
+    head, *rows = csv.reader(StringIO(path.path_table("6dof-1", time, paths)))
+    assert head[:2] == ["time (s)", "6dof-1 measured, north (m)"]
+    assert head[-1] == "6dof-1 a, b, down (m)"
+    assert rows == [["0", "1", "2", "3", "1", "1", "1"], ["0.5", "", "", "", "1", "1", "1"]]
+
+
+def test_columns_of_a_table_say_run_axis_quantity_and_unit(bench):
+    predicted = bench.replays.prediction(bench.base, "6dof-1", 2.0)
+    band = Band(np.stack([predicted.nu, predicted.nu]), np.zeros((2, len(predicted.nu), 6)))
+    motion = bench.data.motions["6dof-1"]
+    thrust = bench.replays.thrust(bench.base, "6dof-1")
+    shown = panels(motion, {"m": predicted}, ["yaw"], "nu", thrust, {"m": band})
+    push = bench.replays.thrust(bench.base, "3dof-1")
+    other = panels(bench.data.motions["3dof-1"], {}, ["yaw"], "nu", push)
+    both = beside((motion, shown), [(bench.data.motions["3dof-1"], other)])
+    named = charts.columns(both)
+    assert named["x"] == "time (s)"
+    assert {
+        "0/m": "6dof-1 yaw velocity, m (rad/s)",
+        "0/m/width of the band": "6dof-1 yaw velocity, m, width of the band (rad/s)",
+        "0/measured, 3dof-1": "3dof-1 yaw velocity, measured (rad/s)",
+        "1/m": "6dof-1 yaw velocity, measured − m (rad/s)",
+        "2/commanded": "6dof-1 yaw thrust, commanded (N m)",
+    }.items() <= named["curves"].items()
+    ids = {one["id"] for one in charts.series_data(motion.time, both)}
+    assert set(named["curves"]) == ids
 
 
 def test_the_room_is_the_tank_and_where_that_is_unknown_what_was_seen():

@@ -1,4 +1,4 @@
-/* A chart to keep: its picture, as pixels or as lines, or every value of it; `x` and `y` of a bar or a field are its names. */
+/* A chart to keep: its picture, as pixels or as lines, or every value of it. */
 function saveFile(url, name) {
   const link = document.createElement("a");
   link.href = url;
@@ -26,25 +26,38 @@ async function saveVectors(chart) {
   copy.dispose();
 }
 
-function saveValues(chart) {
+/* `columns` names what stands in the table: its `x` and each of its `curves` by id, side by side over one x; or `names` of
+   what each point tells, one below the other. */
+function saveValues(chart, columns) {
   const shown = chart.getOption();
-  const names = ["xAxis", "yAxis"].map((axis) => shown[axis]?.[0]?.data);
-  const named = (data, k) => String(data?.[k]?.value ?? data?.[k] ?? k).replace("\u2212", "-");
-  const quoted = (x) => /[",\n]/.test(x) ? '"' + String(x).replaceAll('"', '""') + '"' : x;
-  const rows = shown.series.flatMap((series) => (series.data ?? []).map((point, k) => {
-    const value = point?.value ?? point;
-    const own = !Array.isArray(value) ? [named(names[0] ?? names[1], k), value]
-      : value.length > 2 ? [named(names[0], value[0]), named(names[1], value[1]), value[2]] : value;
-    const name = (series.id ?? series.name ?? "").replace(/\0.*/, "") || series.name;
-    return [name, ...own].map((x) => quoted(x ?? "")).join(",");
-  }));
-  const head = rows[0]?.split(",").length > 3 ? "series,x,y,value" : "series,x,y";
-  saveText([head, ...rows, ""].join("\n"), "text/csv", "rovsim.csv");
+  const rows = columns.curves ? sideBySide(shown.series, columns) : oneBelowTheOther(shown, columns.names ?? []);
+  const quoted = (x) => /[",\n]/.test(x) ? '"' + String(x).replaceAll('"', '""') + '"' : x ?? "";
+  saveText([...rows.map((row) => row.map(quoted).join(",")), ""].join("\n"), "text/csv", "rovsim.csv");
 }
 
-// ECharts takes every turn of the wheel: without Ctrl it belongs to the page.
+function sideBySide(series, columns) {
+  const curves = series.filter((one) => one.id in columns.curves);
+  const rows = curves[0].data.map((point, k) => [point[0], ...curves.map((one) => one.data[k]?.[1])]);
+  return [[columns.x, ...curves.map((one) => columns.curves[one.id])], ...rows];
+}
+
+function oneBelowTheOther(shown, names) {
+  const axes = ["xAxis", "yAxis"].map((axis) => shown[axis]?.[0]);
+  const named = (axis, k) => String(axis?.data?.[k]?.value ?? axis?.data?.[k] ?? k).replace("\u2212", "-");
+  const rows = shown.series.flatMap((series) => (series.data ?? []).map((point, k) => {
+    const value = point?.value ?? point;
+    const own = !Array.isArray(value) ? [named(axes[0].data ? axes[0] : axes[1], k), value]
+      : value.length > 2 ? [named(axes[0], value[0]), named(axes[1], value[1]), value[2]] : value;
+    return [(series.name ?? "").replace(/\0.*/, ""), ...own];
+  }));
+  const heads = ["x", "y", "to"].map((other, k) => names[k] ?? (axes[k]?.name || other));
+  const wide = Math.max(...rows.map((row) => row.length));
+  return [["series", ...heads].slice(0, wide), ...rows];
+}
+
+// Charts and the tank take every turn of the wheel: without Ctrl it belongs to the page.
 addEventListener("wheel", event => {
-  if (!event.ctrlKey && event.target.closest?.(".chart")) event.stopPropagation();
+  if (!event.ctrlKey && event.target.closest?.(".chart, .path")) event.stopPropagation();
 }, { capture: true });
 
 // What the pointer is at: the time once, then each panel with its unit and its curves.

@@ -22,7 +22,8 @@ WEIGHT = 2.2  # px of a line on screen for one of width 1 on paper
 class Panel:
     """Curves {name: values (n,)} over one time axis; a short panel shows what another left.
 
-    `bands` {name: (2, n)} lower and upper end of what a curve may be.
+    `bands` {name: (2, n)} lower and upper end of what a curve may be; `about` {name: run, axis,
+    quantity and model} of each curve, as a table names it.
     """
 
     title: str
@@ -30,6 +31,7 @@ class Panel:
     curves: Mapping[str, Array]
     short: bool = False
     bands: Mapping[str, Array] = field(default_factory=dict)
+    about: Mapping[str, str] = field(default_factory=dict)
 
 
 def styles(names: Sequence[str]) -> dict[str, Look]:
@@ -62,6 +64,19 @@ def series_data(time: Array, panels: Sequence[Panel], but: Sequence[str] = ()) -
         for name, values in (*panel.curves.items(), *_ends(panel))
         if name not in but
     ]
+
+
+def columns(panels: Sequence[Panel]) -> Options:
+    """What the CSV of the panels calls each series, by id."""
+    return {
+        "x": "time (s)",
+        "curves": {
+            f"{k}/{name}{end}": f"{about}{end.replace('/', ', ')} ({panel.unit})"
+            for k, panel in enumerate(panels)
+            for name, about in panel.about.items()
+            for end in ("", *((LOW, WIDTH) if name in panel.bands else ()))
+        },
+    }
 
 
 def _ends(panel: Panel) -> list[tuple[str, Array]]:

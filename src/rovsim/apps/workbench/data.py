@@ -118,6 +118,7 @@ def _gaps(quality: Mapping[str, Quality]) -> None:
         },
         "Gaps in each run over time",
         60 + 30 * len(runs),
+        columns={"names": ("from (s)", "run", "to (s)")},
     )  # fmt: skip
 
 

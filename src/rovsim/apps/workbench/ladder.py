@@ -37,7 +37,8 @@ async def show(bench: Workbench, place: Place) -> None:
     )
     ladder = await computed(bench.ladder)
     about = "Error of each step, the noise floor as a line"
-    chart(chart_of(ladder), about, 60 + 36 * len(ladder.steps))
+    names = {"names": ("step", "error (standard deviations of the measured velocity)")}
+    chart(chart_of(ladder), about, 60 + 36 * len(ladder.steps), columns=names)
     rows = [
         (
             title(s.model),

@@ -6,7 +6,7 @@ from nicegui import ui
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.parts import chart, computed
-from rovsim.apps.workbench.where import BLUE, WHISKER
+from rovsim.apps.workbench.where import BLUE, ERRORS, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.model import Model
@@ -83,7 +83,8 @@ def _curve(name: str, color: str, dash: str, table: ConditionTable) -> list[Opti
         "lineStyle": {"color": color, "type": dash}, "data": np.stack([at, mean], 1).tolist(),
     }  # fmt: skip
     bars = {
-        "type": "custom", "silent": True, ":renderItem": WHISKER, "z": 4,
+        "type": "custom", "name": f"{name}, {ERRORS}", "silent": True,
+        ":renderItem": WHISKER, "z": 4,
         "data": np.stack([at, mean - error, mean + error], 1).tolist(),
         "encode": {"x": 0, "y": [1, 2]}, "tooltip": {"show": False},
     }  # fmt: skip

@@ -1,11 +1,13 @@
 """Pieces that several screens share."""
 
 import asyncio
+import json
 from base64 import b64encode
 from concurrent.futures import ThreadPoolExecutor
 from html import escape
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from types import MappingProxyType
+from typing import Any, Callable, Mapping, Sequence
 
 from nicegui import ui
 
@@ -18,6 +20,8 @@ FONT = "Roboto, system-ui, sans-serif"
 IMPROBABLE = 0.001  # a probability below this, or as near to one, is told as no more than that
 # Functions of charts.js
 SAVE = {"PNG": "savePicture", "SVG": "saveVectors", "CSV": "saveValues"}
+Columns = Mapping[str, Any]  # what the columns of the CSV are called: see saveValues
+NO_COLUMNS: Columns = MappingProxyType({})
 
 # One thread computes: it uses all cores, and what was asked for first is shown first.
 _thread = ThreadPoolExecutor(1)
@@ -170,25 +174,39 @@ def tile_html(title: str, value: float | None, name: str, note: str = "") -> str
 
 
 def chart(
-    options: Options, about: str, height: int = 0, on_point_click: Callable | None = None
-) -> ui.echart:
-    """An ECharts chart that says what it shows to those who do not see it."""
+    options: Options, about: str, height: int = 0, on_point_click: Callable | None = None,
+    columns: Columns = NO_COLUMNS,
+) -> ui.echart:  # fmt: skip
+    """An ECharts chart that says what it shows to those who do not see it.
+
+    The CSV calls its `columns` as the axes are called, unless they are named.
+    """
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}
     found = ui.echart({**common, **options}, on_point_click)
     found.props.update({"role": "img", "aria-label": about})
+    literal = json.dumps(dict(columns)).replace("<", "\\u003c")  # names of models are in it
     with ui.row().classes("keep"):
         for name, function in SAVE.items():
-            button = ui.button(name).props(f'flat dense no-caps aria-label="{name}: {about}"')
-            button.on("click", js_handler=f"() => {function}(getElement({found.id}).chart)")
+            given = f"getElement({found.id}).chart, {literal}"
+            saving(name, about).on("click", js_handler=f"() => {function}({given})")
     return found.classes("chart").style(f"height:{height}px" if height else "")
 
 
+def saving(kind: str, about: str) -> ui.button:
+    """A button that saves what is shown as a file of this kind."""
+    button = ui.button(kind).props("flat dense no-caps")
+    button.props.update({"aria-label": f"{kind}: {about}"})
+    return button
+
+
 def png(path: Path, about: str) -> None:
-    """A picture that lies in a file."""
+    """A picture that lies in a file, to be saved as well."""
     content = b64encode(path.read_bytes()).decode()
     ui.html(
         f'<img src="data:image/png;base64,{content}" alt="{escape(about)}">', sanitize=False
     ).classes("picture")
+    with ui.row().classes("keep"):
+        saving("PNG", about).on_click(lambda: ui.download.file(path))
 
 
 def bar(share: float, name: str = "") -> str:

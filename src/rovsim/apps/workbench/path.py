@@ -1,6 +1,8 @@
 """The path in the tank, in three dimensions: turned with the mouse, played in time."""
 
+import csv
 from contextlib import suppress
+from io import StringIO
 from typing import Callable, Mapping
 
 import numpy as np
@@ -8,7 +10,7 @@ from nicegui import ui
 from numpy import ndarray as Array
 
 from rovsim.apps.workbench.charts import SOFT, styles
-from rovsim.apps.workbench.parts import Slider, section, text
+from rovsim.apps.workbench.parts import Slider, saving, section, text
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.measurement.signals.motion import Motion
 
@@ -20,6 +22,8 @@ PIECES = 80  # bent tubes that a path is drawn with at most: about one a second
 PICTURES = 10  # a second: a machine that draws without a graphics card must keep up
 THIN = 0.0012  # radius of a tube of width 1, over the size of the room
 SPOT = 0.01  # radius of a vehicle, likewise
+DIRECTIONS = ("north", "east", "down")
+NEAR = 0.05  # m beyond a wall that are no leaving: walls and places are known no better
 EYE = np.array([-0.25, -0.9, 0.5])  # from the middle to the eye, over the size of the room
 
 
@@ -41,11 +45,19 @@ class Path:
         self.time, self.changed = motion.time, changed
         section("Path in the tank")
         text(
-            "Measured and open loop, from the same start. Play, or drag the time; the mouse turns "
-            "the tank, its wheel comes closer."
+            "Measured and open loop, from the same start, in metres north, east and down. Play, or "
+            "drag the time; the mouse turns the tank, its wheel with Ctrl comes closer."
         )
+        for remark in tell_leaving(motion.time, paths, motion.site.tank):
+            text(remark, "warning")
         self._controls()
         self._draw(*room(measured * HALF_TURN_X, motion.site.tank))
+        with ui.row().classes("keep"):
+            saving("CSV", "Path in the tank").on_click(
+                lambda: ui.download.content(
+                    path_table(motion.run.id, motion.time, paths), "rovsim_path.csv", "text/csv"
+                )
+            )
         self.timer = ui.timer(TICK, self._tick, active=False)
 
     def _controls(self) -> None:
@@ -71,7 +83,7 @@ class Path:
             wide, long, tall = (high - low).tolist()
             walls = scene.box(wide, long, tall, wireframe=True)
             walls.move(*middle.tolist()).material(SOFT)
-            for name, spot in _names(low, high).items():
+            for name, spot in directions(low, high).items():
                 scene.text(name, f"color: {SOFT}; font-size: 13px").move(*spot)
             for name, path in self.paths.items():
                 radius = THIN * size * look[name].width
@@ -137,7 +149,47 @@ def room(measured: Array, tank: Array) -> tuple[Array, Array]:
     return low, np.maximum(high, low + 0.1)  # a box has a size, whatever moved
 
 
-def _names(low: Array, high: Array) -> dict[str, list[float]]:
-    """Where the names of the directions stand: at the ends of the edges that point there."""
-    ends = {"north": [0], "west": [1], "up": [2]}
-    return {name: np.where(np.isin(range(3), k), high, low).tolist() for name, k in ends.items()}
+def directions(low: Array, high: Array) -> dict[str, list[float]]:
+    """What stands at the ends of three edges of the room: a direction, and what is measured along.
+
+    Args:
+        low: lowest corner (3,), north, west, up; m.
+        high: highest corner (3,), likewise.
+    """
+    # North along one edge, east along the next, and down from its end: no two names meet.
+    ends = (high[0], high[1], high[2]), (low[0], low[1], high[2]), (low[0], low[1], low[2])
+    found = {}
+    for k, (name, end) in enumerate(zip(DIRECTIONS, ends, strict=True)):
+        a, b = sorted((HALF_TURN_X[k] * low[k], HALF_TURN_X[k] * high[k]))
+        told = f"{name} {a + 0.0:.3g} to {b + 0.0:.3g} m"
+        found[told.replace("-", "−")] = [float(x) for x in end]
+    return found
+
+
+def tell_leaving(time: Array, paths: Mapping[str, Array], tank: Array) -> list[str]:
+    """Which simulated paths (n, 3) leave the tank, and when, in words.
+
+    Args:
+        time: of the samples (n,), s.
+        paths: NED by name, `measured` among them; m.
+        tank: limits (3, 2) in NED, NaN where unknown; m.
+    """
+    low, high = np.sort(tank, axis=1).T
+    said = []
+    for name, path in paths.items():
+        outside = ((path < low - NEAR) | (path > high + NEAR)).any(axis=1)
+        if name != "measured" and outside.any():
+            at = time[np.argmax(outside)] - time[0]
+            said.append(f"The replay of {name} leaves the tank after {at:.1f} s.")
+    return said
+
+
+def path_table(run: str, time: Array, paths: Mapping[str, Array]) -> str:
+    """Paths (n, 3) in NED by name as the text of a CSV; empty where nothing is known."""
+    heads = [f"{run} {name}, {way} (m)" for name in paths for way in DIRECTIONS]
+    values = np.hstack([time[:, None], *paths.values()])
+    text = StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["time (s)", *heads])
+    table.writerows([[f"{x:.6g}" if np.isfinite(x) else "" for x in row] for row in values])
+    return text.getvalue()

@@ -9,7 +9,15 @@ from nicegui import ui
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.apps.workbench.charts import Panel, cursor, height, series_data, styles, time_series
+from rovsim.apps.workbench.charts import (
+    Panel,
+    columns,
+    cursor,
+    height,
+    series_data,
+    styles,
+    time_series,
+)
 from rovsim.apps.workbench.parts import Slider, chart
 from rovsim.apps.workbench.runaway import cut, find_divergence
 from rovsim.apps.workbench.workbench import Workbench
@@ -74,7 +82,7 @@ def panels(
     `bands` by model: within what it may lie. Under that `thrust` (n, 6), what the commands push
     along the axis of the body, N and N m.
     """
-    _, units = QUANTITIES[quantity]
+    (what, units), run = QUANTITIES[quantity], motion.run.id
     measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
     lost = [n for n, p in predicted.items() if find_divergence(motion.time, p) is not None]
     found = []
@@ -84,19 +92,28 @@ def panels(
         models |= {name: cut(models[name], measured[:, k]) for name in lost}
         missed = {name: measured[:, k] - values for name, values in models.items()}
         ends = {name: getattr(band, BANDED[quantity])[:, :, k] for name, band in bands.items()}
-        title = axis
+        title, told = axis, f"{run} {axis} {what}"
         if quantity == "eta":
-            title = POSES[axis]
+            title, told = POSES[axis], f"{run} {POSES[axis]}"
             missed = {n: short_way(x) if k > 2 else x for n, x in missed.items()}
         around = {name: end - measured[:, k] + missed[name] for name, end in ends.items()}
-        found.append(Panel(title, units[k], {"measured": measured[:, k], **models}, bands=ends))
-        found.append(
-            Panel(f"{title}: measured − model", units[k], missed, short=True, bands=around)
-        )
+        shown = {"measured": measured[:, k], **models}
+        about = {name: f"{told}, {name}" for name in shown}
+        found.append(Panel(title, units[k], shown, bands=ends, about=about))
+        about = {name: f"{told}, measured − {name}" for name in missed}
+        title = f"{title}: measured − model"
+        found.append(Panel(title, units[k], missed, short=True, bands=around, about=about))
         if thrust is not None:
-            push = {"commanded": thrust[:, k]}
-            found.append(Panel(f"{axis}: thrust by the commands", FORCE_UNITS[k], push, short=True))
+            found.append(_thrust_panel(axis, thrust[:, k], run))
     return found
+
+
+def _thrust_panel(axis: str, values: Array, run: str) -> Panel:
+    """What the commands push along an axis."""
+    unit = FORCE_UNITS[AXES.index(axis)]
+    about = {"commanded": f"{run} {axis} thrust, commanded"}
+    title = f"{axis}: thrust by the commands"
+    return Panel(title, unit, {"commanded": values}, short=True, about=about)
 
 
 def _columns(of: Motion | Prediction, quantity: str) -> Array:
@@ -123,13 +140,15 @@ def beside(
     motion, shown = first
     time = motion.time - motion.time[0]
     curves = [dict(panel.curves) for panel in shown]
+    about = [dict(panel.about) for panel in shown]
     for other, theirs in others:
         own = other.time - other.time[0]
-        for all_of_it, panel in zip(curves, theirs, strict=True):
+        for k, panel in enumerate(theirs):
             for name, values in panel.curves.items():
-                same = np.interp(time, own, values, right=np.nan)
-                all_of_it[f"{name}, {other.run.id}"] = same
-    return [replace(p, curves=c) for p, c in zip(shown, curves, strict=True)]
+                same = f"{name}, {other.run.id}"
+                curves[k][same] = np.interp(time, own, values, right=np.nan)
+                about[k][same] = panel.about[name]
+    return [replace(p, curves=c, about=a) for p, c, a in zip(shown, curves, about, strict=True)]
 
 
 # Quasar says "0|12" where the standard wants one number; each end can be reached with the keyboard.
@@ -150,7 +169,8 @@ class Traces:
         names = list(dict.fromkeys(n for panel in shown for n in panel.curves))
         self.remark = ui.label().classes("text warning").props('role="status"')
         self._remark(remark)
-        self.chart = chart(time_series(time, shown, look or styles(names)), about, height(shown))
+        options = time_series(time, shown, look or styles(names))
+        self.chart = chart(options, about, height(shown), columns=columns(shown))
         first, last = float(time[0]), float(time[-1])
         with ui.row().classes("control wide"):
             ui.label("Part of the run shown")

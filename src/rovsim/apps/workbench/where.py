@@ -21,6 +21,7 @@ from rovsim.results.error_conditions import ConditionFinding, ConditionTable
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"
 BLUE, GREY = "#0072B2", "#bdbdbd"
 SHADES = ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"]  # one hue: also without colours
+ERRORS = "from two standard errors below to above"
 MOST = 12  # conditions of the map
 FIRST = 4  # sentences that are not folded away
 
@@ -134,6 +135,7 @@ class Where:
             on_point_click=lambda e: self.choose(
                 axes[e.data[0]], conditions[e.data[1]]
             ),
+            columns={"names": ("axis", "condition", "share of the squared error")},
         )  # fmt: skip
 
     def choose(self, axis: str, condition: str) -> None:
@@ -205,8 +207,8 @@ def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> O
             {"type": "bar", "name": "mean error", "barMaxWidth": 64,
              "data": [{"value": m, "itemStyle": {"color": c}}
                       for m, c in zip(found.mean, colors, strict=True)]},
-            {"type": "custom", "silent": True, "data": whiskers, ":renderItem": WHISKER, "z": 4,
-             "encode": {"x": 0, "y": [1, 2]}},
+            {"type": "custom", "name": ERRORS, "silent": True, "data": whiskers,
+             ":renderItem": WHISKER, "z": 4, "encode": {"x": 0, "y": [1, 2]}},
         ],
     }  # fmt: skip
 
