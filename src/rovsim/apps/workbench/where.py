@@ -8,21 +8,20 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
+from rovsim.apps.workbench.condition_map import FieldMap
 from rovsim.apps.workbench.parts import chart, computed, heading, onward, section, text
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import SearchedModel
-from rovsim.reporting.charts import chart_bins, chart_conditions
+from rovsim.reporting.charts import chart_bins
 from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.results.error_conditions import ConditionFinding, ConditionTable
 
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"
 BLUE, GREY = "#0072B2", "#bdbdbd"
-SHADES = ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"]  # one hue: also without colours
 ERRORS = "from two standard errors below to above"
-MOST = 12  # conditions of the map
 FIRST = 4  # sentences that are not folded away
 
 
@@ -62,7 +61,7 @@ class Where:
         with self.area:
             with ui.column().classes("half equal"):
                 self._findings(self.told.findings)
-                self._map()
+                FieldMap(self.told, self.choose)
             with ui.column().classes("half equal side"):
                 self.bins = ui.column().classes("area")
                 onward("Why does it fail?", "/why")
@@ -98,45 +97,6 @@ class Where:
                     ui.button("show", on_click=lambda _, a=at: self.choose(*a)).props(
                         f'flat dense no-caps aria-label="Show {at[0]} over {at[1]}"'
                     )
-
-    def _map(self) -> None:
-        """Share of each axis' error that varies with each condition."""
-        section("What the error varies with")
-        text("Darker: more of that axis' squared error. Click a field to see its bins.", "soft")
-        shown = chart_conditions(self.told, MOST)
-        axes, conditions = list(shown.axes), list(reversed(shown.conditions))
-        if not axes:
-            return
-        data = [
-            [k, j, float(share)]
-            for j, row in enumerate(shown.share[::-1])
-            for k, share in enumerate(row)
-        ]
-        chart(
-            {
-                "grid": {"left": 158, "right": 4, "top": 28, "bottom": 8},
-                "tooltip": {":formatter": "p => (100 * p.value[2]).toFixed(0) + ' % of the error'"},
-                "xAxis": {"type": "category", "data": axes, "position": "top",
-                          "axisLabel": {"color": INK, "interval": 0},
-                          "axisLine": {"show": False}, "axisTick": {"show": False}},
-                "yAxis": {"type": "category", "data": conditions,
-                          "axisLabel": {"color": INK, "interval": 0, "width": 150,
-                                        "overflow": "truncate"},
-                          "axisLine": {"show": False}, "axisTick": {"show": False}},
-                "visualMap": {"show": False, "min": 0, "max": 1, "inRange": {"color": SHADES}},
-                "series": [{"type": "heatmap", "data": data,
-                            "itemStyle": {"borderColor": "#ffffff", "borderWidth": 2},
-                            "label": {"show": True, "fontSize": 11,
-                                      ":formatter": "p => p.value[2] < 0.03 ? '' :"
-                                                    " (100 * p.value[2]).toFixed(0)"}}],
-            },
-            "Share of the error by axis and condition, percent",
-            44 + 30 * len(conditions),
-            on_point_click=lambda e: self.choose(
-                axes[e.data[0]], conditions[e.data[1]]
-            ),
-            columns={"names": ("axis", "condition", "share of the squared error")},
-        )  # fmt: skip
 
     def choose(self, axis: str, condition: str) -> None:
         """Show the bins of one condition."""

@@ -1,0 +1,106 @@
+"""The map of the Where screen: how much of each axis' error varies with each condition."""
+
+from typing import Any, Callable
+
+from nicegui import ui
+
+from rovsim.apps.workbench.charts import INK, Options
+from rovsim.apps.workbench.parts import chart, section, text
+from rovsim.reporting.charts import ConditionMap, chart_conditions
+from rovsim.results.error_conditions import ModelConditions
+
+SHADES = ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"]  # one hue: also without colours
+MOST = 12  # conditions
+STEPS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowUp": (0, -1), "ArrowDown": (0, 1)}
+# All other keys stay the browser's; arrows would move the page.
+KEYS = f"""(e) => {{
+  if (!{[*STEPS, "Enter"]}.includes(e.key)) return;
+  e.preventDefault();
+  emit(e.key);
+}}"""
+
+
+class FieldMap:
+    """Fields to click, or to walk through with the arrow keys; `choose` is given axis, condition.
+
+    Fields are counted from the left and from the top.
+    """
+
+    def __init__(self, found: ModelConditions, choose: Callable[[str, str], None]) -> None:
+        section("What the error varies with")
+        self.shown, self.choose = chart_conditions(found, MOST), choose
+        if not self.shown.axes:
+            return
+        text(
+            "Darker: more of that axis' squared error. Click a field to see its bins; or use the "
+            "arrow keys, and Enter.", "soft",
+        )  # fmt: skip
+        self.at = (0, 0)
+        self.chart = chart(
+            map_chart(self.shown),
+            "Share of the error by axis and condition, percent",
+            44 + 30 * len(self.shown.conditions),
+            on_point_click=lambda e: self._choose(e.data[0], self._turned(e.data[1])),
+            columns={"names": ("axis", "condition", "share of the squared error")},
+        )
+        self.chart.props('role="application" tabindex="0"')
+        self.chart.on("keydown", self._key, js_handler=KEYS)
+        self.chart.on("focus", lambda: self._mark(), js_handler="() => emit()")
+        self.told = ui.label().classes("soft").props('role="status"')
+
+    def _turned(self, row: int) -> int:
+        """ECharts counts rows from below."""
+        return len(self.shown.conditions) - 1 - row
+
+    def _choose(self, column: int, row: int) -> None:
+        self.at = (column, row)
+        self.choose(self.shown.axes[column], self.shown.conditions[row])
+
+    def _key(self, event: Any) -> None:
+        if event.args == "Enter":
+            self._choose(*self.at)
+            return
+        right, down = STEPS[event.args]
+        self.at = (
+            min(max(self.at[0] + right, 0), len(self.shown.axes) - 1),
+            min(max(self.at[1] + down, 0), len(self.shown.conditions) - 1),
+        )
+        self._mark()
+
+    def _mark(self) -> None:
+        """Show, and say, at which field the keys are."""
+        column, row = self.at
+        field = self._turned(row) * len(self.shown.axes) + column
+        for action in ({"type": "downplay"}, {"type": "highlight", "dataIndex": field}):
+            self.chart.run_chart_method("dispatchAction", {**action, "seriesIndex": 0})
+        share = float(self.shown.share[row][column])
+        axis, condition = self.shown.axes[column], self.shown.conditions[row]
+        self.told.text = f"{axis} over {condition}: {100 * share:.0f} % of the error"
+
+
+def map_chart(shown: ConditionMap) -> Options:
+    """A field for each pair, darker where more of the error varies."""
+    axes, conditions = list(shown.axes), list(reversed(shown.conditions))
+    data = [
+        [k, j, float(share)]
+        for j, row in enumerate(shown.share[::-1])
+        for k, share in enumerate(row)
+    ]
+    return {
+        "grid": {"left": 158, "right": 4, "top": 28, "bottom": 8},
+        "tooltip": {":formatter": "p => (100 * p.value[2]).toFixed(0) + ' % of the error'"},
+        "xAxis": {"type": "category", "data": axes, "position": "top",
+                  "axisLabel": {"color": INK, "interval": 0},
+                  "axisLine": {"show": False}, "axisTick": {"show": False}},
+        "yAxis": {"type": "category", "data": conditions,
+                  "axisLabel": {"color": INK, "interval": 0, "width": 150,
+                                "overflow": "truncate"},
+                  "axisLine": {"show": False}, "axisTick": {"show": False}},
+        "visualMap": {"show": False, "min": 0, "max": 1, "inRange": {"color": SHADES}},
+        "series": [{"type": "heatmap", "data": data,
+                    "itemStyle": {"borderColor": "#ffffff", "borderWidth": 2},
+                    "emphasis": {"itemStyle": {"borderColor": INK}},
+                    "label": {"show": True, "fontSize": 11,
+                              ":formatter": "p => p.value[2] < 0.03 ? '' :"
+                                            " (100 * p.value[2]).toFixed(0)"}}],
+    }  # fmt: skip
