@@ -8,9 +8,9 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import exp, multiply, to_euler
 from rovsim.core.run import Commands
+from rovsim.design.knowledge import Knowledge
 from rovsim.design.settings import FlightLimits
 from rovsim.design.surroundings import Surroundings
-from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drives
@@ -24,7 +24,8 @@ SURE = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 b
 class Chances:
     """What could happen: models, pushes (s, k, 6) m/s2 that nobody foresees, starting errors.
 
-    The first is the likeliest model, undisturbed. `shift` (s, 3) m, `turn` (s,) rad.
+    The first are the likeliest models, which nothing pushes but what lasts. `shift` (s, 3) m,
+    `turn` (s,) rad.
     """
 
     models: Sequence[Model]
@@ -42,22 +43,43 @@ class Chances:
 
 
 def draw_chances(
-    models: Sequence[Model], noise: Noise, steps: int, h: float, random: np.random.Generator
+    each: Sequence[Sequence[Model]], known: Knowledge, edges: Array, random: np.random.Generator
 ) -> Chances:
-    """Disturbances as the recordings show them, of each model; the first is undisturbed.
+    """Disturbances as the recordings show them, of models that could be true.
 
     Args:
-        models: that could be true.
-        noise: of the readings, and the disturbance.
-        steps: of a path.
-        h: s, each.
+        each: models of each rival, the likeliest first.
+        known: of the train runs: the noise, and what pushes for long.
+        edges: ends (k+1,) s of the steps of a path, all as long.
         random: generator.
     """
-    count, memory = len(models), float(np.median(noise.memory))
+    chances = [_draw_of(own, known, k, edges, random) for k, own in enumerate(each)]
+    parts = [one.split(1) for one in chances]
+    ordered = [first for first, _ in parts] + [rest for _, rest in parts]
+    return Chances(
+        [model for one in ordered for model in one.models],
+        *(np.concatenate([getattr(one, name) for one in ordered])
+          for name in ("pushes", "shift", "turn")),
+    )  # fmt: skip
+
+
+def _draw_of(
+    models: Sequence[Model], known: Knowledge, rival: int, edges: Array,
+    random: np.random.Generator,
+) -> Chances:  # fmt: skip
+    """Of the models of one rival: what passes by, and what lasts and it does not know of."""
+    count, steps, h = len(models), len(edges) - 1, float(edges[1] - edges[0])
+    noise, lasting = known.noise, known.steady[rival]
     level = noise.level * models[0].body.free
-    pushes = np.array([draw_gauss_markov(steps, h / memory, random) for _ in models]) * level
+    memory = float(np.median(noise.memory))
+    pushes = np.array(
+        [
+            level * draw_gauss_markov(steps, h / memory, random) + lasting.draw(steps, h, random)
+            for _ in models
+        ]
+    )
     shift, turn = PLACED * random.normal(size=(count, 3)), TURNED * random.normal(size=count)
-    pushes[0], shift[0], turn[0] = 0.0, 0.0, 0.0
+    pushes[0], shift[0], turn[0] = lasting.mean, 0.0, 0.0
     return Chances(models, pushes, shift, turn)
 
 

@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.design.settings import Question
+from rovsim.design.steady_push import SteadyPush, measure_push
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.kalman import AxisMotion
@@ -105,6 +106,14 @@ class Knowledge:
     def count(self) -> int:
         """Readings that count, of the train runs."""
         return int(sum(run.settled.sum() for run in self.runs))
+
+    @cached_property
+    def steady(self) -> tuple[SteadyPush, ...]:
+        """What pushes the vehicle for long in the train runs, and each rival does not know of."""
+        return tuple(
+            measure_push(rival.hypothesis.model, self.runs, self.noise, self.motions)
+            for rival in self.rivals
+        )
 
     @property
     def deficit(self) -> float:

@@ -10,6 +10,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.design.authority import Authority
+from rovsim.design.doubts import doubt, no_flight
 from rovsim.design.flight import Chances, Envelope, draw_chances, predict
 from rovsim.design.knowledge import Knowledge, learn
 from rovsim.design.pilot import ModelPilot
@@ -38,7 +39,7 @@ class Plan:
 
     `axes` (j,) are those that sticks move.
     `usual` is None where a manoeuvre stays within the limits at no amplitude. `paths` (s, k+1, 13)
-    what could happen, the likeliest first, every `step` s.
+    what could happen, the likeliest first, every `step` s. `doubts`: what speaks against the model.
     """
 
     flight: Tried
@@ -51,6 +52,7 @@ class Plan:
     start: Array
     axes: Array
     site: Site
+    doubts: tuple[str, ...]
 
 
 def plan(
@@ -89,7 +91,7 @@ def plan(
     stage("searching")
     found = search(where, question.design, question.seed)
     stage("checking")
-    return _choose(where, usual, found, random)
+    return _choose(where, usual, found, question, random)
 
 
 def _open_range(
@@ -123,18 +125,13 @@ def _open_range(
 def _draw(
     known: Knowledge, count: int, around: Surroundings, random: np.random.Generator
 ) -> Chances:
-    """What could happen: the likeliest of each rival first, undisturbed, then others."""
+    """What could happen: the likeliest of each rival first, then others."""
     each = [rival.draw(max(2, count // len(known.rivals)), random) for rival in known.rivals]
-    models = [own[0] for own in each] + [one for own in each for one in own[1:]]
-    h = float(around.edges[1] - around.edges[0])
-    found = draw_chances(models, known.noise, len(around.edges) - 1, h, random)
-    for k in range(len(each)):
-        found.pushes[k], found.shift[k], found.turn[k] = 0.0, 0.0, 0.0
-    return found
+    return draw_chances(each, known, around.edges, random)
 
 
 def _choose(
-    where: Range, usual: Mapping[str, list[Tried]], found: Sequence[Tried],
+    where: Range, usual: Mapping[str, list[Tried]], found: Sequence[Tried], question: Question,
     random: np.random.Generator,
 ) -> Plan:  # fmt: skip
     """The best over what is not yet known, of those that surely stay within the limits.
@@ -150,13 +147,7 @@ def _choose(
     tried = [(one, _average(where, one, some)) for one in safe]
     everything = [*tried, *rated.values()]
     if not everything:
-        raise BadInput(
-            "no flight stays within the limits",
-            where="rovsim design",
-            expected="room for a flight that nobody steers",
-            remedy="Give the model that a diagnosis found: what a model lacks is a disturbance. Or "
-            "give fewer seconds, or wider design.limits.",
-        )
+        raise no_flight(where, question)
     flight, worth = max(everything, key=lambda one: one[1].told)
     paths = _paths(where, flight, many)
     assert paths is not None
@@ -164,6 +155,7 @@ def _choose(
     return Plan(
         flight, worth, {name: rated.get(name) for name in usual}, where.known, paths, step,
         where.envelope, where.pilot.start, where.axes, where.around.site,
+        doubt(where.known, question),
     )  # fmt: skip
 
 

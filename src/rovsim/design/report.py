@@ -50,6 +50,7 @@ def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment
         },
         keeps=_keep(plan, site),
         instructions=tuple(instruct(plan.flight, plan.axes, start, question.design.limits)),
+        warnings=plan.doubts,
     )
 
 

@@ -91,3 +91,4 @@ class Experiment(Result):
     baselines: dict[str, UsualManoeuvre]
     keeps: Keeps
     instructions: tuple[str, ...]
+    warnings: tuple[str, ...] = ()

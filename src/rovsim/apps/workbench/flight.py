@@ -161,6 +161,8 @@ class Flight:
 def _tell(found: Experiment, folder: Path) -> None:
     """What it is expected to tell, where it leads, and what to do."""
     section(f"A flight of {found.seconds:g} s")
+    for one in found.warnings:
+        text(one, "warning")
     _expected(found)
     text(tell_limits(found))
     png(folder / "experiment.png", "The predicted path from above and from the side, the commands")

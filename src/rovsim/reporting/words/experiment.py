@@ -14,7 +14,8 @@ def tell_experiment(found: Experiment) -> str:
     lines += [_std(name, one) for name, one in found.expects.std.items()]
     lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
     lines += [f"  {name:<11}{tell_share(one)}" for name, one in found.baselines.items()]
-    return "\n".join([*lines, "", tell_limits(found)])
+    warnings = [line for one in found.warnings for line in ("", f"Warning: {one}")]
+    return "\n".join([*lines, "", tell_limits(found), *warnings])
 
 
 def tell_share(usual: UsualManoeuvre) -> str:

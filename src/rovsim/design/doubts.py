@@ -1,0 +1,89 @@
+"""Whether the model follows its own train runs well enough to be flown without looking."""
+
+from typing import Sequence
+
+import numpy as np
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.design.knowledge import Knowledge
+from rovsim.design.search import Range
+from rovsim.design.settings import Question
+from rovsim.design.steady_push import SteadyPush
+from rovsim.design.sticks import ticks
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.model import Model
+from rovsim.simulation.replay import predict as replay
+from rovsim.simulation.windows import find_windows
+
+AFTER = 5.0  # s, the longest window of a comparison
+UNITS = ("m/s2",) * 3 + ("rad/s2",) * 3
+REMEDY = (
+    "Give the model that a diagnosis found: what a model lacks is a disturbance. Or give fewer "
+    "seconds, or wider design.limits."
+)
+DIAGNOSE = (
+    "Diagnose first (`rovsim diagnose`, `rovsim add`) and design with the model that this gives"
+)
+
+
+def doubt(known: Knowledge, question: Question) -> tuple[str, ...]:
+    """What speaks against the model, a sentence each; nothing where it follows its train runs.
+
+    Of two rivals the likelier one is judged.
+    """
+    rival = max(range(len(known.rivals)), key=lambda k: known.rivals[k].likelihood)
+    push, model = known.steady[rival], known.rivals[rival].hypothesis.model
+    if not push.large.any():
+        return ()
+    far = err(model, known.runs, question)
+    after = "" if far is None else f", and after {AFTER:g} s it is {far:.2g} m off"
+    return (
+        f"The model errs on the train runs: {_name(push)} push the vehicle all the time, of which "
+        f"it does not know{after}. {DIAGNOSE}.",
+    )
+
+
+def _name(push: SteadyPush) -> str:
+    return " and ".join(
+        f"{push.mean[i]:.2g} {UNITS[i]} in {AXES[i]}" for i in np.flatnonzero(push.large)
+    )
+
+
+def err(model: Model, runs: Sequence[ObservedRun], question: Question) -> float | None:
+    """How far (m, root mean square) replays of the runs are off after `AFTER` seconds.
+
+    None where no window is that long, or no place was measured.
+    """
+    squares = []
+    for run in runs:
+        motion = run.motion
+        spans = list(find_windows(motion, AFTER))
+        if not spans:
+            continue
+        found = replay(model, motion, spans, question.signals, question.replay)
+        ends = np.array([b - 1 if motion.binned else b for _, b in spans])
+        off = found.eta[ends, :3] - motion.eta[ends, :3]
+        squares += list(np.sum(off**2, axis=1))
+    known = np.array(squares)[np.isfinite(squares)] if squares else np.empty(0)
+    return float(np.sqrt(known.mean())) if len(known) else None
+
+
+def no_flight(where: Range, question: Question) -> BadInput:
+    """Why no flight stays within the limits, as the error to be raised."""
+    resting = np.zeros((len(ticks(question.seconds)), len(AXES)))
+    still = where.try_all([resting], [where.envelope.longest])[0]
+    doubts = doubt(where.known, question)
+    found = f"no flight of {question.seconds:g} s stays within the limits"
+    if still.excess > 0.0:
+        found += f": a vehicle told to stay where it is may already leave them{_by(still.excess)}"
+    return BadInput(
+        f"{found}. {doubts[0].removesuffix('.')}" if doubts else found,
+        where="rovsim design",
+        expected="room for a flight that nobody steers",
+        remedy="Or give fewer seconds, or wider design.limits." if doubts else REMEDY,
+    )
+
+
+def _by(excess: float) -> str:
+    return f" by {excess:.2g} m" if np.isfinite(excess) else ""

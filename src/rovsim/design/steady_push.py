@@ -1,0 +1,106 @@
+"""What pushes the vehicle for long in the train runs, and the model does not know of.
+
+The disturbance that `noise.py` fits remembers 3 s at most and has no mean: a force that lasts (a
+buoyancy, a current, drag that the model lacks) would not be foreseen. Here it is measured: an
+observer whose disturbance hardly forgets follows the runs, and its estimates are averaged over
+blocks. A mean that the short disturbance does not explain lasts, and so does such a spread.
+"""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+import scipy
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.innovations import observe
+from rovsim.diagnosis.observer.kalman import AxisMotion
+from rovsim.diagnosis.observer.noise import Noise, Tuning, tune
+from rovsim.diagnosis.observer.observed_run import BLOCK, ObservedRun
+from rovsim.dynamics.model import Model
+from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
+
+LASTING = 100.0  # s, memory of the observer's disturbance: longer than any block
+CHANCE = 2.0  # standard errors: less is not told from the short disturbance
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyPush:
+    """Accelerations per axis, m/s2 and rad/s2, in the body's axes.
+
+    `mean` (6,) lasts as long as a flight, a part of size `spread` (6,) about a block. `chance` (6,)
+    is the standard deviation that the short disturbance gives the mean over a block.
+    """
+
+    mean: Array
+    spread: Array
+    chance: Array
+
+    @staticmethod
+    def none() -> "SteadyPush":
+        """Of a model to which nothing is unknown but the short disturbance."""
+        return SteadyPush(np.zeros(6), np.zeros(6), np.zeros(6))
+
+    @staticmethod
+    def of_blocks(blocks: Array, seconds: float, noise: Noise) -> "SteadyPush":
+        """What lasts, of the mean disturbances (b, 6) of blocks of so many seconds each."""
+        if not len(blocks):
+            return SteadyPush.none()
+        chance = noise.level**2 * _averaged(noise.memory / seconds)
+        mean = blocks.mean(axis=0)
+        sure = mean**2 > CHANCE**2 * chance / len(blocks)
+        varied = blocks.var(axis=0, ddof=1) if len(blocks) > 1 else np.zeros(6)
+        more = np.maximum(varied - chance, 0.0)
+        return SteadyPush(mean * sure, np.sqrt(more), np.sqrt(chance))
+
+    @property
+    def large(self) -> Array:
+        """Axes (6,) along which more is missing than what passes by in a block."""
+        return np.abs(self.mean) > self.chance
+
+    def draw(self, steps: int, h: float, random: np.random.Generator) -> Array:
+        """Accelerations (steps, 6) over steps of h s."""
+        return self.mean + self.spread * draw_gauss_markov(steps, h / BLOCK, random)
+
+
+def _averaged(ratio: Array) -> Array:
+    """Variance of the mean over a block of a Gauss-Markov process of unit variance.
+
+    `ratio` (6,) of its memory to the block.
+    """
+    return np.asarray(2.0 * ratio * (1.0 - ratio * -np.expm1(-1.0 / ratio)))
+
+
+def measure_push(
+    model: Model, runs: Sequence[ObservedRun], noise: Noise, motions: Sequence[AxisMotion]
+) -> SteadyPush:
+    """What pushes the vehicle for long in the train runs, and a model does not know of.
+
+    Args:
+        model: fitted to them.
+        runs: the train runs.
+        noise: of the readings, and the short disturbance.
+        motions: how errors of the six axes go on.
+    """
+    slow = Noise(noise.level, np.full(6, LASTING), noise.reading)
+    blocks: list[Array] = []
+    for run in runs:
+        blocks += _average(run, _follow(model, run, tune(slow, motions, run)))
+    return SteadyPush.of_blocks(np.array(blocks) * model.body.free, BLOCK, noise)
+
+
+def _follow(model: Model, run: ObservedRun, tuning: Tuning) -> Array:
+    """The disturbance (n, 6) that an observer finds at the readings."""
+    e = np.nan_to_num(observe([model], run, tuning)[0])
+    found, decay = np.zeros(e.T.shape), tuning.decay(np.array([run.period]))[0]
+    for first, last in run.rows:
+        for i, gain in enumerate(tuning.gains[2]):
+            found[first:last, i] = scipy.signal.lfilter([gain], [1.0, -decay[i]], e[i, first:last])
+    return found
+
+
+def _average(run: ObservedRun, push: Array) -> list[Array]:
+    """Means (6,) over blocks of at least half of the usual length."""
+    number, settled = (run.time / BLOCK).astype(int), run.settled
+    parts = (push[settled & (number == k)] for k in np.unique(number[settled]))
+    return [own.mean(axis=0) for own in parts if len(own) * run.period > 0.5 * BLOCK]

@@ -1,0 +1,68 @@
+"""What lasts is foreseen: a model that lacks a force is not flown as if its noise were all."""
+
+import numpy as np
+import pytest
+
+from flown import observed
+from rovsim.design.doubts import doubt
+from rovsim.design.flight import draw_chances
+from rovsim.design.knowledge import learn
+from rovsim.design.settings import Question
+from rovsim.design.steady_push import SteadyPush
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.buoyancy import NetBuoyancy
+from rovsim.dynamics.model_file import EffectEntry, Value
+
+FORCE, HEAVE = 3.0, 2
+NOISE = Noise(np.full(6, 0.02), np.ones(6), np.full(6, 1e-3))
+QUESTION = Question(know=("linear_damping.surge",))
+
+
+def test_what_the_noise_explains_does_not_last():
+    chance = 0.02 * np.sqrt(2.0 * 0.1 * 0.9)  # of means over 10 s
+    blocks = 0.8 * chance * np.array([[1.0] * 6, [-1.0] * 6])
+    found = SteadyPush.of_blocks(blocks, 10.0, NOISE)
+    assert found.chance == pytest.approx(chance, rel=0.01)
+    assert not found.mean.any()
+    assert not found.large.any()
+    assert not SteadyPush.of_blocks(np.empty((0, 6)), 10.0, NOISE).mean.any()
+
+
+def test_a_mean_and_a_spread_beyond_the_noise_last():
+    blocks = np.zeros((4, 6))
+    blocks[:, HEAVE], blocks[:, 0] = -0.1, [0.1, -0.1, 0.1, -0.1]
+    found = SteadyPush.of_blocks(blocks, 10.0, NOISE)
+    assert found.mean == pytest.approx(np.eye(6)[HEAVE] * -0.1)
+    assert found.spread[0] > 0.1
+    assert not found.spread[1:].any()
+    assert list(np.flatnonzero(found.large)) == [HEAVE]
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    """The nominal model, and the run of a vehicle that something on board makes float."""
+    force = EffectEntry(effect="net_buoyancy", parameters={"force": Value(value=FORCE)})
+    folder = tmp_path_factory.mktemp("floating")
+    return observed(folder, duration=30.0, effects=(force,))
+
+
+def test_a_force_that_the_model_lacks_pushes_all_that_could_happen(flown):
+    model, runs = flown
+    found = learn(model, runs, QUESTION, built_in())
+    missing = -FORCE / model.M[HEAVE, HEAVE]
+    assert found.steady[0].mean[HEAVE] == pytest.approx(missing, rel=0.3)
+    edges, random = 0.05 * np.arange(201), np.random.default_rng(0)
+    chances = draw_chances([[model] * 20], found, edges, random)
+    assert chances.pushes[0, :, HEAVE] == pytest.approx(found.steady[0].mean[HEAVE])
+    assert chances.pushes[..., HEAVE].mean() == pytest.approx(missing, rel=0.4)
+    (told,) = doubt(found, QUESTION)
+    assert "in heave" in told
+    assert "after 5 s it is" in told
+
+
+def test_a_model_that_has_it_is_not_doubted(flown):
+    model = flown[0] + NetBuoyancy(force=FORCE)
+    found = learn(model, flown[1], QUESTION, built_in())
+    assert abs(found.steady[0].mean[HEAVE]) < 0.2 * FORCE / model.M[HEAVE, HEAVE]
+    assert doubt(found, QUESTION) == ()
