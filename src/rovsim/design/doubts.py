@@ -3,9 +3,11 @@
 from typing import Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.design.flight import Envelope
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.search import Range
 from rovsim.design.settings import Question
@@ -41,6 +43,19 @@ def doubt(known: Knowledge, question: Question) -> tuple[str, ...]:
     return (
         f"The model errs on the train runs: {_name(push)} push the vehicle all the time, of which "
         f"it does not know{after}. {DIAGNOSE}.",
+    )
+
+
+def warn_of_walls(paths: Array, start: Array, envelope: Envelope) -> tuple[str, ...]:
+    """How far paths (s, k+1, 13) lead from a start (3,) m NED, where no wall is known."""
+    open_axes = ~np.isfinite(envelope.box[:2]).all(axis=1)
+    if not open_axes.any():
+        return ()
+    far = float(np.linalg.norm(paths[:, :, :2] - start[:2], axis=-1).max())
+    return (
+        "campaign.yaml has no tank, so that no wall is known: the flight begins in the middle of "
+        f"where the train runs swam, and leads up to {far:.1f} m away. Keep that much free, or "
+        "describe the tank.",
     )
 
 

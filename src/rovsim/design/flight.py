@@ -6,6 +6,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
 from rovsim.core.rotations import exp, multiply, to_euler
 from rovsim.core.run import Commands
 from rovsim.design.knowledge import Knowledge
@@ -103,30 +104,41 @@ def predict(commands: Commands, start: Array, chances: Chances, around: Surround
 
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """Limits of a flight: `box` (3, 2) m NED in which CO stays, infinite where nothing is known."""
+    """Limits of a flight: `box` (3, 2) m NED in which CO stays, infinite where nothing is known.
+
+    `swum` (3, 2) m NED is where it was recorded, NaN along an axis that nobody measured.
+    """
 
     box: Array
     limits: FlightLimits
+    swum: Array
 
     @staticmethod
     def around(surroundings: Surroundings, limits: FlightLimits, floats: bool) -> "Envelope":
-        """Walls, floor and surface less the clearance, and the depths that are wanted."""
+        """Walls, floor and surface less the clearance, and of these the depths that are wanted.
+
+        Raises:
+            BadInput: they leave no room.
+        """
         tank = surroundings.site.tank
         box = tank + limits.clearance * np.array([1.0, -1.0])
-        if limits.depth:
-            surface = tank[2, 0] if np.isfinite(tank[2, 0]) else 0.0
-            box[2] = surface + np.array(limits.depth)
-        if floats:
-            box[2] = np.nan
         box[:, 0] = np.where(np.isfinite(box[:, 0]), box[:, 0], -np.inf)
         box[:, 1] = np.where(np.isfinite(box[:, 1]), box[:, 1], np.inf)
-        return Envelope(box, limits)
+        surface = tank[2, 0] if np.isfinite(tank[2, 0]) else 0.0
+        if limits.depth:
+            low, high = surface + np.array(limits.depth)
+            box[2] = max(box[2, 0], low), min(box[2, 1], high)
+        if floats:
+            box[2] = -np.inf, np.inf
+        _require_room(box, tank, surface, limits)
+        return Envelope(box, limits, surroundings.swum)
 
     @property
     def middle(self) -> Array:
-        """The place (3,) farthest from all walls; 0 along an axis without."""
+        """The place (3,) farthest from all walls; along an axis without, of where it swam."""
         known = np.isfinite(self.box).all(axis=1)
-        return np.where(known, np.where(known[:, None], self.box, 0.0).mean(axis=1), 0.0)
+        inside = np.where(known[:, None], self.box, np.nan_to_num(self.swum))
+        return np.asarray(inside.mean(axis=1))
 
     @property
     def longest(self) -> float:
@@ -161,6 +173,23 @@ class Envelope:
         place = paths[:, :, :3]
         inside = ((place > self.box[:, 0]) & (place < self.box[:, 1])).all()
         return bool(inside and self.excess(paths) == 0.0)
+
+
+def _require_room(box: Array, tank: Array, surface: float, limits: FlightLimits) -> None:
+    if (box[:, 0] < box[:, 1]).all():
+        return
+    axis = int(np.argmax(box[:, 0] >= box[:, 1]))
+    found = f"walls {tank[axis, 1] - tank[axis, 0]:.2f} m apart along {'xy'[axis % 2]}"
+    if axis == 2:
+        low, high = tank[2] - surface
+        wanted = f", design.limits.depth={list(limits.depth)}" if limits.depth else ""
+        found = f"floor and surface at {high:.2f} m and {low:.2f} m of depth{wanted}"
+    raise BadInput(
+        f"{found}, and a clearance of {limits.clearance:g} m: they leave no room",
+        where="rovsim design",
+        expected="some metres in which the vehicle's middle may move",
+        remedy="Choose design.limits.depth and design.limits.clearance that fit into the tank.",
+    )
 
 
 def reached(paths: Array) -> tuple[float, float, float]:

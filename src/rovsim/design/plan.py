@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.design.authority import Authority
-from rovsim.design.doubts import doubt, no_flight
+from rovsim.design.doubts import doubt, no_flight, warn_of_walls
 from rovsim.design.flight import Chances, Envelope, draw_chances, predict
 from rovsim.design.knowledge import Knowledge, learn
 from rovsim.design.pilot import ModelPilot
@@ -39,7 +39,7 @@ class Plan:
 
     `axes` (j,) are those that sticks move.
     `usual` is None where a manoeuvre stays within the limits at no amplitude. `paths` (s, k+1, 13)
-    what could happen, the likeliest first, every `step` s. `doubts`: what speaks against the model.
+    what could happen, the likeliest first, every `step` s. `doubts`: what speaks against it.
     """
 
     flight: Tried
@@ -155,7 +155,7 @@ def _choose(
     return Plan(
         flight, worth, {name: rated.get(name) for name in usual}, where.known, paths, step,
         where.envelope, where.pilot.start, where.axes, where.around.site,
-        doubt(where.known, question),
+        (*doubt(where.known, question), *warn_of_walls(paths, where.pilot.start, where.envelope)),
     )  # fmt: skip
 
 

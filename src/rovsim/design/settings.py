@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
+from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt, field_validator
 
 from rovsim.core.schema import Section
 from rovsim.measurement.signals.chain import SignalSettings
@@ -16,7 +16,7 @@ class FlightLimits(Section):
     breadth. `speed` m/s and `turn_rate` rad/s are what small vehicles reach; `tilt` rad is as far
     as cameras on the walls see all markers. `slew` shares of the full stick per second: a thumb
     moves a stick from end to end in 0.4 s. `depth` m below the surface, where less than the
-    tank allows is wanted.
+    tank allows is wanted: the least and the largest.
     """
 
     clearance: NonNegativeFloat = 0.4
@@ -24,7 +24,14 @@ class FlightLimits(Section):
     turn_rate: PositiveFloat = 1.5
     tilt: PositiveFloat = 0.5
     slew: PositiveFloat = 5.0
-    depth: tuple[float, float] | None = None
+    depth: tuple[NonNegativeFloat, NonNegativeFloat] | None = None
+
+    @field_validator("depth")
+    @classmethod
+    def _is_below(cls, depth: tuple[float, float] | None) -> tuple[float, float] | None:
+        if depth and depth[0] >= depth[1]:
+            raise ValueError("two depths in m below the surface, the lesser one first")
+        return depth
 
 
 class DesignSettings(Section):

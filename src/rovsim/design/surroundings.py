@@ -23,13 +23,15 @@ class Surroundings:
     """What flights have in common.
 
     `like` the train run whose clock, channels and log they would have; `seconds` each; `axes` (6,)
-    that a log holds demands of, `largest` (6,) N, N m a log of wrenches went up to.
+    that a log holds demands of, `largest` (6,) N, N m a log of wrenches went up to; `swum` (3, 2) m
+    NED between which the train runs moved, NaN along an axis that nobody measured.
     """
 
     like: ObservedRun
     seconds: float
     axes: Array
     largest: Array
+    swum: Array
     replay: ReplaySettings
     catalogue: Catalogue
 
@@ -112,4 +114,13 @@ def surround(
     for one in commanded:
         if one.motion.commands.kind == "wrench":
             largest = np.maximum(largest, np.max(np.abs(one.motion.commands.value), axis=0))
-    return Surroundings(like, seconds, held & like.free, largest, replay, catalogue)
+    return Surroundings(like, seconds, held & like.free, largest, _span(runs), replay, catalogue)
+
+
+def _span(runs: Sequence[ObservedRun]) -> Array:
+    """The least and largest place (3, 2) m NED of all runs; NaN where none was measured."""
+    places = np.concatenate([run.motion.eta[run.motion.usable, :3] for run in runs])
+    known = np.isfinite(places)
+    low = np.where(known, places, np.inf).min(axis=0, initial=np.inf)
+    high = np.where(known, places, -np.inf).max(axis=0, initial=-np.inf)
+    return np.where(known.any(axis=0)[:, None], np.stack([low, high], axis=1), np.nan)
