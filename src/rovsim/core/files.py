@@ -4,6 +4,7 @@ import errno
 import glob
 import json
 import os
+import shutil
 import tempfile
 from contextlib import contextmanager
 from hashlib import sha256
@@ -38,8 +39,32 @@ def appearing(path: Path) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
-def _beside(path: Path) -> Path:
-    """A new empty file in the folder of `path`, which is made if need be.
+@contextmanager
+def appearing_together(folder: Path, last: str) -> Iterator[Path]:
+    """Yield a temporary folder; on success its files move into `folder`, over those of their names.
+
+    All are complete by then, so that a full disk leaves the old ones. The file `last` is moved
+    after all others: where it is new, all are.
+
+    Raises:
+        BadInput: no file can be written there.
+    """
+    temporary = _beside(folder / last, a_folder=True)
+    try:
+        yield temporary
+        for path in sorted(temporary.iterdir(), key=lambda path: (path.name == last, path.name)):
+            os.replace(path, folder / path.name)
+    except BadInput as error:
+        where = error.where.replace(str(temporary), str(folder))
+        raise BadInput(
+            error.found, where=where, expected=error.expected, remedy=error.remedy
+        ) from None
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _beside(path: Path, a_folder: bool = False) -> Path:
+    """A new empty file (or folder) in the folder of `path`, which is made if need be.
 
     Its name tells what it becomes and who writes it: what a killed process left is cleared away.
     """
@@ -51,13 +76,22 @@ def _beside(path: Path) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         for old in path.parent.glob(f"{glob.escape(here)}*"):
             if not _lives(old.name.removeprefix(here).partition("-")[0]):
-                old.unlink(missing_ok=True)
+                _remove(old)
         mine = f"{here}{os.getpid()}-"
+        if a_folder:
+            return Path(tempfile.mkdtemp(dir=path.parent, prefix=mine))
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=mine, suffix=path.suffix)
     except OSError as error:
         raise _unwritable(path, error) from None
     os.close(handle)
     return Path(name)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _lives(process: str) -> bool:

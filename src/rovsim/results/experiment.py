@@ -74,7 +74,10 @@ class Keeps(Section):
 
 
 class Experiment(Result):
-    """A designed flight; its commands stand in `commands`, beside this file."""
+    """A designed flight; its commands stand in `commands`, beside this file.
+
+    `commands_sha256` says of which bytes: the start of one plan is not that of another's commands.
+    """
 
     noun: ClassVar[str] = "designed flight"
     command: ClassVar[str] = "`rovsim design`"
@@ -85,6 +88,7 @@ class Experiment(Result):
     between: tuple[str, ...] = ()
     know: tuple[str, ...] = ()
     commands: str = "experiment.csv"
+    commands_sha256: str | None = None
     start: Start
     manoeuvre: str
     expects: Expected

@@ -2,12 +2,13 @@
 
 import textwrap
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 
 from rovsim.application.pipeline.models import require_physics
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.core.errors import BadInput
-from rovsim.core.files import write_text
+from rovsim.core.files import appearing_together, write_text
 from rovsim.core.progress import staged
 from rovsim.core.run import Commands
 from rovsim.design.plan import STAGES, Plan, plan
@@ -62,12 +63,19 @@ def design(data: Measured, model: Model, question: Question, catalogue: Catalogu
 
 
 def write_flight(out: Path, found: Designed) -> None:
-    """Write the log, the picture, the instructions, and last what to expect."""
-    write_text(out / found.experiment.commands, found.log)
-    save(draw_flight(found.picture), out, "experiment")
-    steps = (textwrap.fill(one, WIDTH) for one in found.experiment.instructions)
-    write_text(out / "instructions.txt", "\n\n".join(steps) + "\n")
-    found.experiment.write(out / "experiment.json")
+    """Write the log, the picture, the instructions and what to expect: all of them, or nothing.
+
+    Raises:
+        BadInput: `out` cannot be written to.
+    """
+    digest = sha256(found.log.encode()).hexdigest()
+    experiment = found.experiment.model_copy(update={"commands_sha256": digest})
+    steps = (textwrap.fill(one, WIDTH) for one in experiment.instructions)
+    with appearing_together(out, last="experiment.json") as folder:
+        write_text(folder / experiment.commands, found.log)
+        save(draw_flight(found.picture), folder, "experiment")
+        write_text(folder / "instructions.txt", "\n\n".join(steps) + "\n")
+        experiment.write(folder / "experiment.json")
 
 
 def _refuse(question: Question) -> None:

@@ -1,6 +1,7 @@
 """A flight that a log of commands prescribes: sent as it is, nobody steers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,13 @@ from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands_csv import read_commands
-from rovsim.measurement.recording.readers import KIND
+from rovsim.measurement.recording.tidying import tidy_commands
 from rovsim.results.experiment import Experiment
 
 # How exactly people put a vehicle where a flight is to begin: standard deviations, m and rad.
 PLACED, TURNED = 0.05, 0.05
+# s: less shows nothing; more is no flight that nobody steers, and would fill the memory with states
+SHORTEST, LONGEST = 2.0, 1800.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +46,12 @@ class SentLog:
         return np.concatenate([place + PLACED * random.normal(size=3), attitude, np.zeros(6)])
 
 
+def described_by(path: Path) -> Path | None:
+    """The `experiment.json` beside a log of commands; None where there is none."""
+    beside = path.with_suffix(".json")
+    return beside if beside.is_file() else None
+
+
 def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
     """Read a log; where it starts says `experiment.json` beside it, if it is there.
 
@@ -52,22 +61,39 @@ def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
         up: the recordings' z axis points up.
 
     Raises:
-        BadInput: it is no log like these, or too short.
+        BadInput: it is no log like these, too short or too long, or not the one that is described
+            beside it.
     """
-    found = read_commands(path, log)
-    if len(found.time) < 2:
+    found, _ = tidy_commands(read_commands(path, log), path)
+    commands = replace(found, time=found.time - found.time[0])
+    step = float(np.median(np.diff(commands.time))) if len(commands.time) > 1 else 0.0
+    lasts = float(commands.time[-1]) + step
+    if not SHORTEST <= lasts <= LONGEST:
         raise BadInput(
-            f"{len(found.time)} lines of commands",
+            f"{len(found.time)} lines of commands, which last {lasts:.4g} s",
             where=path,
-            expected="a log of some seconds",
+            expected=f"a log of {SHORTEST:g} to {LONGEST:g} s",
             remedy="Give the experiment.csv that `rovsim design` wrote.",
         )
-    commands = Commands(found.time - found.time[0], found.value, KIND[log.kind])
-    lasts = float(commands.time[-1] + np.median(np.diff(commands.time)))
-    beside = path.with_suffix(".json")
-    if not beside.is_file():
+    beside = described_by(path)
+    if beside is None:
         return SentLog(commands, lasts)
-    start = Experiment.read(beside).start
+    flight = Experiment.read(beside)
+    _require_the_same(path, beside, flight)
     signs = HALF_TURN_X if up else np.ones(3)
+    start = flight.start
     place = np.array([start.x_m, start.y_m, start.z_m]) * signs
     return SentLog(commands, lasts, place, float(signs[2] * start.yaw_rad))
+
+
+def _require_the_same(path: Path, beside: Path, flight: Experiment) -> None:
+    """Another plan's start would lead this log into a wall."""
+    if flight.commands_sha256 in (None, sha256(path.read_bytes()).hexdigest()):
+        return
+    raise BadInput(
+        f"its commands are not those that {beside.name} describes",
+        where=path,
+        expected="the two files of one plan: what starts the vehicle stands in the other",
+        remedy=f"Run `rovsim design` again, or move {beside.name} away to fly the log from the "
+        "middle of the tank.",
+    )

@@ -18,6 +18,7 @@ from rovsim.apps.cli.output import say
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
+from rovsim.simulation.synthetic_tank.sent_log import described_by
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 
 
@@ -31,10 +32,23 @@ class Settings(CommandSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Fly the runs and write the folder."""
     out = Path(settings.out or f"results/{settings.tank.name}/raw")
-    tank = _with_flight(settings.tank, settings.fly) if settings.fly else settings.tank
+    tank, text = settings.tank, str(out)
+    if settings.fly:
+        tank, text = _with_flight(tank, settings.fly), f"{_begin(tank, settings.fly)}{text}"
     with reported("flying") as progress:
         make_campaign(tank, out, catalogue, progress)
-    say(settings, str(out), {"campaign": str(out)})
+    say(settings, text, {"campaign": str(out)})
+
+
+def _begin(tank: TankSettings, fly: str) -> str:
+    """Where a log is flown from, if no plan says so; else nothing."""
+    if described_by(Path(fly)):
+        return ""
+    x, y, z = (0.5 * sum(walls) for walls in (tank.tank.x, tank.tank.y, tank.tank.z))
+    return (
+        f"No {Path(fly).stem}.json lies beside {fly}: it is flown from the middle of the tank "
+        f"(x {x:g} m, y {y:g} m, z {z:g} m, yaw 0).\n"
+    )
 
 
 def _with_flight(tank: TankSettings, fly: str) -> TankSettings:
