@@ -131,7 +131,7 @@ def _draw(
 
 
 def _choose(
-    where: Range, usual: Mapping[str, list[Tried]], found: Sequence[Tried], question: Question,
+    where: Range, usual: Mapping[str, list[Tried]], found: Sequence[Array], question: Question,
     random: np.random.Generator,
 ) -> Plan:  # fmt: skip
     """The best over what is not yet known, of those that surely stay within the limits.
@@ -142,7 +142,8 @@ def _choose(
     some = [rival.draw(TAKEN_OVER, random) for rival in where.known.rivals]
     best = {name: _first_safe(where, own, many) for name, own in usual.items()}
     rated = {name: (one, _average(where, one, some)) for name, one in best.items() if one}
-    able = (one for one in found if one.worth and _paths(where, one, many) is not None)
+    again = (where.try_numbers(numbers[None])[0] for numbers in found)
+    able = (one for one in again if one.worth and _paths(where, one, many) is not None)
     safe = list(islice(able, FINALISTS))
     tried = [(one, _average(where, one, some)) for one in safe]
     everything = [*tried, *rated.values()]

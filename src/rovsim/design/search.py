@@ -7,7 +7,7 @@ than any within them, and the worse the farther beyond (Deb 2000).
 
 from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import Any, Sequence, cast
+from typing import Any, NamedTuple, Sequence, cast
 
 import numpy as np
 import scipy
@@ -26,6 +26,8 @@ from rovsim.design.worth import Worth, value
 FREQUENCIES, SQUARES, AMPLITUDES = (0.05, 0.12, 0.25, 0.5), (0.0, 0.8), (0.3, 0.6, 1.0)
 # Of the usual manoeuvres: sticks in the plane, and out of it.
 IN_PLANE, OUT_OF_PLANE = (0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0), (0.05, 0.1, 0.2, 0.4, 0.8)
+BEYOND = -100.0  # the rank from which on flights leave the limits
+AT_ONCE = 96  # flights side by side: ten minutes of each take some megabytes
 VERTICAL = np.array([2, 3, 4])  # heave, roll, pitch
 
 
@@ -111,14 +113,26 @@ def try_usual(where: Range, seed: int) -> dict[str, list[Tried]]:
     return found
 
 
-def search(where: Range, settings: DesignSettings, seed: int) -> list[Tried]:
-    """Flights in the order of what they tell."""
-    archive: list[Tried] = []
+class Rated(NamedTuple):
+    """What stays in memory of each flight that was tried: its numbers (k,) and its rank."""
+
+    numbers: Array
+    rank: float
+
+
+def search(where: Range, settings: DesignSettings, seed: int) -> list[Array]:
+    """Numbers (1 + 5 j,) of the flights within the limits, in the order of what they tell.
+
+    A flight is made again of its numbers when it is needed: each takes megabytes.
+    """
+    archive: list[Rated] = []
 
     def rate(x: Array) -> Array:
-        found = where.try_numbers(np.clip(x.T, 0.0, 1.0))
+        found = []
+        for some in _in_parts(np.clip(x.T, 0.0, 1.0)):
+            found += [Rated(one.numbers, _ranked(one)) for one in where.try_numbers(some)]
         archive.extend(found)
-        return np.array([-_ranked(one) for one in found])
+        return np.array([-one.rank for one in found])
 
     rate(_one_axis_each(where).T)
     first = _begin(archive, where, settings.population, np.random.default_rng(seed))
@@ -129,12 +143,18 @@ def search(where: Range, settings: DesignSettings, seed: int) -> list[Tried]:
         mutation=(0.3, 0.9), recombination=0.6, polish=False, updating="deferred",
         vectorized=True, rng=np.random.default_rng(seed),
     )  # fmt: skip
-    return sorted(archive, key=lambda one: -one.told)
+    able = [one for one in archive if one.rank > BEYOND]
+    return [one.numbers for one in sorted(able, key=lambda one: -one.rank)]
+
+
+def _in_parts(x: Array) -> list[Array]:
+    """Flights (m, k) in parts of which memory holds the paths and logs."""
+    return [x[first : first + AT_ONCE] for first in range(0, len(x), AT_ONCE)]
 
 
 def _ranked(one: Tried) -> float:
     """To be as large as possible; any flight within the limits above all beyond them."""
-    return float(np.log(max(one.told, 1e-12))) if one.worth else -100.0 - min(one.excess, 1e6)
+    return float(np.log(max(one.told, 1e-12))) if one.worth else BEYOND - min(one.excess, 1e6)
 
 
 def _one_axis_each(where: Range) -> Array:
@@ -153,12 +173,12 @@ def _one_axis_each(where: Range) -> Array:
 
 
 def _begin(
-    archive: Sequence[Tried], where: Range, population: int, random: np.random.Generator
+    archive: Sequence[Rated], where: Range, population: int, random: np.random.Generator
 ) -> Array:
     """The first generation: the best of each axis, alone and in pairs, and what chance adds."""
     best = []
     rows = np.array([one.numbers for one in archive])
-    told = np.array([_ranked(one) for one in archive])
+    told = np.array([one.rank for one in archive])
     for k in range(len(where.axes)):
         own = np.flatnonzero(rows[:, 1 + NUMBERS * k] > 0.0)
         best += [rows[i] for i in own[np.argsort(-told[own])][:2]]

@@ -2,11 +2,14 @@
 
 from typing import Annotated
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt, field_validator
+from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings
+
+# s: shorter shows little; longer nobody foresees, and a search over it would fill the memory
+SHORTEST, LONGEST = 10, 600
 
 
 class FlightLimits(Section):
@@ -38,8 +41,8 @@ class DesignSettings(Section):
     """How a flight is looked for: `population` flights in each of `rounds` rounds."""
 
     limits: FlightLimits = FlightLimits()
-    population: Annotated[int, Field(ge=8)] = 96
-    rounds: PositiveInt = 12
+    population: Annotated[int, Field(ge=8, le=10_000)] = 96
+    rounds: Annotated[int, Field(ge=1, le=1000)] = 12
 
 
 class Question(Section):
@@ -50,7 +53,7 @@ class Question(Section):
 
     between: tuple[str, ...] = ()
     know: tuple[str, ...] = ()
-    seconds: Annotated[float, Field(ge=10.0)] = 60.0
+    seconds: Annotated[float, Field(ge=SHORTEST, le=LONGEST)] = 60.0
     design: DesignSettings = DesignSettings()
     signals: SignalSettings = SignalSettings()
     replay: ReplaySettings = ReplaySettings()

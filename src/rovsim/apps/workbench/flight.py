@@ -24,7 +24,7 @@ from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.core.schema import checked
-from rovsim.design.settings import Question
+from rovsim.design.settings import LONGEST, SHORTEST, Question
 from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.words.experiment import size_of_odds, tell_limits, tell_share
 from rovsim.results.experiment import Experiment
@@ -32,7 +32,6 @@ from rovsim.results.experiment import Experiment
 TITLE, QUESTION = "Flight", "Which flight would tell most?"
 ASKED = {"between": "Which of two effects is it?", "know": "How large is a value?"}
 RIVALS = ("linear_damping", "quadratic_damping")  # where no diagnosis names two
-SHORTEST, LONGEST = 10, 600  # s
 
 
 class Flight:
