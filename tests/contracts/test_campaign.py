@@ -102,6 +102,8 @@ REFUSED = {
     "tank number": ({"tank.y": [0, "deep"]}, ["tank.y", "number"]),
     "no runs": ({"runs": []}, ["'runs'", "at least 1"]),
     "id with a slash": ({"runs.0.id": "a/b"}, ["runs.0.id", "'a/b'", "file name"]),
+    "id on two lines": ({"runs.0.id": "a\u2028b"}, ["runs.0.id", "file name"]),
+    "body on two lines": ({"mocap.body": "a\nb"}, ["mocap.body", "on one line"]),
     "id that leaves": ({"runs.0.id": ".."}, ["runs.0.id", "'..'", "file name"]),
     "empty id": ({"runs.0.id": ""}, ["runs.0.id", "file name"]),
     "name with a slash": ({"name": "../x"}, ["'name'", "file name"]),

@@ -2,10 +2,13 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import yaml
 
 from exported import READERS
 from rovsim.application.export.equation import Equation
@@ -130,6 +133,40 @@ def test_the_page_and_the_reader_know_it(name):
     page = (Path(__file__).parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
     assert f"`{name}`" in page
     assert name in READERS
+
+
+HOSTILE = "a\nsystem('id')\r\u2028\x1b\x85---\udcff%{\uffff\"'<&]]>"
+
+
+@EVERY
+def test_a_name_cannot_leave_the_place_it_stands_in(name):
+    world = model()
+    units = list(world.vehicle.thrusters.units)
+    units[0] = units[0].model_copy(update={"name": HOSTILE})
+    layout = world.vehicle.thrusters.model_copy(update={"units": tuple(units)})
+    vehicle = world.vehicle.model_copy(update={"name": HOSTILE, "thrusters": layout})
+    hostile = replace(world, name=HOSTILE, vehicle=vehicle)
+    chosen = target(name)
+    plain = chosen.text(Equation(world), [world.name])
+    text = chosen.text(Equation(hostile), [HOSTILE])
+    READABLE[chosen.suffix](text, plain)
+
+
+def _same_lines(text, plain):
+    assert not re.search(r"^\s*system", text, re.MULTILINE)
+    assert len(text.splitlines()) == len(plain.splitlines())
+
+
+def _same_name(text, plain):
+    _same_lines(text.partition("name: ")[0], plain.partition("name: ")[0])
+    assert yaml.safe_load(text)["name"] == HOSTILE
+
+
+def _is_xml(text, _):
+    ElementTree.fromstring(text)
+
+
+READABLE = {".m": _same_lines, ".yaml": _same_name, ".scn": _is_xml, ".sdf": _is_xml}
 
 
 def test_what_is_left_out_is_as_large_as_its_force():

@@ -42,6 +42,13 @@ def test_a_bad_model_file_is_explained(text, tmp_path):
         read_model(path, built_in())
 
 
+def test_a_name_that_breaks_its_line_is_refused(tmp_path):
+    path = tmp_path / "x\nquit.yaml"
+    path.write_text(HEAVY)
+    with pytest.raises(BadInput, match="control characters"):
+        read_model(path, built_in())
+
+
 def changed(tmp_path, change):
     content = yaml.safe_load(NOMINAL.read_text())
     change(content)
@@ -68,6 +75,8 @@ def test_a_vehicle_can_be_a_path_or_stand_in_the_model(tmp_path):
         (lambda v: v["thrusters"]["units"][3].update(direction=[1, 1, 0]), "length 1.414"),
         (lambda v: v["hydrodynamics"].update(added_mas=[1]), "Did you mean 'added_mass'"),
         (lambda v: v["rigid_body"].update(mass=-1), "greater than 0"),
+        (lambda v: v.update(name="x\nquit"), "'name' .* on one line"),
+        (lambda v: v["thrusters"]["units"][0].update(name="a\x1b"), "units.0.name' .* on one line"),
     ],
 )
 def test_a_bad_vehicle_file_is_explained(change, message, tmp_path):

@@ -27,8 +27,13 @@ class BadInput(RovsimError):
 
 def shortened(text: str) -> str:
     """A text on one line of bounded length: what a file holds may be anything."""
-    line = "".join(c if c.isprintable() else repr(c)[1:-1] for c in text[: LONGEST + 1])
+    line = one_line(text[: LONGEST + 1])
     return line if len(line) <= LONGEST else f"{line[:LONGEST]} …"
+
+
+def one_line(text: str) -> str:
+    """A text without line breaks and control characters: these as they are typed in Python."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def _rebuild(found: str, where: str, expected: str, remedy: str) -> BadInput:

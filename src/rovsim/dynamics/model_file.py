@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import plain
+from rovsim.core.names import name_of
 from rovsim.core.schema import Number, PathText, Section, checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
@@ -181,7 +182,7 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
         residual = read_residual(file.residual, path.parent, f"{path}, residual")
     known = catalogue.on(vehicle)
     added = build_effects(file.effects, known)
-    model = Model(path.stem, vehicle, (*vehicle.effects(), *added), residual)
+    model = Model(name_of(path), vehicle, (*vehicle.effects(), *added), residual)
     _ = model.M  # refuse a model that cannot move
     if file.uncertainty is None or residual is not None:
         return model

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from rovsim import AXES
+from rovsim.core.names import Name, is_name
 from rovsim.core.rotations import BodyAxes, WorldAxes
 from rovsim.core.schema import Axis, PathText, Section
 from rovsim.measurement.sensors import Sensors
@@ -18,11 +19,11 @@ def _as_text(value: Any) -> Any:
 
 def _file_name(text: str) -> str:
     """Refuse what cannot be part of a path on every system, or of a Snakemake wildcard."""
-    unsafe = re.search(r'[/\\:*?"<>|{}\x00-\x1f\x7f]', text)
+    unsafe = re.search(r'[/\\:*?"<>|{}]', text) or not is_name(text)
     if unsafe or not text or len(text) > 100 or text[0] in ".-~" or text != text.strip():
         raise ValueError(
             'a name that can be a file name: at most 100 characters, no / \\ : * ? " < > | { }, '
-            "no '.', '-' or '~' in front, no space around it"
+            "no control characters, no '.', '-' or '~' in front, no space around it"
         )
     return text
 
@@ -39,7 +40,7 @@ def _distinct(names: list[str]) -> list[str]:
     return names
 
 
-Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1)]
+Text = Annotated[Name, BeforeValidator(_as_text), Field(min_length=1)]
 Place = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
 FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
 Interval = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_interval)]
@@ -73,7 +74,7 @@ class Mocap(Section):
     """
 
     format: str
-    body: Annotated[str, BeforeValidator(_as_text)] = ""
+    body: Annotated[Name, BeforeValidator(_as_text)] = ""
     world_axes: WorldAxes
     body_axes: BodyAxes
     velocity: Literal["mean", "instant"] = "mean"

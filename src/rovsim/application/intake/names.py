@@ -3,6 +3,8 @@
 import re
 from typing import Sequence
 
+from rovsim.core.names import is_name
+
 # Words that say what a file is and not which run.
 ROLES = (
     "6d|6dof_?export|poses?|mocap|motion|track(ing)?|qtm|qualisys|motive|optitrack|take|vicon|export|"
@@ -39,7 +41,8 @@ def _short(stem: str) -> str:
 
 def _safe(name: str) -> str:
     """A name that can be part of a file name (as campaign.yaml demands)."""
-    return re.sub(r'[/\\:*?"<>|{}\x00-\x1f\x7f]', "-", name).strip().lstrip(".-~ ")[:80].strip()
+    whole = "".join(c if is_name(c) else "-" for c in name)
+    return re.sub(r'[/\\:*?"<>|{}]', "-", whole).strip().lstrip(".-~ ")[:80].strip()
 
 
 def campaign_name(folder: str) -> str:

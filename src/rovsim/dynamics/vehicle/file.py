@@ -7,6 +7,7 @@ from numpy import ndarray as Array
 from pydantic import Field, PositiveFloat
 
 from rovsim import AXES
+from rovsim.core.names import Name
 from rovsim.core.schema import Axis, Section
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
@@ -72,7 +73,7 @@ class Waterplane(Section):
 class Vehicle(Section):
     """A vehicle file, as in conf/vehicle/."""
 
-    name: str
+    name: Name
     fluid: Fluid
     rigid_body: DryVehicle
     hydrodynamics: Hydrodynamics

@@ -9,6 +9,7 @@ from pydantic import Field, PositiveFloat
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.names import Name
 from rovsim.core.schema import Section
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients
@@ -27,7 +28,7 @@ class Thruster(Section):
     surface stands in its wake.
     """
 
-    name: str
+    name: Name
     spin: Annotated[int, Field(ge=-1, le=1)] = 0
     position: Triple
     direction: Triple

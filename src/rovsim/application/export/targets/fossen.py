@@ -11,6 +11,7 @@ import numpy as np
 from rovsim.application.export.equation import Equation
 from rovsim.application.export.holding import Left
 from rovsim.application.export.targets import mss
+from rovsim.core.errors import one_line
 from rovsim.core.files import plain
 from rovsim.core.yaml_files import yaml_text
 from rovsim.dynamics.effects.base import Effect
@@ -46,7 +47,7 @@ def further(model: Model) -> Sequence[Left]:
 def text(equation: Equation, notes: Sequence[str]) -> str:
     """The file."""
     lines = [*notes, *EQUATION.strip("\n").splitlines()]
-    return "".join(f"# {line}".rstrip() + "\n" for line in lines) + yaml_text(
+    return "".join(f"# {one_line(line)}".rstrip() + "\n" for line in lines) + yaml_text(
         plain(_of(equation)), rows=True
     )
 

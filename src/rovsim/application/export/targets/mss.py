@@ -14,6 +14,7 @@ from numpy import ndarray as Array
 
 from rovsim.application.export.equation import Equation
 from rovsim.application.export.holding import DAMPING, INERTIA, RIGID, STATIC, Left, nothing, whole
+from rovsim.core.errors import one_line
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.cross_flow import parse_product
@@ -37,6 +38,8 @@ MORE = (
     "held_axes",
 )
 WHOLE = {*RIGID, *DAMPING, *INERTIA, *STATIC, *MORE}
+
+LONGEST = 63  # characters of a name (namelengthmax)
 
 KINEMATICS = """
 function [R, T] = attitude(a)
@@ -85,11 +88,11 @@ def text(equation: Equation, notes: Sequence[str]) -> str:
     name = _identifier(equation.model.name)
     lines = [
         f"function [xdot, U, M] = {name}(x, ui)",
-        *(f"% {line}".rstrip() for line in notes),
+        *map(_comment, notes),
         "%",
         "% x  = [u; v; w; p; q; r; north; east; down; phi; theta; psi], or with a unit quaternion",
         "%      [w; x; y; z] in place of the angles: SI, body axes FRD at CO, world NED.",
-        f"% ui = [{'; '.join(equation.model.vehicle.command_columns)}]",
+        _comment(f"ui = [{'; '.join(equation.model.vehicle.command_columns)}]"),
         "% xdot: rate of change of x; U: speed m/s; M: inertia with added mass.",
         *_constants(equation),
         *_motion(equation),
@@ -102,10 +105,15 @@ def text(equation: Equation, notes: Sequence[str]) -> str:
     return "\n".join(lines) + "\n" + KINEMATICS
 
 
+def _comment(text: str) -> str:
+    """A comment: one line, for the next would be a command."""
+    return f"% {one_line(text)}".rstrip()
+
+
 def _identifier(name: str) -> str:
     """A name that MATLAB takes."""
     plain = re.sub(r"\W", "_", name, flags=re.ASCII)
-    return plain if plain[:1].isalpha() else f"vehicle_{plain}"
+    return (plain if plain[:1].isalpha() else f"vehicle_{plain}")[:LONGEST]
 
 
 def _constants(equation: Equation) -> list[str]:

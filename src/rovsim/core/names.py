@@ -1,0 +1,47 @@
+"""Names that people give: one line of text, wherever they are shown or written.
+
+A name that breaks its line leaves the comment, text or cell it stands in: in a MATLAB function the
+rest of it would be a command.
+"""
+
+from pathlib import Path
+from typing import Annotated
+from unicodedata import category
+
+from pydantic import AfterValidator
+
+from rovsim.core.errors import BadInput
+
+# Unicode's control characters, halves of pairs, and separators of lines and of paragraphs.
+BREAKING = ("Cc", "Cs", "Zl", "Zp")
+EXPECTED = "a name on one line, without control characters"
+
+
+def is_name(text: str) -> bool:
+    """Whether a text stays on its line, whatever it is written into."""
+    return not any(category(c) in BREAKING for c in text)
+
+
+def _name(text: str) -> str:
+    if not is_name(text):
+        raise ValueError(EXPECTED)
+    return text
+
+
+Name = Annotated[str, AfterValidator(_name)]
+
+
+def name_of(path: Path) -> str:
+    """What is called by its file: the stem of the file's name.
+
+    Raises:
+        BadInput: the file has a name that nothing can be called by.
+    """
+    if is_name(path.stem):
+        return path.stem
+    raise BadInput(
+        "the name of this file holds control characters",
+        where=path,
+        expected=EXPECTED,
+        remedy="Rename the file.",
+    )
