@@ -9,18 +9,20 @@ from pathlib import Path
 import numpy as np
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import appearing
+from rovsim.core.files import write_bytes
 
 SPARE = 1 << 26  # bytes that an archive may unpack to beyond ten times its size
 
 
 def write_arrays(path: Path, **arrays: np.ndarray) -> None:
     """Write arrays as an `.npz` whose bytes depend on the arrays alone (no time stamps)."""
-    with appearing(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
         for name, array in arrays.items():
             buffer = io.BytesIO()
             np.lib.format.write_array(buffer, np.asarray(array), allow_pickle=False)
             archive.writestr(zipfile.ZipInfo(f"{name}.npy"), buffer.getvalue())
+    write_bytes(path, content.getvalue())
 
 
 def read_arrays(path: Path) -> dict[str, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all: text and JSON. Nothing read here is ever executed."""
+"""Files that appear whole or not at all. Nothing read here is ever executed."""
 
 import errno
 import glob
@@ -40,6 +40,27 @@ def appearing(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
+def folder_beside(path: Path, told: Path | None = None) -> Iterator[Path]:
+    """Yield a new folder beside `path`, for files that then move there; it goes in the end.
+
+    Messages call it `told`, or `path`: nobody knows that folder.
+
+    Raises:
+        BadInput: no folder can be made there, or a file in it not be written.
+    """
+    folder = _beside(path, a_folder=True)
+    try:
+        yield folder
+    except BadInput as error:
+        where = error.where.replace(str(folder), str(told or path), 1)
+        raise BadInput(
+            error.found, where=where, expected=error.expected, remedy=error.remedy
+        ) from None
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
 def appearing_together(folder: Path, last: str) -> Iterator[Path]:
     """Yield a temporary folder; on success its files move into `folder`, over those of their names.
 
@@ -49,18 +70,10 @@ def appearing_together(folder: Path, last: str) -> Iterator[Path]:
     Raises:
         BadInput: no file can be written there.
     """
-    temporary = _beside(folder / last, a_folder=True)
-    try:
-        yield temporary
-        for path in sorted(temporary.iterdir(), key=lambda path: (path.name == last, path.name)):
+    with folder_beside(folder / last, told=folder) as made:
+        yield made
+        for path in sorted(made.iterdir(), key=lambda path: (path.name == last, path.name)):
             os.replace(path, folder / path.name)
-    except BadInput as error:
-        where = error.where.replace(str(temporary), str(folder))
-        raise BadInput(
-            error.found, where=where, expected=error.expected, remedy=error.remedy
-        ) from None
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _beside(path: Path, a_folder: bool = False) -> Path:
@@ -71,7 +84,7 @@ def _beside(path: Path, a_folder: bool = False) -> Path:
     file = sha256(os.fsencode(path.name)).hexdigest()[:12]
     here = f".{file}-{gethostname()[:40]}-"
     try:
-        if path.is_dir():
+        if path.is_dir() and not a_folder:
             raise IsADirectoryError(errno.EISDIR, "a folder of that name is in the way")
         path.parent.mkdir(parents=True, exist_ok=True)
         for old in path.parent.glob(f"{glob.escape(here)}*"):
@@ -114,10 +127,21 @@ def _unwritable(path: Path, error: OSError) -> BadInput:
     )
 
 
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file atomically; whoever makes the content never sees a disk, which may be full."""
+    with appearing(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def copy_file(source: Path, path: Path) -> None:
+    """Copy a file atomically."""
+    with source.open("rb") as content, appearing(path) as temporary, temporary.open("wb") as copy:
+        shutil.copyfileobj(content, copy)
+
+
 def write_text(path: Path, text: str) -> None:
     """Write UTF-8 text atomically."""
-    with appearing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    write_bytes(path, text.encode("utf-8"))
 
 
 def write_json(path: Path, content: Any) -> None:

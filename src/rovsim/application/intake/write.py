@@ -1,12 +1,11 @@
 """A proposal becomes campaign.yaml, beside the copies that it needs."""
 
-import shutil
 from pathlib import Path
 
 from rovsim.application.intake.proposal import Proposal
 from rovsim.application.intake.yaml_file import as_yaml
 from rovsim.core.errors import BadInput
-from rovsim.core.files import appearing, write_text
+from rovsim.core.files import copy_file, write_text
 
 FILE = "campaign.yaml"
 
@@ -39,7 +38,6 @@ def write_proposal(proposal: Proposal, out: Path, force: bool = False) -> Path:
     """
     check_place(out, force)
     for place, name in proposal.copies.items():
-        with appearing(out / name) as temporary:
-            shutil.copyfile(place, temporary)
+        copy_file(place, out / name)
     write_text(out / FILE, as_yaml(proposal))
     return out / FILE

@@ -17,6 +17,7 @@ FILES = {"init": "files"}  # commands that take files by themselves, and the key
 FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
 OPTIONS = (*FLAGS, "-m", "--multirun", "-h", "--help")
 COMMANDS = Path(__file__).with_name("commands")
+NAMELESS = "a file of $ROVSIM_CACHE or $TMPDIR"  # those of results are named by `core.files`
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -31,8 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except OSError as error:  # a full disk, a file that may not be read, a name too long
         if isinstance(error, BrokenPipeError):
             sys.exit(141)
-        where = f"{error.filename}: " if error.filename else ""
-        print(f"rovsim: {where}{error.strerror or error}", file=sys.stderr)
+        print(f"rovsim: {error.filename or NAMELESS}: {error.strerror or error}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
         print("rovsim: interrupted; what was finished is kept.", file=sys.stderr)

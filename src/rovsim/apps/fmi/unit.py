@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import appearing
+from rovsim.core.files import copy_file
 from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import write_model
@@ -32,7 +32,7 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
         )  # fmt: skip
     from pythonfmu.builder import FmuBuilder
 
-    with TemporaryDirectory() as folder, appearing(out) as temporary:
+    with TemporaryDirectory() as folder:
         inside = Path(folder, "inside")
         inside.mkdir()
         files = _packed(model, source, inside)
@@ -42,7 +42,7 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
             built = FmuBuilder.build_FMU(script, Path(folder, "unit.fmu"), files)
         finally:
             sys.path[:] = before  # pythonfmu leaves the script's folder there
-        shutil.copyfile(built, temporary)
+        copy_file(Path(built), out)
 
 
 def _packed(model: Model, source: Path | None, folder: Path) -> list[Path]:
@@ -50,5 +50,5 @@ def _packed(model: Model, source: Path | None, folder: Path) -> list[Path]:
     residual = read_yaml(source).get("residual") if source else None
     write_model(model, folder / MODEL, residual=residual)
     if source and residual:
-        shutil.copyfile(source.parent / residual["file"], folder / residual["file"])
+        copy_file(source.parent / residual["file"], folder / residual["file"])
     return sorted(folder.iterdir())

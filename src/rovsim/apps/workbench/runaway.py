@@ -37,5 +37,5 @@ def _when(time: Array, predicted: Prediction, at: float) -> str:
 def cut(values: Array, measured: Array) -> Array:
     """Values (n,), NaN where they are too far from the measured ones (n,) to share a chart."""
     near = np.where(np.isfinite(measured), measured, np.nan)
-    low, high, _ = limits(near, [np.clip(values, -FASTEST, FASTEST)])
+    low, high = limits(near, [np.clip(values, -FASTEST, FASTEST)])
     return np.where((values >= low) & (values <= high), values, np.nan)

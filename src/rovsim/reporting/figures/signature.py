@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 from PIL import Image
 
 from rovsim import AXES
-from rovsim.core.files import appearing
+from rovsim.core.files import write_bytes
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.reporting.figures.palette import FAMILIES, Style
@@ -72,8 +72,9 @@ def write(figure: Figure, path: Path) -> None:
     with styled():
         figure.savefig(buffer, format="png", dpi=PIXELS / (WIDTH * MM), metadata={"Software": None})
     small = Image.open(buffer).convert("RGB").quantize(COLORS)
-    with appearing(path) as temporary:
-        small.save(temporary, format="PNG", optimize=True)
+    written = io.BytesIO()
+    small.save(written, format="PNG", optimize=True)
+    write_bytes(path, written.getvalue())
 
 
 def _bins(axes: Axes, seen: Seen) -> None:

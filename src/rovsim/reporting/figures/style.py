@@ -7,6 +7,7 @@ may be drawn from several threads and leave no state behind.
 import threading
 import warnings
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Iterator
 
@@ -16,7 +17,7 @@ from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import appearing
+from rovsim.core.files import write_bytes
 
 WIDTH = 150.0  # mm: text width of an A4 page with 30 mm margins
 FONT_SIZE = 9.0  # pt: one step below 11 pt body text
@@ -88,7 +89,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         )
     with styled():
         _lay_out(figure)
-        return [draw(figure, folder / f"{name}.{kind}") for kind, draw in _KINDS.items()]
+        return [_save(figure, folder / f"{name}.{kind}") for kind in _KINDS]
 
 
 def _lay_out(figure: Figure) -> None:
@@ -103,18 +104,21 @@ def _lay_out(figure: Figure) -> None:
 # `Figure.savefig` draws twice, the first time in order to lay out; its canvases draw once.
 
 
-def _save_pdf(figure: Figure, path: Path) -> Path:
-    with appearing(path) as temporary:
-        # it would otherwise carry the time of writing
-        FigureCanvasPdf(figure).print_pdf(temporary, metadata={"CreationDate": None})
-    return path
+def _draw_pdf(figure: Figure, content: BytesIO) -> None:
+    # it would otherwise carry the time of writing
+    FigureCanvasPdf(figure).print_pdf(content, metadata={"CreationDate": None})
 
 
-def _save_png(figure: Figure, path: Path) -> Path:
+def _draw_png(figure: Figure, content: BytesIO) -> None:
     figure.set_dpi(DPI)  # the PDF's canvas leaves its own
-    with appearing(path) as temporary:
-        FigureCanvasAgg(figure).print_png(temporary)
+    FigureCanvasAgg(figure).print_png(content)
+
+
+_KINDS = {"pdf": _draw_pdf, "png": _draw_png}
+
+
+def _save(figure: Figure, path: Path) -> Path:
+    content = BytesIO()  # what fails amid a file of its own leaves the PDF's canvas in disorder
+    _KINDS[path.suffix[1:]](figure, content)
+    write_bytes(path, content.getvalue())
     return path
-
-
-_KINDS = {"pdf": _save_pdf, "png": _save_png}

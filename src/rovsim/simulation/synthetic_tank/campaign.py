@@ -1,15 +1,13 @@
 """A whole synthetic campaign: its recordings appear complete or not at all."""
 
 import os
-import shutil
-import tempfile
 from pathlib import Path
 from typing import Callable, Sequence
 
 import numpy as np
 
 from rovsim.core.errors import BadInput, RovsimError
-from rovsim.core.files import write_text
+from rovsim.core.files import copy_file, folder_beside, write_text
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
@@ -76,14 +74,10 @@ def make_campaign(
     _refuse_other_files(out)
     check_ids(describe(settings).runs, "tank")  # before the flights, which take long
     model = true_model(settings, catalogue, unlisted)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    folder = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}-"))
-    try:
+    with folder_beside(out) as folder:
         _record_all(settings, model, unlisted, folder, progress)
         folder.chmod(0o755)
         _move(folder, out)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 CAMPAIGN = "campaign.yaml"
@@ -145,7 +139,7 @@ def _record_all(
     campaign, truth = describe(settings), seal(settings, model.added[:hidden], unlisted)
     write_yaml(folder / CAMPAIGN, campaign.model_dump(mode="json", exclude_unset=True))
     if vehicle := own_vehicle(settings):
-        shutil.copyfile(vehicle, folder / VEHICLE)
+        copy_file(Path(vehicle), folder / VEHICLE)
     beyond = None if truth.outside else {"outside"}
     write_yaml(folder / SEALED, truth.model_dump(mode="json", exclude=beyond))
 

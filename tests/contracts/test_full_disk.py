@@ -1,0 +1,109 @@
+"""A full disk, a folder that may not be written to: one message, whole files, what was there stays.
+
+The limit on the size of a file stands for the disk (EFBIG for ENOSPC); as root, a disk of 256 kB.
+"""
+
+import json
+import os
+import resource
+import subprocess
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from rovsim.apps.cli.main import main
+from rovsim.core.array_files import write_arrays
+from rovsim.core.errors import BadInput
+from rovsim.core.files import copy_file, folder_beside, write_bytes, write_json, write_text
+from rovsim.reporting.figures import signature, style
+
+
+@contextmanager
+def largest(size):
+    """No file that this process writes may become larger, in bytes."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def _drawn():
+    figure = Figure()
+    figure.subplots().plot(np.random.default_rng(0).normal(size=5000))
+    return figure
+
+
+def _copied(path):
+    source = path.with_name("source")
+    source.symlink_to(np.__file__)
+    copy_file(source, path)
+
+
+WRITERS = {
+    "x.json": lambda path: write_json(path, list(range(10_000))),
+    "x.txt": lambda path: write_text(path, "x" * 10_000),
+    "x.npz": lambda path: write_arrays(path, x=np.arange(10_000.0)),
+    "x.copy": _copied,
+    "x.pdf": lambda path: style.save(_drawn(), path.parent, "x"),
+    "x.png": lambda path: signature.write(_drawn(), path),
+}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_a_full_disk_is_one_message_and_leaves_what_was_there(name, tmp_path):
+    path = tmp_path / name
+    write_bytes(path, b"whole")
+    with largest(1000), pytest.raises(BadInput, match=rf"{name}: cannot be written .* make room"):
+        WRITERS[name](path)
+    assert path.read_bytes() == b"whole"
+    assert {p.name for p in tmp_path.iterdir()} - {"source"} == {name}
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A disk of 256 kB."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    words = ["mount", "-t", "tmpfs", "-o", "size=256k", "none", str(place)]
+    if os.geteuid() or subprocess.run(words, capture_output=True, check=False).returncode:
+        pytest.skip("only root mounts a disk")
+    yield place
+    subprocess.run(["umount", str(place)], check=True)
+
+
+@pytest.mark.usefixtures("few_figures")
+def test_a_command_on_a_full_disk_says_which_file(small_disk, tmp_path, capsys):
+    main(["tank", "tank=tiny", "tank.duration=8", f"out={tmp_path}/tank"])
+    write_bytes(small_disk / "others", bytes(240 << 10))
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as ended:
+        main(["compare", f"campaign={tmp_path}/tank", f"out={small_disk}/out", "--quiet"])
+    said = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert said.startswith(f"rovsim: {small_disk}/out/")
+    assert "cannot be written (No space left on device)" in said
+    assert "Traceback" not in said
+    for path in (small_disk / "out").rglob("*"):
+        assert not path.name.startswith("."), "a temporary file is left"
+        if path.suffix == ".json":
+            json.loads(path.read_text())
+
+
+def test_a_tank_on_a_full_disk_leaves_no_folder(tmp_path):
+    words = ["tank", "tank=tiny", "tank.duration=8", f"out={tmp_path}/new"]
+    with largest(1000), pytest.raises(SystemExit):
+        main(words)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_message_names_the_place_that_was_meant(tmp_path):
+    def write():
+        with folder_beside(tmp_path / "new") as folder:
+            write_text(folder / "x.txt", "x" * 10_000)
+
+    with largest(1000), pytest.raises(BadInput, match=rf"^{tmp_path}/new/x\.txt: cannot"):
+        write()
