@@ -170,6 +170,25 @@ def test_another_model_does_not_inherit_it(tmp_path):
         ("instead: [{probability: 2, effects: []}]", "probability"),
         ("instead: [{probability: 0.1, effects: [{effect: nobody}]}]", "nobody"),
         ("noise: 3", "noise"),
+        ("noise: {disturbance: [-1, 1, 1, 1, 1, 1]}", "noise.disturbance.0' is -1. .*equal to 0"),
+        ("noise: {reading: [1, 1, 1, 1, 1, 1e300]}", "noise of at most 1000"),
+        ("noise: {memory_s: [0, 1, 1, 1, 1, 1]}", "memory_s.0' is 0. .*greater than 0"),
+        ("noise: {period_s: 0}", "period_s' is 0. .*greater than 0"),
+        ("noise: {colour: [1, 1, 1]}", "noise.colour' .* six values"),
+        ("noise: {colour: [1, 1, 1, 1, 1, .inf]}", "noise.colour"),
+        ("correlation: {between: [drag.surge], rows: [[1.0]]}", "correlation of 'drag.surge'"),
+        ("correlation: {between: [a, a], rows: [[1], [1, 1]]}", "each named once"),
+        ("correlation: {between: [a, b, c], rows: [[1], [-1, 1], [-1, -1, 1]]}", "all at once"),
+        (
+            "instead: [{probability: 0.1, effects: [{effect: lift, parameters: {coefficient: "
+            "{value: 1, std: -1}}}]}]",
+            "std' is -1",
+        ),
+        (
+            "instead: [{probability: 0.1, effects: [{effect: lift, parameters: {coefficient: "
+            "{value: 1, std: 1}}}], correlation: {between: [lift.coeff], rows: [[1]]}}]",
+            "Did you mean 'lift.coefficient'",
+        ),
     ],
 )
 def test_a_file_that_says_it_wrongly_is_refused(text, said, tmp_path):

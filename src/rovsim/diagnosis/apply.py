@@ -91,7 +91,8 @@ def add_uncertainty(
     content = {
         "noise": diagnosis.noise, "correlation": posterior.correlation, "instead": instead,
     }  # fmt: skip
-    return with_uncertainty(model, checked(UncertaintyEntry, content, source), catalogue)
+    entry = checked(UncertaintyEntry, content, source)
+    return with_uncertainty(model, entry, catalogue, source)
 
 
 def choose_effects(diagnosis: Diagnosis, known: Container[str]) -> tuple[FittedEffect, ...]:

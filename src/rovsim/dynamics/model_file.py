@@ -17,16 +17,19 @@ from rovsim.dynamics.learned.residual import StoredResidual, read_residual
 from rovsim.dynamics.model import BUILT_IN, Model
 from rovsim.dynamics.uncertainty import Draws, Uncertainty
 from rovsim.dynamics.vehicle import Vehicle, build_vehicle, known_vehicle, load_vehicle
-from rovsim.results.fitted import Correlation, FittedNoise
+from rovsim.results.fitted import Correlation, FittedNoise, Probability
 
 SCHEMA = "rovsim.model/1"
+# Larger than anything that was ever fitted: no replay survives what is drawn from it.
+VAGUEST = 1e12  # a standard deviation
+WILDEST = 1e3  # noise, m/s2, rad/s2, m, rad
 
 
 class Value(Section):
     """A parameter's value with what is known of it."""
 
     value: Number
-    std: Number | None = None
+    std: Annotated[Number, Field(ge=0.0, le=VAGUEST)] | None = None
     unit: str | None = None
 
 
@@ -60,7 +63,7 @@ class EffectEntry(Section):
 class PossibilityEntry(Section):
     """Effects that may act instead, and how likely they are."""
 
-    probability: Annotated[Number, Field(ge=0.0, le=1.0)]
+    probability: Probability
     effects: tuple[EffectEntry, ...]
     correlation: Correlation = Correlation()
 
@@ -76,6 +79,13 @@ class UncertaintyEntry(Section):
     def _leaves_something(self) -> Self:
         if sum(other.probability for other in self.instead) > 1.0:
             raise ValueError("probabilities that add up to 1 at most")
+        return self
+
+    @model_validator(mode="after")
+    def _is_survived(self) -> Self:
+        sizes = (*self.noise.disturbance, *self.noise.reading, *self.noise.colour)
+        if max((size for size in sizes if size is not None), default=0.0) > WILDEST:
+            raise ValueError(f"noise of at most {WILDEST:.0f} m/s2, rad/s2, m or rad")
         return self
 
 
@@ -115,17 +125,22 @@ def build_effects(entries: Iterable[EffectEntry], catalogue: Catalogue) -> tuple
     return tuple(build_effect(entry, catalogue) for entry in entries)
 
 
-def with_uncertainty(model: Model, entry: UncertaintyEntry, catalogue: Catalogue) -> Model:
-    """The model whose added effects are known as an entry says.
+def with_uncertainty(
+    model: Model, entry: UncertaintyEntry, catalogue: Catalogue, where: object
+) -> Model:
+    """The model whose added effects are known as an entry of the file `where` says.
 
     Raises:
-        BadInput: an effect that may act instead is unknown, or a value out of range.
+        BadInput: an effect that may act instead is unknown, a value out of range, or a correlation
+            is of none of the values.
     """
     instead = tuple(
         (one.probability, Draws(build_effects(one.effects, catalogue), one.correlation))
         for one in entry.instead
     )
     own = Draws(model.added, entry.correlation)
+    for draws in (own, *(draws for _, draws in instead)):
+        draws.refuse_strangers(f"{where}, uncertainty")
     return replace(model, uncertainty=Uncertainty(entry.noise, own, instead))
 
 
@@ -186,7 +201,7 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     _ = model.M  # refuse a model that cannot move
     if file.uncertainty is None or residual is not None:
         return model
-    return with_uncertainty(model, file.uncertainty, known)
+    return with_uncertainty(model, file.uncertainty, known, path)
 
 
 def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:

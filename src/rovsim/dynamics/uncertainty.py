@@ -6,6 +6,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics.effects.base import Effect
 from rovsim.results.fitted import Correlation, FittedNoise
 
@@ -19,6 +20,22 @@ class Draws:
 
     effects: tuple[Effect, ...]
     correlation: Correlation
+
+    def refuse_strangers(self, where: object) -> None:
+        """Refuse a correlation with a value that no effect has, or that is known exactly.
+
+        Raises:
+            BadInput: names it, and the nearest that would do.
+        """
+        known = [f"{effect.id}.{name}" for effect in self.effects for name in effect.std]
+        for name in self.correlation.between:
+            if name not in known:
+                raise BadInput(
+                    f"correlation of '{name}'",
+                    where=where,
+                    expected="values of its effects that have a std",
+                    remedy=nearest(name, known),
+                )
 
     def draw(self, random: np.random.Generator) -> tuple[Effect, ...]:
         """The effects at values drawn from a Gaussian, each kept inside its range."""
@@ -61,10 +78,7 @@ def _move(effect: Effect, errors: dict[str, float], random: np.random.Generator)
 
 def _root(correlation: Correlation) -> Array:
     """A matrix (k, k) whose square is the correlation; of what rounding left of it."""
-    k = len(correlation.between)
-    lower = np.zeros((k, k))
-    lower[np.tril_indices(k)] = [r for row in correlation.rows for r in row]
-    values, vectors = np.linalg.eigh(lower)  # reads no more than the lower triangle
+    values, vectors = np.linalg.eigh(correlation.lower)  # reads no more than that triangle
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 

@@ -1,18 +1,35 @@
 """What was fitted: values with their deviations, how these hang together, and the noise."""
 
-from typing import Self
+from typing import Annotated, Self
 
-from pydantic import model_validator
+import numpy as np
+from numpy import ndarray as Array
+from pydantic import AfterValidator, Field, model_validator
 
 from rovsim.core.schema import Section
 from rovsim.results.base import Sparse
+
+ROUNDED = 1e-3  # by how much an eigenvalue of a correlation may miss zero
+
+
+def _six(values: tuple) -> tuple:
+    if len(values) not in (0, 6):
+        raise ValueError("six values, one an axis, or none where nothing is known")
+    return values
+
+
+Size = Annotated[float, Field(ge=0.0)]
+Seconds = Annotated[float, Field(gt=0.0)]
+Probability = Annotated[float, Field(ge=0.0, le=1.0)]
+SixSizes = Annotated[tuple[Size | None, ...], AfterValidator(_six)]
+SixTimes = Annotated[tuple[Seconds | None, ...], AfterValidator(_six)]
 
 
 class FittedValue(Sparse):
     """A parameter's value; `std` where it was fitted together with all others that act."""
 
     value: float | None
-    std: float | None = None
+    std: Size | None = None
     unit: str | None = None
 
 
@@ -32,12 +49,12 @@ class FittedNoise(Sparse):
     m, rad and `colour_memory_s`: the cameras' slow error, where there is one.
     """
 
-    disturbance: tuple[float | None, ...] = ()
-    memory_s: tuple[float | None, ...] = ()
-    reading: tuple[float | None, ...] = ()
-    period_s: float | None = None
-    colour: tuple[float | None, ...] = ()
-    colour_memory_s: tuple[float | None, ...] = ()
+    disturbance: SixSizes = ()
+    memory_s: SixTimes = ()
+    reading: SixSizes = ()
+    period_s: Seconds | None = None
+    colour: SixSizes = ()
+    colour_memory_s: SixTimes = ()
 
 
 class Correlation(Section):
@@ -56,13 +73,25 @@ class Correlation(Section):
             raise ValueError(f"{k} rows, of 1 to {k} numbers")
         if any(abs(r) > 1.0 for row in self.rows for r in row):
             raise ValueError("correlations from -1 to 1")
+        if len(set(self.between)) < k:
+            raise ValueError("names of values, each named once")
+        if k and np.linalg.eigvalsh(self.lower).min() < -ROUNDED:
+            raise ValueError("correlations that can hold all at once (no negative eigenvalue)")
         return self
+
+    @property
+    def lower(self) -> Array:
+        """The matrix (k, k), zero above its diagonal."""
+        k = len(self.between)
+        lower = np.zeros((k, k))
+        lower[np.tril_indices(k)] = [r for row in self.rows for r in row]
+        return lower
 
 
 class Possibility(Section):
     """Effects that may act instead of the selected ones: all of them, and how likely they are."""
 
-    probability: float
+    probability: Probability
     effects: tuple[FittedEffect, ...]
     correlation: Correlation
 
