@@ -1,15 +1,19 @@
 """The command line: every argument arrives, every mistake is one message and exit code 2."""
 
 import json
+import os
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 import yaml
 from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import compose
+from rovsim.apps.cli import main as cli
 from rovsim.apps.cli.main import listed, main, override, quoted
 from rovsim.core import extras
 from rovsim.core.files import write_text
@@ -59,6 +63,24 @@ def test_a_command_without_its_extra_says_what_to_install(command, extra, capsys
     text = failing(capsys, command)
     assert text.count("\n") == 1
     assert f"pip install 'rovsim[{extra}]'" in text
+
+
+@pytest.mark.parametrize(
+    ("sent", "said", "code"),
+    [(signal.SIGINT, "interrupted", 130), (signal.SIGTERM, "terminated", 143)],
+)
+def test_a_command_that_is_told_to_end_says_so(sent, said, code, capsys, monkeypatch):
+    def work(_):
+        os.kill(os.getpid(), sent)
+        time.sleep(20)
+
+    monkeypatch.setattr(cli, "_main", work)
+    before = signal.getsignal(sent)
+    with pytest.raises(SystemExit) as ended:
+        main([])
+    assert ended.value.code == code
+    assert capsys.readouterr().err == f"rovsim: {said}; what was finished is kept.\n"
+    assert signal.getsignal(sent) == before
 
 
 def test_files_of_the_working_folder_come_first(tmp_path, monkeypatch):

@@ -13,6 +13,7 @@ import pytest
 from rovsim.core import second_process as second
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.second_process import call, second_process
+from rovsim.core.termination import Terminated, heeding_termination
 
 UNKNOWN = "tabnanny"  # a module of Python that nothing else imports
 FAILS = "rovsim.application.settings:compose", ["no_such_key=1"]
@@ -74,6 +75,20 @@ def test_an_error_does_not_wait_for_it(monkeypatch):
     assert time.monotonic() - begun < 50
 
 
+def test_what_it_was_writing_goes_with_it(monkeypatch, tmp_path):
+    monkeypatch.setattr(second, "usable_cores", lambda: 2)
+    source, out = tmp_path / "pipe", tmp_path / "out"
+    os.mkfifo(source)
+    out.mkdir()
+    pipe = os.open(source, os.O_RDWR)  # kept open: who copies from it waits for more
+    begun = time.monotonic()
+    with pytest.raises(Terminated), heeding_termination(), second_process(UNKNOWN) as other:
+        _be_told_to_end_amid_a_copy(other, source, out)
+    os.close(pipe)
+    assert time.monotonic() - begun < 50
+    assert not list(out.iterdir())
+
+
 def test_it_ends_when_this_process_is_killed(tmp_path):
     if second.usable_cores() < 2:
         pytest.skip("one core: there is no second process")
@@ -96,6 +111,14 @@ def _fail_beside(other):
     other.submit(call, "os:getpid").result()
     other.submit(call, "time:sleep", 60)
     call(*FAILS)
+
+
+def _be_told_to_end_amid_a_copy(other, source, out):
+    other.submit(call, "rovsim.core.files:copy_file", source, out / "copy")
+    other.submit(call, "time:sleep", 60)  # waits for its turn, which must not come
+    while not list(out.iterdir()):
+        time.sleep(0.05)
+    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def _runs(process: int) -> bool:

@@ -8,12 +8,16 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from importlib import import_module
 from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.process import BaseProcess
 from threading import Thread
 from typing import Any, Callable, Iterator
 
 from rovsim.core.collector import end_at_once, import_large
 from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
+from rovsim.core.termination import exit_on_termination
+
+TIMES, BETWEEN = 10, 0.5  # s, between signals to a process that must end
 
 
 @contextmanager
@@ -33,9 +37,10 @@ def second_process(*modules: str) -> Iterator[Executor]:
         executor.submit(_import, modules)
         yield executor
     except BaseException as error:
+        executor.shutdown(wait=False, cancel_futures=True)
         for process in set(active_children()) - others:
-            process.terminate()  # nobody waits for what it does
-        if isinstance(error, BrokenProcessPool):
+            _end(process)  # nobody waits for what it does
+        if isinstance(error, (BrokenProcessPool, SystemExit)):  # SystemExit is the other's
             raise RovsimError(
                 "a second process was killed, perhaps for want of memory. What was computed is "
                 "kept; start the command again."
@@ -77,6 +82,7 @@ class _ThisProcess(Executor):
 def _obey_the_first() -> None:
     """End when the first process ends, and not before."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    exit_on_termination()
     first = parent_process()
     assert first is not None
 
@@ -86,6 +92,16 @@ def _obey_the_first() -> None:
 
     Thread(target=follow, daemon=True).start()
     end_at_once()
+
+
+def _end(process: BaseProcess) -> None:
+    """End a process: it clears away what it was writing, unless that takes long."""
+    for _ in range(TIMES):  # each ends one of the calls that wait for it
+        process.terminate()
+        process.join(BETWEEN)
+        if not process.is_alive():
+            return
+    process.kill()
 
 
 def _import(modules: tuple[str, ...]) -> None:

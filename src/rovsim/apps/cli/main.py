@@ -10,6 +10,7 @@ from typing import Sequence
 from rovsim import __version__
 from rovsim.core.collector import end_at_once
 from rovsim.core.errors import BadInput, RovsimError, nearest
+from rovsim.core.termination import CODE, Terminated, heeding_termination
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")
@@ -25,7 +26,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     words = list(sys.argv[1:] if arguments is None else arguments)
     end_at_once()
     try:
-        _main(words)
+        with heeding_termination():
+            _main(words)
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)
         sys.exit(2)
@@ -34,9 +36,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
             sys.exit(141)
         print(f"rovsim: {error.filename or NAMELESS}: {error.strerror or error}", file=sys.stderr)
         sys.exit(2)
-    except KeyboardInterrupt:
-        print("rovsim: interrupted; what was finished is kept.", file=sys.stderr)
-        sys.exit(130)
+    except KeyboardInterrupt as end:
+        said, code = ("terminated", CODE) if isinstance(end, Terminated) else ("interrupted", 130)
+        print(f"rovsim: {said}; what was finished is kept.", file=sys.stderr)
+        sys.exit(code)
 
 
 def _main(words: list[str]) -> None:
