@@ -71,7 +71,7 @@ def test_a_diagnosis_is_a_run_and_every_step_a_run_in_it(diagnosed):
 
 def test_nothing_selected_adds_nothing(diagnosed, capsys):
     source = diagnosed / "found" / "diagnosis.json"
-    model, names, _ = add_effects(Diagnosis.read(source), source, "nominal", None, built_in())
+    model, names, *_ = add_effects(Diagnosis.read(source), source, "nominal", None, built_in())
     assert names == []
     assert model.added == ()
     main(["add", f"diagnosis={source}", f"model={diagnosed / 'new.yaml'}"])

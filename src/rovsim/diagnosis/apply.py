@@ -1,7 +1,7 @@
 """A model file from a diagnosis."""
 
 from pathlib import Path
-from typing import Container, NamedTuple, Sequence
+from typing import Collection, Container, NamedTuple, Sequence
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.schema import checked
@@ -22,11 +22,15 @@ from rovsim.results.fitted import FittedEffect
 
 
 class Added(NamedTuple):
-    """A model with effects of a diagnosis, their ids, and whether its base was `diagnosed`."""
+    """A model with effects of a diagnosis, their ids, and whether its base was `diagnosed`.
+
+    `one_by_one`: several, some of whose values were found without the others.
+    """
 
     model: Model
     names: list[str]
     diagnosed: bool
+    one_by_one: bool
 
 
 def add_effects(
@@ -41,13 +45,30 @@ def add_effects(
     Where the catalogue has the effect that the diagnosis proposes, it and what is beside it.
 
     Raises:
-        BadInput: an effect the diagnosis has no values for, or values no model can have.
+        BadInput: an effect the diagnosis has no values for, that is named twice or that the base
+            has already, or values no model can have.
     """
     known = catalogue if effects is None else dict.fromkeys(effects)
     chosen = choose_effects(diagnosis, known)
     fitted = diagnosis.fitted | {one.effect: one for one in chosen}
     names = [one.effect for one in chosen] if effects is None else list(effects)
-    for name in names:
+    _check_names(names, fitted, source)
+    vehicle = build_model(diagnosis.base, source, catalogue).vehicle
+    base = load_model(to, vehicle, catalogue)
+    entries = list_entries([fitted[name] for name in names], source)
+    there = catalogue.on(vehicle)
+    effects_there = build_effects(entries, there)
+    _refuse_again(effects_there, base, to)
+    model = extend(base, effects_there)
+    model = add_uncertainty(model, names, base, diagnosis, source, there)
+    together = {one.effect for one in chosen}
+    one_by_one = len(names) > 1 and not together.issuperset(names)
+    return Added(model, names, was_diagnosed(base, diagnosis), one_by_one)
+
+
+def _check_names(names: Sequence[str], fitted: Collection[str], source: Path) -> None:
+    """Refuse a name that a diagnosis has no values for, and one that comes twice."""
+    for k, name in enumerate(names):
         if name not in fitted:
             raise BadInput(
                 f"has no values for '{name}'",
@@ -55,13 +76,26 @@ def add_effects(
                 expected=f"one of {', '.join(fitted)}",
                 remedy=nearest(name, fitted),
             )
-    vehicle = build_model(diagnosis.base, source, catalogue).vehicle
-    base = load_model(to, vehicle, catalogue)
-    entries = list_entries([fitted[name] for name in names], source)
-    there = catalogue.on(vehicle)
-    model = extend(base, build_effects(entries, there))
-    model = add_uncertainty(model, names, base, diagnosis, source, there)
-    return Added(model, names, was_diagnosed(base, diagnosis))
+        if name in names[:k]:
+            raise BadInput(
+                f"'{name}' is named twice",
+                where="effects",
+                expected="each effect once, for it would act twice",
+                remedy="Leave one of them out.",
+            )
+
+
+def _refuse_again(effects: Sequence[Effect], base: Model, to: str) -> None:
+    """Refuse an effect that the base has at the very same values: it would act twice."""
+    there = [(one.id, one.given()) for one in base.added if one.given()]
+    for effect in effects:
+        if (effect.id, effect.given()) in there:
+            raise BadInput(
+                f"has {effect.id} at these values already",
+                where=to,
+                expected="a model to which this diagnosis was not added yet",
+                remedy="Name that one with to=, or the other effects with effects=[…].",
+            )
 
 
 def was_diagnosed(base: Model, diagnosis: Diagnosis) -> bool:

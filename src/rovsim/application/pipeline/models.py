@@ -83,8 +83,15 @@ def add_effects(
         story: what else its provenance tells.
 
     Raises:
-        BadInput: no such diagnosis, effect or model.
+        BadInput: no such diagnosis, effect or model, or `out` is the diagnosis.
     """
+    if out.resolve() == diagnosis.resolve():
+        raise BadInput(
+            "is the diagnosis itself",
+            where=out,
+            expected="another file for the model",
+            remedy="For example model=NEW.yaml.",
+        )
     found = Diagnosis.read(diagnosis)
     wanted = list(effects) if effects else None
     added = apply.add_effects(found, diagnosis, base, wanted, catalogue)

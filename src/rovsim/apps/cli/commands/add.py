@@ -22,6 +22,11 @@ OTHER = (
     "Name that one with to=FILE to keep them."
 )
 
+ALONE = (
+    "Some of these values were found without the other effects: what two of them explain is there "
+    "twice. `rovsim diagnose campaign=DIR model={model}` tells what is missing then, or too much."
+)
+
 
 class Settings(CommandSettings):
     """What `rovsim add` takes."""
@@ -43,7 +48,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
-    _, names, diagnosed = add_effects(
+    _, names, diagnosed, one_by_one = add_effects(
         Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
     )
     text = f"{base} + {' + '.join(names)}"
@@ -51,5 +56,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         text = f"{base} as it is, for the diagnosis selected no effect"
     if not diagnosed:
         text += f".\n{OTHER.format(base=base)}"
-    content = {"model": model, "effects": names, "diagnosed": diagnosed}
+    if one_by_one:
+        text += f".\n{ALONE.format(model=model)}"
+    content = {
+        "model": model, "effects": names, "diagnosed": diagnosed, "one_by_one": one_by_one
+    }  # fmt: skip
     say(settings, f"{model}: {text}", content)
