@@ -240,6 +240,15 @@ def saved(tmp_path_factory):
     return write_residual(folder, trained.residual("3dof")).model_dump(mode="json"), folder
 
 
+@pytest.mark.parametrize(
+    "place", ["../residual.npz", "arrays/residual.npz", "/residual.npz", "a\\b"]
+)
+def test_arrays_in_another_folder_are_refused(saved, place):
+    description, folder = saved
+    with pytest.raises(BadInput, match="without folders"):
+        read_residual(description | {"file": place}, folder)
+
+
 def copied(saved, tmp_path, change, resign=True):
     """A copy of the saved residual whose bytes went through `change`, its digest renewed."""
     description, folder = saved

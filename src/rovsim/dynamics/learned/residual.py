@@ -4,10 +4,11 @@ import zipfile
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy import ndarray as Array
+from pydantic import AfterValidator
 
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
@@ -23,12 +24,18 @@ LIBRARY = "library."  # prefix of the arrays from which the library's own model 
 ARRAYS = "residual.npz"  # file of the arrays, beside the model file
 
 
+def _beside(name: str) -> str:
+    if Path(name).name != name or "\\" in name:
+        raise ValueError("the name of a file beside the model file, without folders")
+    return name
+
+
 class StoredResidual(Section):
     """The residual's part of a model file."""
 
     kind: str
     control: Control  # runs it was trained on
-    file: PathText  # arrays, beside the model file
+    file: Annotated[PathText, AfterValidator(_beside)]  # arrays, beside the model file
     sha256: str  # of that file
     features: tuple[Block, ...]
     scaling: Literal["standard", "range", "none"]
