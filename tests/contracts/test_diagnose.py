@@ -2,6 +2,7 @@
 
 import pytest
 
+from fuzz.entries import DiagnosisJson
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
@@ -77,6 +78,42 @@ def test_nothing_selected_adds_nothing(diagnosed, capsys):
     main(["add", f"diagnosis={source}", f"model={diagnosed / 'new.yaml'}"])
     assert "selected no effect" in capsys.readouterr().out
     assert read_yaml(diagnosed / "new.yaml")["effects"] == []
+
+
+@pytest.fixture
+def two_found(tmp_path, monkeypatch):
+    """A diagnosis that selected a lag, and found that lift would do."""
+    monkeypatch.chdir(tmp_path)
+    door = DiagnosisJson(tmp_path)
+    door.prepare()
+    lift = {"effect": "lift", "parameters": {"coefficient": {"value": 20.0}}}
+    door.written({**door.tree, "ranking": [*door.tree["ranking"], lift]})
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["effects=[lift,lift]", "model=new.yaml"], "'lift' is named twice"),
+        (["to=first.yaml", "model=first.yaml"], "first.yaml: has thruster_lag at these values"),
+        (["model=diagnosis.json"], "diagnosis.json: is the diagnosis itself"),
+    ],
+)
+@pytest.mark.usefixtures("two_found")
+def test_nothing_is_added_twice_or_over_its_source(words, message, tmp_path, capsys):
+    main(["add", "diagnosis=diagnosis.json", "model=first.yaml"])
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(SystemExit) as ended:
+        main(["add", "diagnosis=diagnosis.json", *words])
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.usefixtures("two_found")
+def test_values_that_were_found_one_by_one_are_told(capsys):
+    for effects, told in (("lift,thruster_lag", True), ("lift", False), ("thruster_lag", False)):
+        main(["add", "diagnosis=diagnosis.json", "model=new.yaml", f"effects=[{effects}]"])
+        assert ("found without the other effects" in capsys.readouterr().out) == told
 
 
 @pytest.mark.parametrize(
