@@ -13,6 +13,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.evaluation.ladder import score_step
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Ladder, Step
+from said import unfolded
 
 
 @pytest.fixture(scope="module")
@@ -139,7 +140,7 @@ def test_bad_input_is_one_message_and_nothing_written(
     before = sorted(tmp_path.iterdir())
     with pytest.raises(SystemExit) as ended:
         main(["diagnose", f"campaign={campaign}", *words])
-    text = capsys.readouterr().err
+    text = unfolded(capsys.readouterr().err)
     assert ended.value.code == 2
     assert text.startswith("rovsim: ")
     assert message in text

@@ -27,6 +27,7 @@ from rovsim.dynamics.model_file import write_model
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
+from said import unfolded
 from worlds import beside_others, model, some
 
 EVERY = pytest.mark.parametrize("name", sorted(targets()))
@@ -207,5 +208,5 @@ def test_mistakes_are_explained_and_leave_nothing(words, message, tmp_path, caps
     with pytest.raises(SystemExit) as ended:
         main(["export", *words])
     assert ended.value.code == 2
-    assert message in capsys.readouterr().err
+    assert message in unfolded(capsys.readouterr().err)
     assert list(tmp_path.iterdir()) == []

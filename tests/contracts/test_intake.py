@@ -21,6 +21,7 @@ from rovsim.apps.cli.main import main
 from rovsim.core.errors import RovsimError
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording.readers import mocap_readers
+from said import unfolded
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), min_size=1)
 WORDS = st.text("abc :#-'\"[]{},&*!|>%@`0123.nyesNO~", max_size=30)
@@ -31,7 +32,7 @@ def refused(capsys, *words) -> str:
     with pytest.raises(SystemExit) as ended:
         main(["init", *map(str, words)])
     assert ended.value.code == 2
-    said = capsys.readouterr().err
+    said = unfolded(capsys.readouterr().err)
     assert "Traceback" not in said
     return said
 
@@ -123,7 +124,7 @@ def test_what_cannot_be_used_is_one_message_and_nothing_is_written(
     path.write_bytes(content)
     told = refused(capsys, path, f"out={out}")
     assert said in told
-    assert told.count("\n") == 1
+    assert told.count("rovsim: ") == 1
     assert not out.exists()
 
 
@@ -131,7 +132,7 @@ def test_each_bad_file_has_its_own_message(tmp_path, capsys):
     for name in ("one.txt", "two.txt"):
         (tmp_path / name).write_text(f"Dear {name}")
     told = refused(capsys, tmp_path / "one.txt", tmp_path / "two.txt", f"out={tmp_path / 'out'}")
-    assert [line.count("Dear") for line in told.splitlines()] == [1, 1]
+    assert told.count("Dear") == 2
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # numbers near the largest overflow

@@ -23,6 +23,7 @@ from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.reporting.figures import kind
 from rovsim.simulation.settings import ReplaySettings
+from said import unfolded
 
 ROOT = Path(__file__).parents[2]
 KTH = ROOT / "campaigns" / "kth_tank_2025"
@@ -138,7 +139,7 @@ def test_commands_say_where_recordings_that_are_not_here_can_be_got(
     with pytest.raises(SystemExit) as ended:
         main([command, f"campaign={KTH}", f"out={tmp_path / 'out'}"])
     assert ended.value.code == 2
-    text = capsys.readouterr().err
+    text = unfolded(capsys.readouterr().err)
     assert text.count("rovsim: ") == 1
     assert complete(text)
     assert not list(tmp_path.iterdir())

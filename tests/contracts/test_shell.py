@@ -12,6 +12,7 @@ from rovsim import __version__
 from rovsim.apps.cli.main import main
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.words.terminal import tell_comparison, tell_diagnosis
+from said import unfolded
 from synthetic_study import study
 
 ROOT = Path(__file__).parents[2]
@@ -72,7 +73,7 @@ def test_the_version_and_options_that_are_not_known(capsys):
     with pytest.raises(SystemExit) as ended:
         main(["compare", "--jsn"])
     assert ended.value.code == 2
-    assert "Did you mean '--json'" in capsys.readouterr().err
+    assert "Did you mean '--json'" in unfolded(capsys.readouterr().err)
     with pytest.raises(SystemExit):
         main(["comapre"])
-    assert "rovsim: rovsim:" not in capsys.readouterr().err
+    assert "rovsim: rovsim:" not in unfolded(capsys.readouterr().err)

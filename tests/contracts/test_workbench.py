@@ -36,6 +36,7 @@ from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import Posterior
 from rovsim.results.ladder import Ladder, Step
 from rovsim.simulation.bands import Band
+from said import unfolded
 from worlds import model
 
 
@@ -604,7 +605,7 @@ def test_a_port_in_use_is_one_message(capsys):
         with pytest.raises(SystemExit) as refused:
             main(["ui", f"port={taken.getsockname()[1]}", "open=false"])
     assert refused.value.code == 2
-    assert "cannot be used" in capsys.readouterr().err
+    assert "cannot be used" in unfolded(capsys.readouterr().err)
 
 
 def test_a_page_that_is_closed_while_it_asks_is_no_fault():

@@ -29,6 +29,7 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands, as_logged
 from rovsim.results.experiment import Experiment
 from rovsim.simulation.synthetic_tank.sent_log import PLACED, read_sent_log
+from said import unfolded
 from sketches import draw_few
 
 ROOT = Path(__file__).parents[2]
@@ -189,7 +190,7 @@ def test_questions_that_make_no_sense_are_explained(designed, tmp_path, capsys, 
     with pytest.raises(SystemExit) as ended:
         main(["design", f"campaign={designed / 'before'}", f"out={tmp_path / 'o'}", *asked])
     assert ended.value.code == 2
-    text = capsys.readouterr().err
+    text = unfolded(capsys.readouterr().err)
     assert message in text
     assert not (tmp_path / "o").exists()
 

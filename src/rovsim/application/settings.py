@@ -154,12 +154,7 @@ def compose(overrides: Sequence[str]) -> Settings:
     except RovsimError:
         raise
     except Exception as error:  # Hydra's own, and what odd words make it stumble over
-        raise BadInput(
-            str(error).split("\n")[0].removeprefix("LexerNoViableAltException: ").rstrip("."),
-            where=f"overrides {' '.join(overrides)}",
-            expected="key=value with keys of conf/config.yaml and options of its groups",
-            remedy=_nearest_override(overrides),
-        ) from None
+        raise _refused(overrides, str(error)) from None
 
 
 def _allow_unlisted(word: str) -> str:
@@ -170,18 +165,29 @@ def _allow_unlisted(word: str) -> str:
     return f"++{word}" if word.startswith("tank.") else word
 
 
-def _nearest_override(overrides: Sequence[str]) -> str:
-    """What an override that Hydra refused was probably meant to be."""
+def _refused(overrides: Sequence[str], message: str) -> BadInput:
+    """What is wrong with an override that Hydra refused, and what was probably meant."""
     for word in overrides:
         key, _, value = word.lstrip("+~").partition("=")
         options = conf_names(key) if key else []
         if options and value not in options:
-            return nearest(value, options)
-        if not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
+            return BadInput(
+                f"there is no {key} '{value}'", where=word,
+                expected=f"one of {', '.join(options)}", remedy=nearest(value, options),
+            )  # fmt: skip
+        if key and not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
             known = _keys()
-            if key not in known:
-                return nearest(key, known)
-    return "See docs/configuration.md for the keys."
+            if key not in known and key in message:
+                return BadInput(
+                    f"there is no key '{key}'", where=word,
+                    expected="a key of conf/config.yaml", remedy=nearest(key, known),
+                )  # fmt: skip
+    return BadInput(
+        message.split("\n")[0].removeprefix("LexerNoViableAltException: ").rstrip("."),
+        where=f"overrides {' '.join(overrides)}",
+        expected="key=value with keys of conf/config.yaml and options of its groups",
+        remedy="See docs/configuration.md for the keys.",
+    )
 
 
 def _keys() -> list[str]:

@@ -18,7 +18,9 @@ class BadInput(RovsimError):
         found, where = shortened(found), shortened(str(where))
         expected, remedy = shortened(expected), shortened(remedy)
         self.found, self.where, self.expected, self.remedy = found, where, expected, remedy
-        super().__init__(f"{where}: {found}. Expected {expected}. {remedy}")
+        # names that are all listed already are not listed twice
+        advice = "" if remedy == f"Known: {expected.removeprefix('one of ')}." else f" {remedy}"
+        super().__init__(f"{where}: {found}. Expected {expected}.{advice}")
 
     def __reduce__(self):
         # keyword-only arguments would otherwise be lost between processes

@@ -4,12 +4,14 @@ from importlib.util import find_spec
 
 from rovsim.core.errors import BadInput
 
-# The packages of each extra that rovsim imports (pyproject.toml holds what pip installs).
+# Packages of each extra by which it is known (pyproject.toml holds what pip installs).
 PACKAGES = {
     "learn": ("torch", "gpytorch", "sklearn"),
     "tracking": ("mlflow",),
     "workbench": ("nicegui",),
     "recordings": ("rosbags", "pymavlink"),
+    "workflow": ("snakemake", "submitit"),
+    "gym": ("gymnasium",),
     "fmi": ("pythonfmu",),
     "equations": ("pysindy",),
     "benchmark": ("pykdtree", "pysindy", "threadpoolctl"),

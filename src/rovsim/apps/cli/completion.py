@@ -29,6 +29,12 @@ FILES = {
 }  # fmt: skip
 UNLISTED = "    listed = False"  # in a class: no effect of the catalogue
 OF_EFFECTS = ("effects", "between", "know")
+HELP = """\
+The Tab key finds commands, keys, options, effects and files.
+
+bash and zsh: put `source <(rovsim completion bash)` (or zsh) into the file that
+the shell reads when it starts, .bashrc or .zshrc.
+fish: rovsim completion fish > ~/.config/fish/completions/rovsim.fish"""
 SCRIPTS = {
     "bash": """_rovsim() {
   local IFS=$'\\n'

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim import __version__
+from rovsim.apps.cli.complaint import complain
 from rovsim.core.collector import end_at_once
+from rovsim.core.columns import fold, fold_page
 from rovsim.core.errors import BadInput, RovsimError, nearest
 from rovsim.core.termination import CODE, Terminated, heeding_termination
 
@@ -29,13 +31,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with heeding_termination():
             _main(words)
     except RovsimError as error:
-        print(f"rovsim: {error}", file=sys.stderr)
-        sys.exit(2)
+        complain(str(error))
     except OSError as error:  # a full disk, a file that may not be read, a name too long
         if isinstance(error, BrokenPipeError):
             sys.exit(141)
-        print(f"rovsim: {error.filename or NAMELESS}: {error.strerror or error}", file=sys.stderr)
-        sys.exit(2)
+        complain(f"{error.filename or NAMELESS}: {error.strerror or error}")
     except KeyboardInterrupt as end:
         said, code = ("terminated", CODE) if isinstance(end, Terminated) else ("interrupted", 130)
         print(f"rovsim: {said}; what was finished is kept.", file=sys.stderr)
@@ -52,9 +52,9 @@ def _main(words: list[str]) -> None:
         return
     command, rest = words[0], words[1:]
     if command == "completion":
-        from rovsim.apps.cli.completion import complete
+        from rovsim.apps.cli.completion import HELP, complete
 
-        print(complete(rest))
+        print(HELP if asks_for_help(rest) else complete(rest))
         return
     if command not in names:
         raise BadInput(
@@ -63,8 +63,8 @@ def _main(words: list[str]) -> None:
             expected=f"one of {', '.join(names)}",
             remedy=nearest(command, names),
         )
-    if {"-h", "--help"} & set(rest):
-        print(_doc(command))
+    if asks_for_help(rest):
+        print(fold_page(_doc(command)))
         return
     sweep = bool({"-m", "--multirun"} & set(rest))
     words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
@@ -83,11 +83,17 @@ def _main(words: list[str]) -> None:
 
 def _help(names: Sequence[str]) -> str:
     lines = ["rovsim COMMAND key=value …", ""]
-    lines += [f"  {name:<9} {_doc(name).splitlines()[0]}" for name in names]
+    for name in names:
+        lines += fold(_doc(name).splitlines()[0], f"  {name:<9} ", " " * 12)
     lines += ["", "rovsim completion bash, zsh or fish: what the Tab key needs (`--help`)."]
     lines += ["rovsim COMMAND --help tells more; keys and their values stand in conf/."]
     lines += ["--quiet prints nothing but errors, --json the result as JSON; rovsim --version."]
     return "\n".join(lines)
+
+
+def asks_for_help(words: Sequence[str]) -> bool:
+    """Whether words of a command line ask what a command does."""
+    return bool({"-h", "--help"} & set(words))
 
 
 def _doc(name: str) -> str:

@@ -1,9 +1,9 @@
 """One job of a Hydra multirun; importable, so that every launcher can send it to a worker."""
 
-import sys
 from typing import Any, Sequence
 
 from rovsim.application.settings import Settings, settings_of
+from rovsim.apps.cli.complaint import complain
 from rovsim.apps.cli.dispatch import run_command
 from rovsim.core.errors import RovsimError
 
@@ -22,8 +22,7 @@ def job(composed: Any) -> None:
             settings = settings.model_copy(update={"out": hydra.runtime.output_dir})
         run_command(settings)
     except RovsimError as error:
-        print(f"rovsim: {error}", file=sys.stderr)
-        sys.exit(2)
+        complain(str(error))
 
 
 def name_run(settings: Settings, overrides: Sequence[str]) -> Settings:

@@ -1,8 +1,8 @@
 """What `compare` and `diagnose` say on the terminal."""
 
-import textwrap
 from typing import Mapping, Sequence
 
+from rovsim.core.columns import fold
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.wording import ERROR_MEANING, LEAST, fit, minus, several, significant, title
 from rovsim.reporting.words.sentences import band_sentences
@@ -13,7 +13,7 @@ from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.fitted import FittedEffect
 
-WIDTH, BAR = 80, 24  # a terminal has 80 columns unless it was made wider
+BAR = 24  # letters
 MOST = 6  # findings printed; the report has them all
 RANKED = 5  # effects of the ranking printed
 MEANING = f"{ERROR_MEANING}; here on the test runs. Fit is 100 % minus it (NRMSE fit)."
@@ -27,14 +27,14 @@ def tell_comparison(
 
     Without a test run (`tested`) a sentence stands for the table.
     """
-    table = _errors(errors) if tested else ["", *textwrap.wrap(NO_TEST, WIDTH)]
+    table = _errors(errors) if tested else ["", *fold(NO_TEST)]
     said = band_sentences(coverage) if coverage else []
-    bands = [line for one in said for line in ("", *textwrap.wrap(one, WIDTH))]
+    bands = [line for one in said for line in ("", *fold(one))]
     return "\n".join([*table, *bands, *_findings(where)])
 
 
 def _errors(errors: Mapping[str, float | None]) -> list[str]:
-    lines = ["", *textwrap.wrap(MEANING, WIDTH), ""]
+    lines = ["", *fold(MEANING), ""]
     width = max((len(title(name)) for name in errors), default=0)
     most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
     lines += [
@@ -55,23 +55,23 @@ def _findings(where: ErrorConditions) -> list[str]:
     name, model = list(where.models.items())[-1]
     told, rest = model.sentences[:MOST], len(model.sentences) - MOST
     head = f"where {title(name)} fails ({model.split} runs {several(model.runs)})"
-    lines = ["", *textwrap.wrap(head, WIDTH), ""]
+    lines = ["", *fold(head), ""]
     for one in told:
-        lines += textwrap.wrap(one, WIDTH, initial_indent="  - ", subsequent_indent="    ")
+        lines += fold(one, "  - ", "    ")
     return [*lines, f"  … and {rest} more in the report"] if rest > 0 else lines
 
 
 def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> str:
     """The verdict, the selected effects and those most worth by themselves, with bars."""
     said = explain(found, catalogue)
-    lines = ["", *textwrap.wrap(f"{said.sentence} (verdict: {said.name})", WIDTH), ""]
+    lines = ["", *fold(f"{said.sentence} (verdict: {said.name})"), ""]
     for one, words in zip(found.selected, said.missing, strict=True):
         lines += _effect(one.error_reduction or 0.0, words)
-    lines += ["", *textwrap.wrap(said.key, WIDTH)] if said.key else []
+    lines += ["", *fold(said.key)] if said.key else []
     lines += _ranking(found.ranking)
     following = [f"Next: {said.next}"] if said.next else []
     for remark in (*said.remarks, *following):
-        lines += ["", *textwrap.wrap(remark, WIDTH)]
+        lines += ["", *fold(remark)]
     return "\n".join(lines)
 
 

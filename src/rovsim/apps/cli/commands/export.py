@@ -20,6 +20,7 @@ from rovsim.application.pipeline.reading import load_campaign_vehicle
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import say
+from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
@@ -81,10 +82,11 @@ def _flown(settings: Settings, model: Model) -> list[Motion]:
 
 def _told(out: Path, chosen: Target, left: Sequence[Sized], over: str) -> str:
     if not left:
-        return f"{out}\n{chosen.title} holds the whole model. {chosen.takes}"
-    lines = [f"  {one.name}: {_largest(one)}\n      {one.why}" for one in left]
-    head = f"Left out for {chosen.title}, with the RMS force over {over}:"
-    return "\n".join([str(out), head, *lines, chosen.takes])
+        return "\n".join([str(out), *fold(f"{chosen.title} holds the whole model. {chosen.takes}")])
+    lines = fold(f"Left out for {chosen.title}, with the RMS force over {over}:")
+    for one in left:
+        lines += [f"  {one.name}: {_largest(one)}", *fold(one.why, " " * 6)]
+    return "\n".join([str(out), *lines, *fold(chosen.takes)])
 
 
 def _largest(one: Sized) -> str:

@@ -1,0 +1,35 @@
+"""Text that fits a terminal of 80 columns, folded between words; paths stay whole."""
+
+import re
+import textwrap
+
+WIDTH = 80  # of a terminal, unless it was made wider
+
+
+def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
+    """The lines of one paragraph, after `first`; the following ones after `then`."""
+    return textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent=first,
+        subsequent_indent=first if then is None else then,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def fold_page(text: str) -> str:
+    """A text of several paragraphs; lines of a usage (`rovsim …`, then indented) stay apart."""
+    paragraphs = (_fold_paragraph(one) for one in text.strip().split("\n\n"))
+    return "\n\n".join("\n".join(lines) for lines in paragraphs)
+
+
+def _fold_paragraph(text: str) -> list[str]:
+    usage = re.match(r"rovsim \w+ ", text)
+    if usage is None:
+        return fold(" ".join(text.split()))
+    margin = " " * len(usage[0])
+    lines = text.splitlines()
+    return [
+        line for one in lines for line in ([one] if len(one) <= WIDTH else fold(one, "", margin))
+    ]
