@@ -223,7 +223,7 @@ def test_the_horizon_changes_the_errors_and_a_run_plays(tab):
     tab.page.wait_for_selector("table")
     before = tab.numbers()["velocity_rmse/surge"]
     tab.page.locator(".horizon .q-slider__track-container").focus()
-    ends = (("ArrowLeft", "corrected every 0.5 s"), ("ArrowRight", "open loop"))
+    ends = (("ArrowLeft", "restarted every 0.5 s"), ("ArrowRight", "open loop"))
     for key, reached in 4 * ends:
         for _ in range(len(HORIZONS) - 1):  # no key of a fast hand is lost
             tab.page.keyboard.press(key)
@@ -243,7 +243,7 @@ def test_a_link_keeps_what_a_screen_shows_through_reload_and_back(tab):
 
     def shown() -> None:
         tab.page.get_by_role("img", name="Measured and simulated, run 3dof-1, 6dof-1").wait_for()
-        tab.page.get_by_text("Horizon, corrected every 5 s").wait_for()
+        tab.page.get_by_text("Horizon, restarted every 5 s").wait_for()
         tab.page.get_by_role("rowheader", name="nominal, 6dof-1").wait_for()
         tab.page.wait_for_function("location.search.includes('from=2.0&to=6.0')")
         assert "6dof-1/velocity_rmse/surge" in tab.numbers()
@@ -257,6 +257,12 @@ def test_a_link_keeps_what_a_screen_shows_through_reload_and_back(tab):
     tab.page.wait_for_function("location.search.includes('condition=')")
     tab.page.go_back()
     shown()
+
+
+@pytest.mark.parametrize("screen", ["compare", "where", "add", "models"])
+def test_where_axes_are_shown_it_says_which_way_they_point(tab, screen):
+    tab.go(screen)
+    tab.page.get_by_text("heave down").wait_for()
 
 
 def test_a_wide_window_is_used(tab):
@@ -458,6 +464,7 @@ def test_another_campaign_is_opened_and_a_bad_one_explained(tab, campaign, tmp_p
     tab.page.get_by_label("Folder of a campaign, or of recordings").fill(str(tmp_path / "nowhere"))
     tab.page.get_by_role("button", name="Open", exact=True).click()
     tab.page.get_by_text("no such file").wait_for()
+    assert tab.page.get_by_role("alert").locator("code").count() >= 1  # what to type instead
     typed = tab.page.get_by_label("Folder of a campaign, or of recordings")
     assert typed.input_value() == str(tmp_path / "nowhere")  # to be corrected
     assert tab.page.locator("header .campaign").inner_text() == opened != "nowhere"

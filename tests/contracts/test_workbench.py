@@ -18,10 +18,11 @@ from chores import counting, dying, failing
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
-from rovsim.apps.workbench import app, charts, parts, path, runaway, tasks, why
+from rovsim.apps.workbench import app, charts, models, parts, path, runaway, tasks, why
 from rovsim.apps.workbench.add_effects import tell_doubt
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft, reach
+from rovsim.apps.workbench.models import Models
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.totals import list_totals, tell_total
 from rovsim.apps.workbench.traces import beside, panels
@@ -407,6 +408,25 @@ def test_models_saved_before_are_known_and_no_two_share_a_name(bench, tmp_path, 
     for taken in (tmp_path / "before.yaml", tmp_path / "zero_acceleration.yaml"):
         with pytest.raises(BadInput, match="another model is called"):
             here.open_model(taken)
+
+
+def test_one_model_alone_stands_beside_no_other(bench, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert Models(bench, Place("models")).chosen["right"] is None
+    write_model(Draft(bench.base, diagnosis(), built_in()).model(), bench.saved_in / "other.yaml")
+    assert Models(bench, Place("models")).chosen["right"] == "other"
+
+
+@pytest.mark.parametrize(
+    ("after", "told"), [(0.1001, "0 %"), (0.0999, "0 %"), (0.12, "+20 %"), (0.05, "−50 %")]
+)
+def test_a_change_of_nothing_has_no_sign(after, told):
+    assert models.tell_change(0.1, after) == told
+
+
+def test_what_one_types_is_set_apart_and_nothing_of_a_message_is_run():
+    told = parts.marked("Write `rovsim init <b>`, or `nothing")
+    assert told == "Write <code>rovsim init &lt;b&gt;</code>, or `nothing"
 
 
 def test_totals_are_the_vehicle_file_and_what_was_added(bench):

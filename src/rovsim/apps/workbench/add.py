@@ -8,7 +8,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.add_effects import Effects
-from rovsim.apps.workbench.parts import computed, heading, text, tile, tile_html
+from rovsim.apps.workbench.parts import about_axes, computed, heading, text, tile, tile_html
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.saving import Saving
@@ -54,6 +54,7 @@ class Add:
             "Tick an effect to add it, move a slider to change it: the replay follows at once. "
             "Here you see a train run; the test runs are opened when you save.", "soft",
         )  # fmt: skip
+        about_axes()
         with ui.row().classes("halves"):
             with ui.column().classes("half left"):
                 self.effects = Effects(self.bench, self.draw, self.update)

@@ -14,7 +14,7 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from rovsim.application.settings import WorkbenchSettings
 from rovsim.apps.workbench import HOST
 from rovsim.apps.workbench.gate import Gate
-from rovsim.apps.workbench.parts import heading
+from rovsim.apps.workbench.parts import Failure, heading
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.session import Session, Sessions
 from rovsim.apps.workbench.work import LongWork
@@ -179,7 +179,7 @@ class Page:
             try:
                 await _module(name).show(bench, Place(name, asked.query_parameters, self.kept))
             except RovsimError as error:
-                ui.label(str(error)).classes("warning")
+                Failure().tell(error)
 
     async def _opened(self, session: Session) -> Any:
         """The campaign, read now if need be; None, and the way to another, if that fails."""

@@ -6,7 +6,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
-from rovsim.apps.workbench.parts import cell, computed, heading, onward, table, text
+from rovsim.apps.workbench.parts import about_axes, cell, computed, heading, onward, table, text
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.runaway import tell_divergence
@@ -64,10 +64,7 @@ class Compare:
     async def show(self) -> None:
         """Build the screen."""
         heading(TITLE, QUESTION)
-        text(
-            "Axes are those of the body: surge ahead, sway to starboard, heave down; positions are "
-            "north, east and down in the tank.", "soft",
-        )  # fmt: skip
+        about_axes("; positions are north, east and down in the tank")
         self._controls()
         self.area = ui.column().classes("area")
         await self.draw()
@@ -80,7 +77,7 @@ class Compare:
         }
         with ui.row().classes("controls"):
             self._choice("run", ui.select(runs, label="Run"))
-            self._choice("beside", ui.select(runs, label="Beside it", multiple=True))
+            self._choice("beside", ui.select(runs, label="Other runs", multiple=True))
             self._choice(
                 "models", ui.select(list(self.bench.models), label="Models", multiple=True)
             )

@@ -9,6 +9,7 @@ from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.parts import (
     Failure,
+    about_axes,
     alarm,
     cell,
     computed,
@@ -39,7 +40,7 @@ from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import listed, significant
 from rovsim.reporting.words.verdict import interval
 from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
 from rovsim.results.fitted import FittedValue
@@ -61,8 +62,9 @@ class Models:
         motions, run = bench.data.motions, first_run(bench)
         known = list(bench.known_models())
         added = list(bench.models)[1:]
+        others = [*(name for name in known if name != bench.base.name), *added]
         first = {
-            "left": bench.base.name, "right": (added or known)[-1], "run": run,
+            "left": bench.base.name, "right": next(reversed(others), None), "run": run,
             "axes": excited(bench, run), "horizon": WINDOW,
         }  # fmt: skip
         possible: Mapping[str, Sequence[Any]] = {
@@ -78,6 +80,7 @@ class Models:
     async def show(self) -> None:
         """Build the screen."""
         heading(TITLE, QUESTION)
+        about_axes()
         known = list(self.bench.known_models())
         runs = {r: f"{r} ({split})" for r, split in self.bench.data.runs.splits.items()}
         with ui.row().classes("controls"):
@@ -141,7 +144,7 @@ class Models:
         self.traces, self.drawn = None, self.drawn + 1
         mine = self.drawn
         try:
-            names = dict.fromkeys(self.chosen[side] for side in SIDES)
+            names = dict.fromkeys(self.chosen[side] for side in SIDES if self.chosen[side])
             self.models = {n: await computed(self.bench.known_model, n) for n in names}
             shown, remark = await self._panels()
             errors = await computed(self._errors)
@@ -154,7 +157,7 @@ class Models:
             return
         with self.area:
             if len(self.models) == 1:
-                text("One model, beside nothing. Save another on Add, or open its file here.")
+                text("There is only one model yet. Save another on Add, or open its file here.")
             _tell_errors(self.chosen["run"], errors)
             section("Replays")
             about = f"Measured and simulated, run {self.chosen['run']}"
@@ -200,11 +203,13 @@ def _tell_errors(run: str, errors: Errors) -> None:
             at = OPEN_LOOP if horizon is None else f"{horizon:g}"
             cells += [cell(v, f"{model}/{at}/{name.split()[0]}") for model, v in values.items()]
             if len(values) == 2:
-                cells.append(f'<td class="number">{_change(*values.values())}</td>')
+                cells.append(f'<td class="number">{tell_change(*values.values())}</td>')
         rows.append((name, cells))
     groups = [("open loop" if h is None else f"{h:g} s", len(heads)) for h in horizons]
+    spans = listed([f"{h:g}" for h in horizons if h is not None])
+    change = f"; change from {' to '.join(errors)}" if len(errors) == 2 else ""
     table(
-        f"Root mean square error on run {run}, corrected every so many seconds and never",
+        f"Root mean square error on run {run}: restarted every {spans} s; open loop{change}",
         ["axis", *heads * len(horizons)], rows, groups,
     )  # fmt: skip
 
@@ -214,10 +219,12 @@ def _read(metrics: Metrics, name: str) -> float | None:
     return metrics.velocity_rmse[ERRORS[name]] if name in ERRORS else getattr(metrics, POSE[name])
 
 
-def _change(before: float | None, after: float | None) -> str:
+def tell_change(before: float | None, after: float | None) -> str:
+    """By how much an error is larger (+) or smaller (−) than another."""
     if not before or after is None:
         return ABSENT
-    return f"{100.0 * (after / before - 1.0):+.0f} %".replace("-", "−")
+    percent = round(100.0 * (after / before - 1.0))
+    return f"{percent:+d} %".replace("-", "−") if percent else "0 %"
 
 
 def _tell_parameters(models: Mapping[str, Model]) -> None:
@@ -225,7 +232,7 @@ def _tell_parameters(models: Mapping[str, Model]) -> None:
     columns = {name: _values(model) for name, model in models.items()}
     known = dict.fromkeys(key for values in columns.values() for key in values)
     if not known:
-        text("Neither has more than the vehicle file: no effect was added.")
+        text("No effect was added to the vehicle file.")
         return
     rows = [
         (f"{effect}, {parameter}" if parameter else effect,

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 from base64 import b64encode
 from concurrent.futures import ThreadPoolExecutor
 from html import escape
@@ -59,21 +60,26 @@ class Slider(ui.slider):
     LOOPBACK = False
 
 
-class Failure(ui.label):
+def marked(words: str) -> str:
+    """Text as HTML: what stands between backticks is what one types."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(words))
+
+
+class Failure(ui.html):
     """Why something failed, beside the control that was used: it stays until that has worked."""
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__(sanitize=False)
         self.classes("text warning").props('role="alert"')
         self.visible = False
 
     def tell(self, error: Exception | str) -> None:
         """Show it."""
-        self.text, self.visible = str(error), True
+        self.content, self.visible = marked(str(error)), True
 
     def forget(self) -> None:
         """Show nothing: it has worked now."""
-        self.text, self.visible = "", False
+        self.content, self.visible = "", False
 
 
 def heading(title: str, question: str) -> None:
@@ -85,7 +91,12 @@ def heading(title: str, question: str) -> None:
 
 def text(words: str, classes: str = "") -> None:
     """A paragraph."""
-    ui.html(f"<p>{escape(words)}</p>", sanitize=False).classes(f"text {classes}")
+    ui.html(f"<p>{marked(words)}</p>", sanitize=False).classes(f"text {classes}")
+
+
+def about_axes(more: str = "") -> None:
+    """What the axes are: the same words on every screen that shows some."""
+    text(f"Axes are those of the body: surge ahead, sway to starboard, heave down{more}.", "soft")
 
 
 def alarm(words: str) -> str:

@@ -45,7 +45,7 @@ HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 
 def horizon_text(horizon: float | None) -> str:
     """A horizon in words."""
-    return "open loop: never corrected" if horizon is None else f"corrected every {horizon:g} s"
+    return "open loop: never restarted" if horizon is None else f"restarted every {horizon:g} s"
 
 
 def horizon_slider(horizon: float | None, changed: Callable[[float | None], Any]) -> None:

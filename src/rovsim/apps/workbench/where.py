@@ -9,7 +9,7 @@ from nicegui import ui
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.condition_map import FieldMap
-from rovsim.apps.workbench.parts import chart, computed, heading, onward, section, text
+from rovsim.apps.workbench.parts import about_axes, chart, computed, heading, onward, section, text
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.error_conditions.bins import Table
@@ -39,6 +39,7 @@ class Where:
     async def show(self) -> None:
         """Build the screen."""
         heading(TITLE, QUESTION)
+        about_axes()
         choice = ui.select(self.physical, label="Model", value=self.chosen["model"]).classes(
             "control"
         )
