@@ -1,16 +1,22 @@
 """What a flight is expected to tell."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from rovsim import AXES
-from rovsim.design.knowledge import Knowledge, Known, widen
-from rovsim.design.worth import Worth, surprise
+from rovsim.core.errors import BadInput
+from rovsim.design.doubts import require_news
+from rovsim.design.knowledge import Knowledge, Known, _check_fitted, widen
+from rovsim.design.worth import NOTHING, Worth, _told, surprise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.onboard_control import OnboardControl
+from rovsim.dynamics.effects.proximity import WallProximity
+from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 
 N = 4096
 
@@ -69,3 +75,35 @@ def test_a_rival_frees_what_its_effect_can_change_from_where_it_is():
     assert set(loops.free) == {"gain_heave", "bandwidth_heave"}
     assert other is drag
     assert set(widen(Hypothesis(None, (drag,)), "linear_damping").terms[0].free) == set(AXES)
+
+
+def test_a_flight_takes_no_information_away():
+    train, flight = np.random.default_rng(0).normal(size=(2, 3, 6, 50))  # of three parameters
+    bank = SimpleNamespace(flatten=lambda rows, noise: np.concatenate(rows, axis=-1).reshape(3, -1))
+    own = SimpleNamespace(J=[0.1 * train, flight], at=SimpleNamespace(x=np.zeros(3)))
+    known = SimpleNamespace(noise=None)
+    rival = Known(None, np.eye(3) * 1e6, np.arange(3), 0.0, None, np.eye(3))
+    told = _told(bank, own, rival, known)
+    assert told == pytest.approx(flight.reshape(3, -1) @ flight.reshape(3, -1).T)
+    assert (rival.std(told) <= rival.std()).all()
+
+
+def test_a_flight_that_tells_nothing_is_refused():
+    drag = Hypothesis(None, (Term(LinearDamping(sway=1.0), ("sway",)),))
+    rival = Known(drag, np.eye(1), np.array([0]), 0.0, None, np.eye(1))
+    known = Knowledge((), (), (rival,), None, ())
+    for ratio in (1.0, np.sqrt(1.0 + NOTHING)):
+        worth = Worth((np.array([ratio]),), (np.ones(1),), np.empty(0), np.array([True]))
+        with pytest.raises(BadInput, match=r"tells anything about linear_damping\.sway"):
+            require_news(worth, known)
+    require_news(Worth((np.array([1.1]),), (np.ones(1),), np.empty(0), np.array([True])), known)
+
+
+def test_what_is_only_tried_is_refused_by_name():
+    with pytest.raises(BadInput, match="first is tried, not fitted"):
+        _check_fitted("thruster_order.first", ThrusterOrder)
+    with pytest.raises(BadInput, match=r"attitude is tried, not fitted.*gain_surge"):
+        _check_fitted("onboard_control.attitude", OnboardControl)
+    with pytest.raises(BadInput, match=r"unknown parameter 'swai'.*'sway'"):
+        _check_fitted("linear_damping.swai", LinearDamping)
+    _check_fitted("wall_proximity.length_scale", WallProximity)  # free only when asked for

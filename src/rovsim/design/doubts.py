@@ -13,6 +13,7 @@ from rovsim.design.search import Range
 from rovsim.design.settings import Question
 from rovsim.design.steady_push import SteadyPush
 from rovsim.design.sticks import ticks
+from rovsim.design.worth import Worth
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.simulation.replay import predict as replay
@@ -97,6 +98,24 @@ def no_flight(where: Range, question: Question) -> BadInput:
         where="rovsim design",
         expected="room for a flight that nobody steers",
         remedy="Or give fewer seconds, or wider design.limits." if doubts else REMEDY,
+    )
+
+
+def require_news(worth: Worth, known: Knowledge) -> None:
+    """Refuse the best flight where it tells nothing.
+
+    Raises:
+        BadInput: it adds less than a thousandth to what the train runs hold.
+    """
+    if worth.tells:
+        return
+    names = [rival.names[k] for rival in known.rivals for k in rival.wanted]
+    raise BadInput(
+        f"no flight within the limits tells anything about {', '.join(known.asked or names)}",
+        where="rovsim design",
+        expected="limits within which the vehicle moves so that the answer shows",
+        remedy="Widen design.limits (speed, turn_rate, tilt, slew), give more seconds, or ask "
+        "about something else.",
     )
 
 

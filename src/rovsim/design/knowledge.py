@@ -23,6 +23,7 @@ from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 
 RULED_OUT = 1000.0  # to one: a rival with longer odds against it need not be told apart
@@ -179,6 +180,22 @@ def _check_shown(name: str, candidates: Sequence[Candidate]) -> None:
     )
 
 
+def _check_fitted(name: str, effect: type[Effect]) -> None:
+    """Whether a parameter, `effect.parameter`, can have a standard deviation at all."""
+    parameter = name.partition(".")[2]
+    names = [p.name for p in effect.parameters if not p.tried]
+    able = f"{effect.id}. and one of {', '.join(names)}" if names else "a value that can be fitted"
+    if parameter in names:
+        return
+    tried = any(p.name == parameter for p in effect.parameters)
+    raise BadInput(
+        f"{parameter} is tried, not fitted" if tried else f"unknown parameter '{parameter}'",
+        where=f"know, effect {effect.id}",
+        expected=able,
+        remedy=f"Ask between=[{effect.id},…]." if tried else nearest(parameter, names),
+    )
+
+
 def separate(model: Model) -> Hypothesis:
     """A model as a hypothesis in which all is free that its file says was fitted."""
     fitted = [one for one in model.added if one.std]
@@ -191,14 +208,7 @@ def _free(
 ) -> Hypothesis:
     """With that parameter free as well, at the likeliest of the effect's starts."""
     effect, _, parameter = name.partition(".")
-    names = [p.name for p in next(c for c in candidates if c.effect.id == effect).effect.parameters]
-    if parameter not in names:
-        raise BadInput(
-            f"unknown parameter '{parameter}'",
-            where=f"know, effect {effect}",
-            expected=f"{effect}. and one of {', '.join(names)}",
-            remedy=nearest(parameter, names),
-        )
+    _check_fitted(name, next(c for c in candidates if c.effect.id == effect).effect)
     own = next((t for t in h.terms if t.id == effect), None)
     if own is not None:
         free = own.free if parameter in own.free else (*own.free, parameter)

@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.design.authority import Authority
-from rovsim.design.doubts import doubt, no_flight, warn_of_walls
+from rovsim.design.doubts import doubt, no_flight, require_news, warn_of_walls
 from rovsim.design.flight import Chances, Envelope, draw_chances, predict
 from rovsim.design.knowledge import Knowledge, learn
 from rovsim.design.pilot import ModelPilot
@@ -70,7 +70,8 @@ def plan(
         stage: told what begins.
 
     Raises:
-        BadInput: nothing that could be planned, or no flight stays within the limits.
+        BadInput: nothing that could be planned, no flight stays within the limits, or none tells
+            anything.
     """
     stage("learning")
     train = prepare_train(runs, question.replay, catalogue, model.body.free).runs
@@ -150,6 +151,7 @@ def _choose(
     if not everything:
         raise no_flight(where, question)
     flight, worth = max(everything, key=lambda one: one[1].told)
+    require_news(worth, where.known)
     paths = _paths(where, flight, many)
     assert paths is not None
     step = float(where.around.edges[1] - where.around.edges[0])

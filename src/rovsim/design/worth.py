@@ -61,6 +61,13 @@ class Worth:
         gained = np.maximum(self.surer[0] ** 2 - 1.0, NOTHING)
         return float(np.exp(np.mean(np.log(gained))))
 
+    @property
+    def tells(self) -> bool:
+        """Whether it tells anything worth a flight about what is asked for."""
+        if len(self.gain):
+            return self.told > NOTHING
+        return bool((self.surer[0] ** 2 - 1.0 > NOTHING).any())
+
 
 def value(
     paths: Array, commands: Commands, known: Knowledge, around: Surroundings, exact: bool = False
@@ -85,7 +92,7 @@ def value(
             motions = _mix_motions(run, rival, known)
         bank = _observe(run, rival, known, motions, exact)
         own = bank.linearise(rival.hypothesis if exact or alone else rival.as_it_is)
-        told.append(_told(bank, own, rival, known, exact))
+        told.append(_told(bank, own, rival, known))
         if not alone:
             gains.append(_gain(bank, own, known.rivals[1 - k], known, exact))
     then = [one.std(of) for one, of in zip(known.rivals, told, strict=True)]
@@ -112,12 +119,15 @@ def _observe(
     return FilterBank(runs, motions, tunings, rival.hypothesis.model)
 
 
-def _told(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge, exact: bool) -> Array:
-    """Information (k, k) beyond what the train runs held without the flight."""
+def _told(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge) -> Array:
+    """Information (k, k) of the flight, which is the last run of the bank: it takes none away.
+
+    Filters that suit all runs together may see less of the train runs than their own did.
+    """
     if not len(own.at.x):
         return np.zeros_like(rival.information)
-    found = inner_products(bank.flatten(own.J, known.noise))
-    return found - rival.information if exact else found
+    flight = [*(0.0 * J for J in own.J[:-1]), own.J[-1]]
+    return np.asarray(inner_products(bank.flatten(flight, known.noise)))
 
 
 def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, exact: bool) -> float:

@@ -65,7 +65,7 @@ class OnboardControl(Wrench, Autopilot):
             Parameter(f"bandwidth_{axis}", "1/s", f"b_{{{axis}}}", low=0.0, scale=1.0)
             for axis in AXES
         ),
-        Parameter("attitude", "1", "a", low=0.0, high=1.0, scale=1.0, fitted=False),
+        Parameter("attitude", "1", "a", low=0.0, high=1.0, scale=1.0, fitted=False, tried=True),
     )
     starts = (
         {"gain_yaw": 1.0, "bandwidth_yaw": 2.0},

@@ -17,7 +17,8 @@ class Parameter:
     A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
     change worth looking for: a fit works in multiples of it. `grain`: changes much smaller than
     this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`: only
-    when asked for. `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
+    when asked for. `tried`: it has a few values, one of which is right: they are tried.
+    `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Parameter:
     scale: float = field(kw_only=True)
     grain: float = field(default=0.0, kw_only=True)
     fitted: bool = field(default=True, kw_only=True)
+    tried: bool = field(default=False, kw_only=True)
     reciprocal: bool = field(default=False, kw_only=True)
 
     @property

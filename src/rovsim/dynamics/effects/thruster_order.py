@@ -32,7 +32,7 @@ class ThrusterOrder(Shaping):
     )
     signature = Signature({"first": 5.0, "second": 7.0}, "pitch", "pitch thrust")
     parameters = tuple(
-        Parameter(name, "1", symbol, low=0.0, scale=1.0, fitted=False)
+        Parameter(name, "1", symbol, low=0.0, scale=1.0, fitted=False, tried=True)
         for name, symbol in (("first", "i"), ("second", "j"))
     )
     starts = ({"first": 1.0, "second": 2.0},)
