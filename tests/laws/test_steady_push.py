@@ -23,9 +23,12 @@ def test_what_the_noise_explains_does_not_last():
     chance = 0.02 * np.sqrt(2.0 * 0.1 * 0.9)  # of means over 10 s
     blocks = 0.8 * chance * np.array([[1.0] * 6, [-1.0] * 6])
     found = SteadyPush.of_blocks(blocks, 10.0, NOISE)
-    assert found.chance == pytest.approx(chance, rel=0.01)
     assert not found.mean.any()
     assert not found.large.any()
+    assert not found.spread.any()
+    alone = SteadyPush.of_blocks(np.full((1, 6), 2.5 * chance), 10.0, NOISE)
+    assert alone.mean.all()
+    assert not alone.large.any()
     assert not SteadyPush.of_blocks(np.empty((0, 6)), 10.0, NOISE).mean.any()
 
 

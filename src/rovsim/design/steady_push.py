@@ -22,41 +22,42 @@ from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
 LASTING = 100.0  # s, memory of the observer's disturbance: longer than any block
 CHANCE = 2.0  # standard errors: less is not told from the short disturbance
+LARGE, SURE = 2.0, 3.0  # of what passes by in a block, and standard errors: the model errs
 
 
 @dataclass(frozen=True, eq=False)
 class SteadyPush:
     """Accelerations per axis, m/s2 and rad/s2, in the body's axes.
 
-    `mean` (6,) lasts as long as a flight, a part of size `spread` (6,) about a block. `chance` (6,)
-    is the standard deviation that the short disturbance gives the mean over a block.
+    `mean` (6,) lasts as long as a flight, a part of size `spread` (6,) about a block. `large`
+    (6,): axes along which the mean is more than what passes by in a block, and surely so.
     """
 
     mean: Array
     spread: Array
-    chance: Array
+    large: Array
 
     @staticmethod
     def none() -> "SteadyPush":
         """Of a model to which nothing is unknown but the short disturbance."""
-        return SteadyPush(np.zeros(6), np.zeros(6), np.zeros(6))
+        return SteadyPush(np.zeros(6), np.zeros(6), np.zeros(6, bool))
 
     @staticmethod
     def of_blocks(blocks: Array, seconds: float, noise: Noise) -> "SteadyPush":
         """What lasts, of the mean disturbances (b, 6) of blocks of so many seconds each."""
         if not len(blocks):
             return SteadyPush.none()
-        chance = noise.level**2 * _averaged(noise.memory / seconds)
-        mean = blocks.mean(axis=0)
-        sure = mean**2 > CHANCE**2 * chance / len(blocks)
-        varied = blocks.var(axis=0, ddof=1) if len(blocks) > 1 else np.zeros(6)
-        more = np.maximum(varied - chance, 0.0)
-        return SteadyPush(mean * sure, np.sqrt(more), np.sqrt(chance))
-
-    @property
-    def large(self) -> Array:
-        """Axes (6,) along which more is missing than what passes by in a block."""
-        return np.abs(self.mean) > self.chance
+        chance = noise.level * np.sqrt(_averaged(noise.memory / seconds))
+        count, mean = len(blocks), blocks.mean(axis=0)
+        error = chance / np.sqrt(count)
+        varied = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
+        # of a variance of n + 1 numbers by chance: a standard error is sqrt(2 / n) of it
+        usual = chance**2 * (1.0 + CHANCE * np.sqrt(2.0 / max(count - 1, 1)))
+        return SteadyPush(
+            np.where(np.abs(mean) > CHANCE * error, mean, 0.0),
+            np.sqrt(np.where(varied > usual, varied - chance**2, 0.0)),
+            np.abs(mean) > np.maximum(LARGE * chance, SURE * error),
+        )
 
     def draw(self, steps: int, h: float, random: np.random.Generator) -> Array:
         """Accelerations (steps, 6) over steps of h s."""
