@@ -53,3 +53,20 @@ def test_without_walls_a_flight_begins_where_the_runs_swam():
     (told,) = warn_of_walls(paths, found.middle, found)
     assert "1.5 m away" in told
     assert warn_of_walls(paths, found.middle, around()) == ()
+
+
+def test_how_the_limits_are_left_is_told():
+    found = around(speed=1.0, tilt=0.5)
+    paths = np.zeros((2, 5, 13))
+    paths[:, :, :3], paths[:, :, 3] = found.middle, 1.0
+    assert found.excess(paths) == 0.0
+    assert found.tell(paths) == ""
+    paths[:, 4, 2] -= 1.3  # from 1.5 m below the surface to 0.2 m: 0.2 m too near
+    paths[:, 2, 7] = 1.2
+    assert found.tell(paths) == (
+        "comes 0.2 m too near to a wall, the floor or the surface and moves 20 % more than it may"
+    )
+    assert found.excess(paths) == pytest.approx(0.4)
+    paths[0, 0, 0] = np.inf
+    assert found.excess(paths) == np.inf
+    assert found.tell(paths) == "moves beyond all numbers"

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.design.flight import Envelope
+from rovsim.design.flight import Envelope, predict
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.search import Range
 from rovsim.design.settings import Question
@@ -21,6 +21,7 @@ from rovsim.simulation.windows import find_windows
 
 AFTER = 5.0  # s, the longest window of a comparison
 UNITS = ("m/s2",) * 3 + ("rad/s2",) * 3
+NARROW = "one told to stay where it is does, none that moves enough to show anything"
 REMEDY = (
     "Give the model that a diagnosis found: what a model lacks is a disturbance. Or give fewer "
     "seconds, or wider design.limits."
@@ -88,11 +89,13 @@ def err(model: Model, runs: Sequence[ObservedRun], question: Question) -> float 
 def no_flight(where: Range, question: Question) -> BadInput:
     """Why no flight stays within the limits, as the error to be raised."""
     resting = np.zeros((len(ticks(question.seconds)), len(AXES)))
-    still = where.try_all([resting], [where.envelope.longest])[0]
+    heading = where.envelope.longest
+    still = where.try_all([resting], [heading])[0]
+    start = where.pilot.starts(np.array([heading]))[0]
+    why = where.envelope.tell(predict(still.commands, start, where.chances, where.around))
+    told = f"a vehicle told to stay where it is already {why}" if why else NARROW
     doubts = doubt(where.known, question)
-    found = f"no flight of {question.seconds:g} s stays within the limits"
-    if still.excess > 0.0:
-        found += f": a vehicle told to stay where it is may already leave them{_by(still.excess)}"
+    found = f"no flight of {question.seconds:g} s stays within the limits: {told}"
     return BadInput(
         f"{found}. {doubts[0].removesuffix('.')}" if doubts else found,
         where="rovsim design",

@@ -18,6 +18,7 @@ from rovsim.simulation.drive import Drives
 from rovsim.simulation.synthetic_tank.sent_log import PLACED, TURNED
 from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
+MOVES = ("moves", "turns", "tilts")  # of which speed, turn rate and tilt are limits
 SURE = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 beyond one wall
 
 
@@ -153,8 +154,23 @@ class Envelope:
         turn rate and tilt by the largest, as a share of the limit. `still`: the paths are those of
         rivals, and each counts alone.
         """
+        return float(sum(self._beyond(paths, still)))
+
+    def tell(self, paths: Array) -> str:
+        """How paths (s, k, 13) leave the limits, in words; nothing if they do not."""
+        place, *shares = self._beyond(paths, still=False)
+        if not np.isfinite(place):
+            return "moves beyond all numbers"
+        told = [f"comes {place:.2g} m too near to a wall, the floor or the surface"]
+        told += [
+            f"{v} {100.0 * s:.0f} % more than it may" for v, s in zip(MOVES, shares, strict=True)
+        ]
+        return " and ".join(one for one, by in zip(told, (place, *shares), strict=True) if by > 0.0)
+
+    def _beyond(self, paths: Array, still: bool) -> tuple[float, ...]:
+        """By how much the place leaves the box, m, and speed, turn rate and tilt their limits."""
         if not np.isfinite(paths).all():
-            return np.inf
+            return (np.inf,) * 4
         place = paths[:, :, :3]
         low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
         if not still:
@@ -162,7 +178,7 @@ class Envelope:
             low, high = (mean - spread).min(axis=0), (mean + spread).max(axis=0)
         beyond = np.maximum(self.box[:, 0] - low, 0.0) + np.maximum(high - self.box[:, 1], 0.0)
         ratios = [v / w - 1.0 for v, w in zip(reached(paths), self._most, strict=True)]
-        return float(beyond.sum() + sum(max(r, 0.0) for r in ratios))
+        return (float(beyond.sum()), *(max(r, 0.0) for r in ratios))
 
     @property
     def _most(self) -> tuple[float, float, float]:
