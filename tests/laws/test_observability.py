@@ -42,3 +42,15 @@ def test_behind_loops_about_all_angles_the_torque_of_propellers_cannot_be_seen(t
     )
     assert with_loops == ("propeller_torque",)
     assert without == ()
+
+
+def test_what_has_no_slope_has_no_column(tmp_path):
+    """In the plane a small tilt changes a reading by its square: of that, no part is a slope."""
+    box = {"x": (0.0, 20.0), "y": (0.0, 20.0), "z": (0.0, 3.0)}
+    base, runs = observed(tmp_path, duration=20.0, vehicle="cybership2", tank=box)
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    listed = list_candidates(runs, built_in(), base.vehicle)
+    tilts = [c for c in listed if c.effect.id == "world_tilt"]
+    found = linearise_candidates(bank, Hypothesis(base), tilts)
+    assert found.count
+    assert all(not own.any() for own in found.columns)

@@ -16,6 +16,10 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
 
+# Standard deviations that a whole scale moves all readings together: less is no slope, but what the
+# curvature leaves of a difference (a tilt seen in the plane), as random as the readings.
+FAINTEST = 1e-2
+
 
 @dataclass(frozen=True, eq=False)
 class CandidateColumns:
@@ -113,4 +117,15 @@ def _columns(
     if not candidate.absent:
         each = zip(seen.e, absent, seen.J, strict=True)
         columns = [np.concatenate([(there - without)[None], J]) for there, without, J in each]
-    return [own.astype(np.float32) for own in columns]  # six digits are enough for columns
+    shown = _measure(bank, columns)[:, None, None] >= FAINTEST
+    # six digits are enough for columns; what is not finite stays so, and is refused
+    return [np.where(shown | ~np.isfinite(own), own, 0.0).astype(np.float32) for own in columns]
+
+
+def _measure(bank: FilterBank, columns: Sequence[Array]) -> Array:
+    """Lengths (c,) of columns (c, 6, n), in standard deviations of the innovations."""
+    squares = [
+        np.sum((own / np.sqrt(found.variance)[:, None]) ** 2, axis=(1, 2))
+        for own, found in zip(columns, bank.tunings, strict=True)
+    ]
+    return np.asarray(np.sqrt(np.sum(squares, axis=0)))
