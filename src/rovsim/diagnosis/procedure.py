@@ -35,6 +35,7 @@ from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.lost import ModelLost, require_held
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
@@ -77,13 +78,17 @@ def diagnose(
     stage: Stages = lambda name: None,
 ) -> TrainDiagnosis:
     """Find what a model lacks on the train runs of a campaign."""
-    usable = select_usable(train)
-    if not usable.enough:
-        return TrainDiagnosis(base, usable)
     one_thread = threadpool_limits(1, "blas")  # matrices are too small for several to help
     # models that diverge on the way are refused by what is not finite
     with one_thread, np.errstate(over="ignore", invalid="ignore"):
-        return _diagnose(base, usable, settings, catalogue, seed, stage)
+        usable = select_usable(train)
+        while usable.enough:
+            try:
+                return _diagnose(base, usable, settings, catalogue, seed, stage)
+            except ModelLost as away:
+                runs, lost = away.leave_out(usable.runs)
+                usable = select_usable(runs, {**usable.lost, **lost})
+        return TrainDiagnosis(base, usable)
 
 
 def _diagnose(
@@ -178,6 +183,7 @@ def _observe(
     candidates = [one for one in listed if (base + one.start).possible]
     while True:
         sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
+        require_held(sensitivities.base)
         noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
         if not noise.drift or close.paths:
             break

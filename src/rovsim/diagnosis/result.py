@@ -84,6 +84,7 @@ def report(
         noise=_noise(found),
         posterior=_describe_posterior(found),
         looked_at=looked_at,
+        not_followed_from_s={run: round(at, 1) for run, at in found.usable.lost.items()},
         base=dict(base),
         ladder=ladder,
     )

@@ -144,7 +144,8 @@ class Diagnosis(Result):
     """The verdict and all that led to it; `base` is the diagnosed model's file.
 
     `not_excited` axes that nobody moved, `not_measured` those that nobody measured;
-    `not_observable` effects that the runs could not show, were they there.
+    `not_observable` effects that the runs could not show, were they there; `not_followed_from_s` s
+    from which on the model runs away from a train run, by its id.
     """
 
     noun: ClassVar[str] = "diagnosis"
@@ -168,6 +169,7 @@ class Diagnosis(Result):
     noise: FittedNoise = FittedNoise()
     posterior: Posterior | None = None
     looked_at: LookedAt | None = None
+    not_followed_from_s: dict[str, float] = Field(default_factory=dict)
     base: dict[str, JsonValue]
     ladder: Ladder
 

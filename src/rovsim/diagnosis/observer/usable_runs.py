@@ -1,7 +1,7 @@
 """The runs a model is judged by: what they can show, and whether that is enough."""
 
-from dataclasses import dataclass, replace
-from typing import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -19,7 +19,7 @@ class UsableRuns:
     """Runs with something to observe, and s of settled readings.
 
     `still` axes that were measured, and none of them moved; `unmeasured` those nobody measured,
-    `held` those in which the vehicle cannot move.
+    `held` those in which the vehicle cannot move. `lost`: s from which on a run is not followed.
     """
 
     runs: tuple[ObservedRun, ...]
@@ -27,6 +27,7 @@ class UsableRuns:
     unmeasured: tuple[str, ...]
     held: tuple[str, ...]
     seconds: float
+    lost: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def enough(self) -> bool:
@@ -44,13 +45,15 @@ class UsableRuns:
         return replace(self, runs=tuple(replace(run, wanders=False) for run in self.runs))
 
 
-def select_usable(train: Sequence[ObservedRun]) -> UsableRuns:
-    """The train runs that have a usable stretch."""
+def select_usable(
+    train: Sequence[ObservedRun], lost: Mapping[str, float] | None = None
+) -> UsableRuns:
+    """The train runs that have a usable stretch; `lost` are s from which on one is not followed."""
     runs = tuple(run for run in train if len(run.spans))
     seconds = float(sum(run.settled.sum() * run.period for run in runs))
     free, measured, moved = _ask(runs)
     still, unmeasured, held = measured & free & ~moved, free & ~measured, ~free
-    return UsableRuns(runs, _name(still), _name(unmeasured), _name(held), seconds)
+    return UsableRuns(runs, _name(still), _name(unmeasured), _name(held), seconds, lost or {})
 
 
 def _name(axes: Array) -> tuple[str, ...]:

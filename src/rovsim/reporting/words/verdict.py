@@ -83,6 +83,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         *still_sentences(found.not_excited),
         *silent_sentences(found),
         *part_sentences(found.looked_at),
+        *lost_sentences(found.not_followed_from_s),
     ]
     missing = tuple(
         _missing(one, catalogue.get(one.effect), above=bool(place))
@@ -290,6 +291,14 @@ def silent_sentences(found: Diagnosis) -> list[str]:
     unmeasured = f"Not measured, and so without errors: {listed(axes)}."
     unseen = f"Even if present, these could not be seen in these recordings: {listed(effects)}."
     return [*([unmeasured] if axes else []), *([unseen] if effects else [])]
+
+
+def lost_sentences(lost: Mapping[str, float]) -> list[str]:
+    """Train runs of which a part was left out, because the model runs away there."""
+    if not lost:
+        return []
+    parts = listed(f"{run} from {at:.1f} s on" for run, at in lost.items())
+    return [f"The model runs away although it is corrected at every reading: {parts} is not used."]
 
 
 def part_sentences(looked_at: LookedAt | None) -> list[str]:

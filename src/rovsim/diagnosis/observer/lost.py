@@ -1,0 +1,46 @@
+"""Where the observer loses a model, however it is corrected: nothing can be learned there.
+
+A filter corrects what is measured. A vehicle that tumbles while nobody measures how fast it moves
+ahead and sideways may carry a model there to infinity.
+"""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.noise_fit import LONGEST_MEMORY
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+
+
+class ModelLost(Exception):
+    """Innovations e (6, n) of each run are not finite everywhere."""
+
+    def __init__(self, e: Sequence[Array]) -> None:
+        super().__init__("the model runs away from the recordings")
+        self.held = [np.isfinite(one).all(axis=0) for one in e]
+
+    def leave_out(self, runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], dict[str, float]]:
+        """The same runs, or longer ones, without those stretches; from which s on, by run.
+
+        A stretch begins as long before as a disturbance is remembered.
+        """
+        kept, lost = [], {}
+        for run, held in zip(runs, self.held, strict=True):
+            if not held.all():
+                away, time = run.time[: len(held)][~held], run.motion.time
+                begin = float(away[0]) - LONGEST_MEMORY
+                run = run.limited((time < begin) | (time > away[-1]))
+                lost[run.motion.run.id] = max(begin, float(time[0]))
+            kept.append(run)
+        return kept, lost
+
+
+def require_held(e: Sequence[Array]) -> None:
+    """Refuse to go on where innovations e (6, n) of some run are not finite.
+
+    Raises:
+        ModelLost: they are not.
+    """
+    if not all(np.isfinite(one).all() for one in e):
+        raise ModelLost(e)
