@@ -3,7 +3,7 @@
 import pytest
 
 from rovsim.apps.cli.main import main
-from rovsim.core.progress import counted, heard_by, reported, staged
+from rovsim.core.progress import counted, heard_by, reported, staged, step
 
 
 @pytest.mark.parametrize("flag", ["--quiet", "-q", "output=quiet"])
@@ -36,3 +36,32 @@ def test_progress_reaches_a_listener_and_never_goes_back():
     assert shares == [None, 0.0, 0.25, 0.5, 0.75]
     assert ("reporting", 0.5) in told
     assert told[-1] == ("diagnosing: scoring", 0.9)
+
+
+def test_a_stage_goes_on_with_its_steps_and_never_back():
+    told = []
+    with (
+        heard_by(lambda what, share: told.append((what, share))),
+        staged("diagnosing", {"observing": 0.1, "searching": 0.5, "checking": 0.9}) as stage,
+    ):
+        for name in ("observing", "searching", "checking", "observing"):  # it may begin again
+            stage(name)
+            for _ in range(50):
+                step()
+    shares = [share for _, share in told if share is not None]
+    assert shares == sorted(shares)
+    assert len(shares) > 60
+    assert 0.3 < max(s for what, s in told if s and what.endswith("observing") and s < 0.5) < 0.5
+    assert shares[-1] < 1.0
+    step()  # nobody looks
+
+
+def test_a_diagnosis_tells_of_its_steps_and_of_every_figure(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("rovsim.core.second_process.usable_cores", lambda: 1)
+    main(["tank", "tank=tiny", "tank.duration=20", "out=raw", "--quiet"])
+    told = []
+    with heard_by(lambda what, share: told.append((what, share))):
+        main(["diagnose", "campaign=raw", "out=found", "--json"])
+    assert len({share for what, share in told if what == "diagnosing: observing"}) > 20
+    assert len({share for what, share in told if what == "drawing"}) > 3

@@ -6,6 +6,8 @@ from contextvars import ContextVar
 from typing import Callable, Iterable, Iterator, Mapping, Sequence, TypeVar
 
 T = TypeVar("T")
+HALF = 40  # steps of a stage after which it is shown as half over
+FINEST = 0.002  # share: less is not told
 Tell = Callable[[str, float | None], None]  # what is done, and the share done (None: unknown)
 
 
@@ -13,7 +15,39 @@ def _nobody(what: str, share: float | None) -> None:
     """Say nothing."""
 
 
+class _Bar:
+    """How far stages are, of which nobody knows how many steps they have.
+
+    Within a stage the share nears the next one's begin, and never gets there; what is begun again
+    goes on from where it was.
+    """
+
+    def __init__(self, what: str, begins: Mapping[str, float], tell: Tell) -> None:
+        self.what, self.begins, self.tell = what, begins, tell
+        self.text, self.low, self.high = what, 0.0, 1.0
+        self.steps, self.share = 0, 0.0  # in this stage; as told
+
+    def begin(self, name: str) -> None:
+        """Tell that a stage begins."""
+        self.low = max(self.share, self.begins.get(name, 0.0))
+        self.high = min((b for b in self.begins.values() if b > self.low), default=1.0)
+        self.text, self.steps = f"{self.what}: {name}", 0
+        self._tell(self.low)
+
+    def step(self) -> None:
+        """Tell that it goes on, if anybody would see that."""
+        self.steps += 1
+        share = self.low + (self.high - self.low) * self.steps / (self.steps + HALF)
+        if share - self.share > FINEST:
+            self._tell(share)
+
+    def _tell(self, share: float) -> None:
+        self.share = share
+        self.tell(self.text, share)
+
+
 _listener: ContextVar[Tell | None] = ContextVar("listener", default=None)
+_bar: ContextVar[_Bar | None] = ContextVar("bar", default=None)
 
 
 @contextmanager
@@ -45,10 +79,22 @@ def reported(what: str) -> Iterator[Callable[[int, int], None]]:
 def staged(what: str, begins: Mapping[str, float]) -> Iterator[Callable[[str], None]]:
     """Yield a function to be called with the name of each stage as it begins.
 
-    `begins`: share of the time that is usually over when a stage begins.
+    `begins`: share of the time that is usually over when a stage begins. Between two stages every
+    `step` that is told goes on towards the next.
     """
     with _shown(what) as tell:
-        yield lambda name: tell(f"{what}: {name}", begins.get(name))
+        bar = _Bar(what, begins, tell)
+        token = _bar.set(bar)
+        try:
+            yield bar.begin
+        finally:
+            _bar.reset(token)
+
+
+def step() -> None:
+    """Tell that one of the many steps of a stage is done; nothing where no stages are shown."""
+    if bar := _bar.get():
+        bar.step()
 
 
 @contextmanager

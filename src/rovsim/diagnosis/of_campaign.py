@@ -7,6 +7,7 @@ from typing import Callable
 import numpy as np
 
 from rovsim.core.files import write_text
+from rovsim.core.progress import step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.equations.proposal import FILE
 from rovsim.diagnosis.found import TrainDiagnosis
@@ -105,6 +106,7 @@ def _climb(
     for name in runs.of("test"):
         motion = runs.motions[name]
         for model, score in zip(models, scores, strict=True):
+            step()
             replayed = replay(model, motion, settings.signals, how, open_loop=False)
             score.add(motion, subtract(motion, replayed.horizons[HORIZON]))
     steps = [score.step for score in scores]

@@ -7,6 +7,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.progress import step
 from rovsim.diagnosis.observer.autoregression import COUPLED, Stretches, fit_autoregression
 from rovsim.diagnosis.observer.drifting_current import DriftFit, MovingWater
 from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
@@ -193,4 +194,5 @@ class FilterBank:
 
         `known`: derivatives of another hypothesis, which stand for those to the same parameters.
         """
+        step()
         return linearise(at, self.evaluate, known)

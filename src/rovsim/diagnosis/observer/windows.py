@@ -12,6 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.integrate import cumulative_simpson
 
+from rovsim.core.progress import step
 from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
@@ -38,6 +39,7 @@ class WindowErrors:
 
 def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> WindowErrors:
     """Errors of models in windows of 2 s."""
+    step()
     able = [m for m in models if m.possible]
     parts = [Windows(run).compare(able) for run in runs]
     rmse = np.full((len(models), 6), np.nan)

@@ -40,14 +40,19 @@ def present(
 def draw(out: Path, data: ReportData, drawn: Iterable[Drawn] = ()) -> list[Drawn]:
     """All figures of what is known; those that are not yet `drawn` go into `out`/figures."""
     known = {one.wanted: one for one in drawn}
-    wanted = [(figure, "") for figure in data.figures]
-    wanted += [(figure.name, run) for run in data.drawn for figure in list_run_figures()]
-    left = [one for one in wanted if one not in known]
-    known |= {one: _draw(out, *one, data) for one in counted(left, "drawing")}
-    return [known[one] for one in wanted]
+    left = [one for one in list_wanted(data) if one not in known]
+    known |= {one: draw_one(out, *one, data) for one in counted(left, "drawing")}
+    return [known[one] for one in list_wanted(data)]
 
 
-def _draw(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
+def list_wanted(data: ReportData) -> list[Wanted]:
+    """All figures of what is known, in the order of the page."""
+    once = [(figure, "") for figure in data.figures]
+    return once + [(figure.name, run) for run in data.drawn for figure in list_run_figures()]
+
+
+def draw_one(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
+    """Draw one figure of what is known, or of one run of it, into `out`/figures."""
     paths = save(data.draw(figure, run), out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
     picture = report.Picture.read(png, figure, describe(figure, run, data), run)

@@ -19,7 +19,7 @@ from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.extras import installed
-from rovsim.core.progress import reported
+from rovsim.core.progress import counted, reported
 from rovsim.core.second_process import call, second_process
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
@@ -47,11 +47,17 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     base = load_one_model(settings.model, data.vehicle, catalogue)
     tracking = settings.tracking if installed("tracking") else None
     with second_process(DRAWING, SHOWING, *(LOGGING if tracking else ())) as other:
-        early: list[Future] = []
+        drawing: dict[str, Future] = {}
+
+        def draw(known: ReportData) -> None:
+            for figure in known.figures:
+                if figure not in drawing:
+                    drawing[figure] = other.submit(
+                        call, f"{DRAWING}:draw_one", out, figure, "", known
+                    )
 
         def draw_early(where: ErrorConditions) -> None:
-            known = ReportData(where=where, quality=data.quality)
-            early.append(other.submit(call, f"{DRAWING}:draw", out, known))
+            draw(ReportData(where=where, quality=data.quality))
 
         how = select(settings, DiagnosisSettings)
         found = diagnose(data.runs, base, how, catalogue, draw_early)
@@ -62,18 +68,19 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             where=found.where,
             diagnosis=found.diagnosis,
         )
-        drawn = [one for future in early for one in future.result()]
-        origin = provenance(settings, catalogue, data.campaign)
-        last = other.submit(
-            call, f"{SHOWING}:show_diagnosis",
-            out, data.campaign.name, base.name, shown, drawn, origin, settings.effect_files,
-            how.model_dump(mode="json"), tracking,
-        )  # fmt: skip
+        draw(shown)
 
         from rovsim.reporting.words.terminal import tell_diagnosis
 
         files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
         text = tell_diagnosis(found.diagnosis, catalogue)
         say(settings, f"{text}\n\n{files}", found.diagnosis.to_json())
-        with reported("drawing and logging"):
+        drawn = [future.result() for future in counted(list(drawing.values()), "drawing")]
+        origin = provenance(settings, catalogue, data.campaign)
+        last = other.submit(
+            call, f"{SHOWING}:show_diagnosis",
+            out, data.campaign.name, base.name, shown, drawn, origin, settings.effect_files,
+            how.model_dump(mode="json"), tracking,
+        )  # fmt: skip
+        with reported("writing the page and logging" if tracking else "writing the page"):
             last.result()
