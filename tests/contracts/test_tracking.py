@@ -1,12 +1,16 @@
 """What is tracked: a database that is whole, whoever is killed; runs that can be ranked."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from mlflow.store.tracking import sqlalchemy_store
 from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import TrackingSettings, compose
 from rovsim.application.tracking.runs import ranking, track
-from rovsim.apps.cli.sweep import name_run
+from rovsim.apps.cli.sweep import choose_out, name_run
 from rovsim.core.errors import BadInput
 
 
@@ -79,3 +83,14 @@ def test_models_are_ranked_where_there_is_a_test_run():
     errors = {"nominal": 0.2, "model": 0.05, "untested": None}
     assert ranking(errors, "model", "nominal") == {"windows_2s": 0.05, "windows_2s/of_base": 0.25}
     assert ranking(errors, "untested", "nominal") == {}
+
+
+def test_jobs_of_a_sweep_have_folders_of_their_own_in_one_that_is_given():
+    assert choose_out(None, "/r/multirun/now/3", "3") == "/r/multirun/now/3"
+    assert choose_out("mine", "/r/multirun/now/3", "3") == str(Path("mine", "3"))
+
+
+def test_a_sweep_overwrites_nothing(tmp_path):
+    words = ["tank", "-m", "tank=tiny", "tank.duration=3", "tank.seed=1,2", "out=mine"]
+    subprocess.run([sys.executable, "-m", "rovsim", *words], cwd=tmp_path, check=True)
+    assert {p.parent.name for p in (tmp_path / "mine").rglob("campaign.yaml")} == {"0", "1"}

@@ -1,5 +1,6 @@
 """One job of a Hydra multirun; importable, so that every launcher can send it to a worker."""
 
+from pathlib import Path
 from typing import Any, Sequence
 
 from rovsim.application.settings import Settings, settings_of
@@ -18,11 +19,15 @@ def job(composed: Any) -> None:
     hydra = HydraConfig.get()
     try:
         settings = name_run(settings_of(composed), hydra.overrides.task)
-        if settings.out is None:
-            settings = settings.model_copy(update={"out": hydra.runtime.output_dir})
-        run_command(settings)
+        out = choose_out(settings.out, hydra.runtime.output_dir, hydra.sweep.subdir)
+        run_command(settings.model_copy(update={"out": out}))
     except RovsimError as error:
         complain(str(error))
+
+
+def choose_out(given: str | None, own: str, name: str) -> str:
+    """Folder of a job: `own` is Hydra's; in a folder that is given, one of the same name."""
+    return own if given is None else str(Path(given, name))
 
 
 def name_run(settings: Settings, overrides: Sequence[str]) -> Settings:

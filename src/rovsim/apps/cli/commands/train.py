@@ -2,10 +2,13 @@
 
 rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6dof|all out=OUT
 
-Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, and
-an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5 control=3dof,6dof. Needs
-the extras rovsim[learn,tracking].
+Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, figures
+of the errors, and an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5
+control=3dof,6dof; each combination has a folder of its own, in OUT if that is given. Needs the
+extras rovsim[learn,tracking].
 """
+
+from typing import Mapping
 
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
@@ -20,8 +23,13 @@ from rovsim.core.extras import require
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import ARRAYS
+from rovsim.evaluation.scored import Scored
+from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.words.terminal import tell_comparison
+from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.growth import Growth
+from rovsim.results.quality import Quality
 
 
 class Settings(TrainingSettings, CampaignSettings):
@@ -32,6 +40,8 @@ class Settings(TrainingSettings, CampaignSettings):
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Train, write, score, and log."""
+    from rovsim.reporting.html.folder import draw
+
     require("learn", "tracking", by="rovsim train")
     kind = settings.learner.kind
     name = f"{kind}_{settings.control}"
@@ -44,6 +54,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     scored = score_models([base, corrected], data.motions, settings)
     found = scored.comparison
     found.write(out / "comparison.json")
+    said = {base.name: base.name, corrected.name: _name(base.name, name)}
+    pictures = draw(out, _shown(scored, said, data.quality))
     errors = {step.model: step.windows_2s for step in scored.steps}
     with reported("logging to MLflow"):
         track(
@@ -53,8 +65,28 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
             scores=found.models["model"].runs,
-            files=[file, out / ARRAYS, out / "comparison.json"],
+            files=[
+                file,
+                out / ARRAYS,
+                out / "comparison.json",
+                *(path for one in pictures for path in one.files),
+            ],
             metrics=ranking(errors, corrected.name, base.name),
         )
-    text = tell_comparison(errors, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
+    told = {said[model]: error for model, error in errors.items()}
+    text = tell_comparison(told, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
     say(settings, f"{text}\n\n{file}", {"model": str(file), "errors": errors})
+
+
+def _name(base: str, learned: str) -> str:
+    """What the new model is; its file, by which files call it, is always called `model`."""
+    return learned if base == "nominal" else f"{base}+{learned}"
+
+
+def _shown(scored: Scored, said: Mapping[str, str], quality: Mapping[str, Quality]) -> ReportData:
+    """What figures show of the errors, the models called by what they are."""
+    comparison = {said[name]: one for name, one in scored.comparison.models.items()}
+    growth = {said[name]: one for name, one in scored.growth.models.items()}
+    return ReportData(
+        comparison=Comparison(models=comparison), growth=Growth(models=growth), quality=quality
+    )
