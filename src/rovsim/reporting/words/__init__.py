@@ -5,5 +5,6 @@ sentences         the report's summary
 speed             what the timing says about control loops
 published_errors  folds beside published errors, pitfalls
 experiment        what a designed flight promises
+symbols           what the letters of an equation stand for
 terminal          what `compare` and `diagnose` say when they are done
 """
