@@ -1,6 +1,7 @@
 """What numbers say, in plain language: one statement for terminal, report, workbench and notebook.
 
 verdict           what a diagnosis found
+symbols           what the symbols of an equation stand for
 sentences         the report's summary
 speed             what the timing says about control loops
 published_errors  folds beside published errors, pitfalls
