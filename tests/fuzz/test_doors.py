@@ -9,13 +9,17 @@ import signal
 import traceback
 import zlib
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fuzz.entries import ENTRIES
+from fuzz.entry import ENTRIES
 from rovsim.core.errors import RovsimError
+
+for doors in sorted(Path(__file__).parent.glob("[!_t]*.py")):
+    import_module(f"fuzz.{doors.stem}")
 
 COUNT = int(os.environ.get("ROVSIM_FUZZ", "20"))  # inputs at each door
 FIRST = int(os.environ.get("ROVSIM_FUZZ_FIRST", "0"))  # seed of the first
