@@ -3,7 +3,6 @@
 The limit on the size of a file stands for the disk (EFBIG for ENOSPC); as root, a disk of 256 kB.
 """
 
-import json
 import os
 import resource
 import subprocess
@@ -82,15 +81,12 @@ def test_a_command_on_a_full_disk_says_which_file(small_disk, tmp_path, capsys):
     capsys.readouterr()
     with pytest.raises(SystemExit) as ended:
         main(["compare", f"campaign={tmp_path}/tank", f"out={small_disk}/out", "--quiet"])
-    said = capsys.readouterr().err
+    said = " ".join(capsys.readouterr().err.split())  # it is folded
     assert ended.value.code == 2
     assert said.startswith(f"rovsim: {small_disk}/out/")
     assert "cannot be written (No space left on device)" in said
     assert "Traceback" not in said
-    for path in (small_disk / "out").rglob("*"):
-        assert not path.name.startswith("."), "a temporary file is left"
-        if path.suffix == ".json":
-            json.loads(path.read_text())
+    assert not list((small_disk / "out").iterdir()), "a comparison is there whole or not at all"
 
 
 def test_a_tank_on_a_full_disk_leaves_no_folder(tmp_path):

@@ -64,16 +64,20 @@ def folder_beside(path: Path, told: Path | None = None) -> Iterator[Path]:
 def appearing_together(folder: Path, last: str) -> Iterator[Path]:
     """Yield a temporary folder; on success its files move into `folder`, over those of their names.
 
-    All are complete by then, so that a full disk leaves the old ones. The file `last` is moved
-    after all others: where it is new, all are.
+    Those in folders inside it, too. All are complete by then, so that a full disk leaves the old
+    ones. The file `last` is moved after all others: where it is new, all are.
 
     Raises:
         BadInput: no file can be written there.
     """
     with folder_beside(folder / last, told=folder) as made:
         yield made
-        for path in sorted(made.iterdir(), key=lambda path: (path.name == last, path.name)):
-            os.replace(path, folder / path.name)
+        inside = [path.relative_to(made) for path in made.rglob("*") if path.is_file()]
+        inside.sort(key=lambda path: (path == Path(last), path))
+        for place in {folder / path.parent for path in inside}:
+            _make(place)  # before the first file moves: what fails, fails here
+        for path in inside:
+            os.replace(made / path, folder / path)
 
 
 def _beside(path: Path, a_folder: bool = False) -> Path:
@@ -98,6 +102,14 @@ def _beside(path: Path, a_folder: bool = False) -> Path:
         raise _unwritable(path, error) from None
     os.close(handle)
     return Path(name)
+
+
+def _make(folder: Path) -> None:
+    """A folder, if it is not there."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _unwritable(folder, error) from None
 
 
 def _remove(path: Path) -> None:

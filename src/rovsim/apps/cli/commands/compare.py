@@ -14,6 +14,7 @@ from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
+from rovsim.core.files import appearing_together
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.words.terminal import tell_comparison
 
@@ -34,15 +35,16 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     assert found.comparison is not None
     assert found.where is not None
     assert found.forces is not None
-    found.where.write(out / "where.json")
-    found.forces.write(out / "budget.json")
-    found.comparison.write(out / "comparison.json")
-    if found.coverage is not None:
-        found.coverage.write(out / "bands.json")
-    else:
+    with appearing_together(out, last="comparison.json") as folder:
+        found.where.write(folder / "where.json")
+        found.forces.write(folder / "budget.json")
+        found.comparison.write(folder / "comparison.json")
+        if found.coverage is not None:
+            found.coverage.write(folder / "bands.json")
+        origin = provenance(settings, catalogue, campaign)
+        present(folder, campaign.name, found, origin, catalogue)
+    if found.coverage is None:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
-    origin = provenance(settings, catalogue, campaign)
-    present(out, campaign.name, found, origin, catalogue)
     errors = {step.model: step.windows_2s for step in found.steps}
     text = tell_comparison(errors, found.where, bool(data.runs.of("test")), found.coverage)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
