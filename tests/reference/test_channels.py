@@ -279,3 +279,29 @@ def test_without_any_commands_the_section_may_be_left_out(tmp_path):
     del content["commands"]
     with pytest.raises(BadInput, match=r"'commands' is missing, and run 'one' has commands"):
         load_campaign(write_campaign(tmp_path, content))
+
+
+@pytest.mark.parametrize("posed", [True, False], ids=["poses", "channels"])
+def test_what_lies_outside_of_the_used_spans_is_left_out_and_counted(tmp_path, posed):
+    lines = csv_lines(Swim.ned()) if posed else sparse(ANGLES)
+    whole, nothing = read(tmp_path / "whole", lines)
+    recording, counts = read(tmp_path / "part", lines, run={"use": [[0.5, 1.5], [2.0, 2.5]]})
+    assert nothing.left_out == 0
+    assert counts.left_out > 0
+    if posed:
+        times = recording.time[recording.found]
+        assert len(times) == whole.found.sum() - counts.left_out
+        assert (recording.time == whole.time).all()
+    else:
+        times = recording.time
+        assert len(times) == len(whole.time) - counts.left_out
+        assert all(np.isin(c.time, times).all() for c in recording.channels.values())
+    assert np.all(((times >= 0.5) & (times <= 1.5)) | ((times >= 2.0) & (times <= 2.5)))
+
+
+@pytest.mark.parametrize(
+    ("use", "said"), [([[900, 950]], "holds nothing"), ([[2, 1]], "the earlier time first")]
+)
+def test_spans_that_hold_nothing_are_refused(tmp_path, use, said):
+    with pytest.raises(BadInput, match=said):
+        read(tmp_path, csv_lines(Swim.ned()), run={"use": use})

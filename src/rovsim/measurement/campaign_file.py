@@ -34,6 +34,12 @@ def _interval(value: list[float]) -> list[float]:
     return value
 
 
+def _span(value: list[float]) -> list[float]:
+    if value[0] >= value[1]:
+        raise ValueError("[from, to] in s, the earlier time first")
+    return value
+
+
 def _distinct(names: list[str]) -> list[str]:
     if len(set(names)) < len(names):
         raise ValueError("different names, each named once")
@@ -44,6 +50,8 @@ Text = Annotated[Name, BeforeValidator(_as_text), Field(min_length=1)]
 Place = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
 FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
 Interval = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_interval)]
+
+Span = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_span)]
 
 
 class Tank(Section):
@@ -131,7 +139,9 @@ class CommandLog(Section):
 class Run(Section):
     """One run: its files, relative to the folder of the recordings.
 
-    `commands` is `none` where nothing was commanded (free decay, towing, drifting).
+    `commands` is `none` where nothing was commanded (free decay, towing, drifting). `use`: spans
+    [from, to] in s, on the clock of the recording, outside of which it is left out (held by hand,
+    on the floor); None: all of it.
     """
 
     id: FileName
@@ -139,6 +149,7 @@ class Run(Section):
     split: Literal["train", "test"]
     mocap: Place
     commands: Place
+    use: Annotated[list[Span], Field(min_length=1)] | None = None
 
     @property
     def commanded(self) -> bool:

@@ -46,6 +46,7 @@ class Anomalies:
     command_dropped: int = 0
     command_clipped: int = 0
     command_long_steps: int = 0
+    left_out: int = 0  # outside of what is to be used
     notes: tuple[str, ...] = ()
 
     @property
@@ -68,10 +69,11 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     if run.commanded:
         _check_overlap(export.time, commands.time, campaign.commands_path(run))
     export, commands = _from_zero(export, _with_battery(commands, export.channels))
+    export, left_out = _use(export, run)
     info = RunInfo(run.id, run.control, run.split)
     recording = to_ned(export, mocap, info, site(campaign), commands)
     notes = tuple(dict.fromkeys([*export.notes, *notes]))
-    return recording, Anomalies(**counts, **command_counts, notes=notes)
+    return recording, Anomalies(**counts, **command_counts, left_out=left_out, notes=notes)
 
 
 def site(campaign: Campaign) -> Site:
@@ -110,6 +112,44 @@ def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
     export = replace(export, time=export.time - start, channels=moved)
     beside = {k: replace(x, time=x.time - start) for k, x in commands.auxiliary.items()}
     return export, replace(commands, time=commands.time - start, auxiliary=beside)
+
+
+def _use(export: Export, run: Run) -> tuple[Export, int]:
+    """What lies in the spans of a run that are to be used, and how many lines do not.
+
+    Poses stay as lines in which the body was not seen, so that the clock goes on.
+
+    Raises:
+        BadInput: nothing lies in them.
+    """
+    if run.use is None:
+        return export, 0
+
+    def inside(time: Array) -> Array:
+        return np.any([(time >= begin) & (time <= end) for begin, end in run.use or ()], axis=0)
+
+    used = inside(export.time)
+    if not used.any():
+        raise BadInput(
+            f"{run.use} holds nothing of it: it lasts from {export.time[0]:.10g} to "
+            f"{export.time[-1]:.10g} s",
+            where=f"campaign.yaml, run {run.id}, use",
+            expected="spans [from, to] in s on the clock of the recording",
+            remedy="Look at the time axis of the figures that `rovsim compare` draws.",
+        )
+    kept = {
+        name: replace(one, time=one.time[inside(one.time)], value=one.value[inside(one.time)])
+        for name, one in export.channels.items()
+    }
+    if not export.found.any():
+        return _cut(export, used, kept), int(np.sum(~used))
+    return replace(export, found=export.found & used, channels=kept), int(np.sum(~used))
+
+
+def _cut(export: Export, used: Array, kept: Channels) -> Export:
+    """Without the lines that are not used, where there are no poses."""
+    rows = {n: getattr(export, n)[used] for n in ("time", "position", "attitude", "found")}
+    return replace(export, **rows, channels=kept)
 
 
 def _with_battery(commands: Commands, channels: Channels) -> Commands:
