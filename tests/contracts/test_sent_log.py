@@ -11,9 +11,11 @@ from rovsim.application.pipeline import design
 from rovsim.application.pipeline.design import Designed, write_flight
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
+from rovsim.core.schema import checked
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.results.experiment import Expected, Experiment, Keeps, Start
 from rovsim.simulation.synthetic_tank.sent_log import read_sent_log
+from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 LOG = CommandLog(format="csv", kind="pwm", columns=("t1", "t2"))
 NAMES = {"experiment.csv", "experiment.json", "experiment.pdf", "experiment.png"}
@@ -84,6 +86,11 @@ def test_a_log_lasts_for_some_seconds(tmp_path, time):
     (tmp_path / "log.csv").write_text(lines(time))
     with pytest.raises(BadInput, match=r"lines of commands, which last .* 2 to 1800 s"):
         read_sent_log(tmp_path / "log.csv", LOG, up=True)
+
+
+def test_a_run_of_the_tank_fits_into_memory():
+    with pytest.raises(BadInput, match=r"'duration' is .* less than or equal to 7200"):
+        checked(TankSettings, {"duration": 1e9}, "command line")
 
 
 def test_a_log_without_a_plan_says_from_where_it_is_flown(tmp_path, capsys):

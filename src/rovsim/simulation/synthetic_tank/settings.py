@@ -118,7 +118,8 @@ class TankSettings(Section):
     name: str = "tank"
     seed: Annotated[int, Field(ge=0)] = 0
     vehicle: str = Field(default_factory=default_vehicle)
-    duration: PositiveFloat = 60.0  # s a run
+    # s a run; two hours of states take some 3 GB
+    duration: Annotated[float, Field(gt=0.0, le=7200.0)] = 60.0
     runs: Annotated[tuple[TankRun, ...], Field(min_length=1)] = (
         TankRun(id="3dof-1", control="3dof", split="train"),
         TankRun(id="3dof-2", control="3dof", split="test"),
