@@ -23,6 +23,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
 from rovsim.diagnosis.selection.idle_effects import drop_idle
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.unsure_effects import drop_unsure
 from rovsim.dynamics.model import Model
 
 
@@ -64,11 +65,11 @@ class Answer:
 
 def settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> Answer:
     """Names that a user would notice; where they leave something, the others too if they do not."""
-    noticed = drop_idle(selection)
+    noticed = drop_idle(drop_unsure(selection))
     found = settle(noticed, usable, gate)
     if not found.lasting:
         return found
-    every = search_unnoticed(selection, seed)
+    every = drop_unsure(search_unnoticed(selection, seed))
     if every.found is noticed.found:
         return found
     more = settle(every, usable, gate)

@@ -286,11 +286,11 @@ def _lasts(motion: Motion, a: int, b: int) -> bool:
     return bool((b - a) * time_step(motion.time) > SHORTEST)
 
 
-def number_blocks(runs: Sequence[ObservedRun]) -> Array:
-    """Number of the block of some 10 s that each settled innovation lies in, over all runs."""
+def number_blocks(runs: Sequence[ObservedRun], seconds: float = BLOCK) -> Array:
+    """Number of the block of time that each settled innovation lies in, over all runs."""
     parts, count = [np.arange(0)], 0
     for one in runs:
-        number = (one.time[one.settled] / BLOCK).astype(int)
+        number = (one.time[one.settled] / seconds).astype(int)
         kept, own = np.unique(number, return_inverse=True)
         parts.append(own + count)
         count += len(kept)

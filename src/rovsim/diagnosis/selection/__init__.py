@@ -17,6 +17,7 @@ rivals             where that ended, and what else the effects could be
 smoothed           beside what the camera does
 gate               stretches that took no part must be replayed no worse
 idle_effects       what does not help where it was not fitted goes
+unsure_effects     nor what few stretches of time make sure, where a velocity is not measured
 joint_fit          much is missing at once: all that could be wrong, then pruned
 nominal_terms      what the vehicle file states, as terms that may be wrong
 nominal_refit      the same, fitted alone: a step of the ladder to compare with

@@ -1,0 +1,50 @@
+"""Where readings of one stretch of time err alike, an effect is as sure as stretches make it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flown import observed
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.observer.observed_run import number_blocks
+from rovsim.diagnosis.selection.gauss_newton import fit
+from rovsim.diagnosis.selection.unsure_effects import estimate_spread
+from rovsim.dynamics.catalogue import built_in
+
+DRAG = built_in()["quadratic_damping"]
+
+
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory):
+    base, runs = observed(tmp_path_factory.mktemp("unsure"), duration=120.0)
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    noise = bank.fit_noise(bank.innovations(base), FIRST_NOISE).noise
+    return bank, fit(Hypothesis(base, (Term(DRAG(), ("surge",)),)), bank, noise)
+
+
+def spread(bank, found, lasting):
+    """Variance of the drag where innovations of each block have a push of that size in common."""
+    blocks = number_blocks(bank.runs)
+    random = np.random.default_rng(1)
+    shown = bank.whiten(found.seen.e, found.noise)
+    scale = bank.tunings[0].variance[:, None] ** 0.5
+    pushes = random.normal(size=(blocks.max() + 1, 6, 1)) * scale
+    settled = bank.runs[0].settled
+    assert shown.shape[-1] == settled.sum()
+    e = found.seen.e[0].copy()
+    e[:, settled] += lasting * np.concatenate([pushes[b] for b in blocks], axis=1)
+    moved = replace(found, seen=replace(found.seen, e=[e]))
+    return float(estimate_spread(moved, bank, blocks)[0, 0])
+
+
+def test_blocks_of_independent_readings_tell_what_the_readings_do(fitted):
+    bank, found = fitted
+    assert 0.2 < spread(bank, found, 0.0) / found.covariance[0, 0] < 5.0
+
+
+def test_what_blocks_have_in_common_makes_a_value_less_sure(fitted):
+    bank, found = fitted
+    assert spread(bank, found, 1.0) > 3.0 * spread(bank, found, 0.0)
