@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from rovsim.application.pipeline import training
 from rovsim.apps.cli.main import main
 from rovsim.core.array_files import write_arrays
 from rovsim.core.errors import BadInput
 from rovsim.core.files import copy_file, folder_beside, write_bytes, write_json, write_text
+from rovsim.dynamics.learned.residual import ARRAYS
 from rovsim.reporting.figures import signature, style
 
 
@@ -94,6 +96,22 @@ def test_a_tank_on_a_full_disk_leaves_no_folder(tmp_path):
     with largest(1000), pytest.raises(SystemExit):
         main(words)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("few_figures")
+def test_a_model_is_never_beside_the_arrays_of_another_training(tmp_path, monkeypatch):
+    def full(*_):
+        raise BadInput("no room", where="x", expected="room", remedy="Make room.")
+
+    monkeypatch.chdir(tmp_path)
+    main(["tank", "tank=tiny", "tank.duration=8", "out=tank"])
+    words = ["train", "campaign=tank", "residual=knn", "out=trained"]
+    main(words)
+    kept = {name: (tmp_path / "trained" / name).read_bytes() for name in ("model.yaml", ARRAYS)}
+    monkeypatch.setattr(training, "write_model", full)
+    with pytest.raises(SystemExit):
+        main([*words, "residual.k=9", "residual.weights=uniform", "seed=3"])
+    assert {name: (tmp_path / "trained" / name).read_bytes() for name in kept} == kept
 
 
 def test_the_message_names_the_place_that_was_meant(tmp_path):

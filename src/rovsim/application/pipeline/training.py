@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Iterable, Mapping, Sequence
 
 from rovsim.application.sections import PredictorSettings, TrainingSettings
+from rovsim.core.files import appearing_together
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import write_residual
@@ -46,10 +47,12 @@ def train(
             settings.seed,
         )  # fmt: skip
         trained = fit(*gathered.pairs, learner, settings.seed, progress)
-    residual = write_residual(out.parent, trained.residual(settings.control))
     known = {"base": base.name, "train_runs": gathered.runs, "train_rows": gathered.rows}
     known |= {"seed": settings.seed}
-    write_model(base, out, residual, {**known, **story})
+    # a model is never beside the arrays of another training
+    with appearing_together(out.parent, last=out.name) as folder:
+        residual = write_residual(folder, trained.residual(settings.control))
+        write_model(base, folder / out.name, residual, {**known, **story})
     return read_model(out, catalogue)
 
 
