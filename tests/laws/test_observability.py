@@ -1,7 +1,9 @@
 """What the runs could not show is said, and only that."""
 
+import numpy as np
+
 from flown import observed
-from rovsim.diagnosis.checks.observability import list_not_observable
+from rovsim.diagnosis.checks.observability import SURELY, _find_shown, list_not_observable
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -21,6 +23,7 @@ LOOPS = {
     for axis in ("roll", "pitch", "yaw")
     for name, value in (("gain", 0.7), ("bandwidth", 2.0))
 }
+PRICE = 10.0
 TRIED = ("propeller_torque", "thruster_deadband", "quadratic_damping")
 
 
@@ -54,3 +57,18 @@ def test_what_has_no_slope_has_no_column(tmp_path):
     found = linearise_candidates(bank, Hypothesis(base), tilts)
     assert found.count
     assert all(not own.any() for own in found.columns)
+
+
+def test_of_a_larger_vehicle_more_is_worth_looking_for(tmp_path):
+    """A drag of ten N s/m is nothing to a vehicle of three tonnes, a thousand is."""
+    base, runs = observed(tmp_path, duration=20.0)
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    listed = list_candidates(runs, built_in(), base.vehicle)
+    known = linearise_candidates(
+        bank, Hypothesis(base), [c for c in listed if c.effect.id == "linear_damping"]
+    )
+    (block,) = known.blocks
+    needed = np.sqrt(PRICE) + SURELY
+    sizes = np.full(known.count, 0.1 * needed)
+    assert _find_shown(sizes, [block], PRICE, 1.0) == {"linear_damping": False}
+    assert _find_shown(sizes, [block], PRICE, 11.0) == {"linear_damping": True}

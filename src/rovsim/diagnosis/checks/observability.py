@@ -22,6 +22,9 @@ from rovsim.dynamics.effects.base import Means, Wander
 from rovsim.dynamics.vehicle import Vehicle
 
 SURELY = 2.0  # standard deviations: found in 97 of 100 such recordings
+# kg, the BlueROV2 Heavy (conf/vehicle): what is worth looking for in the catalogue is of its size.
+SCALED_FOR = 13.5
+OF_SIZE = ("N", "kg")  # units of what a larger vehicle has more of
 LOGGED: tuple[Means, ...] = ("commands", "demands")  # without a log of them, not observable
 
 
@@ -35,11 +38,12 @@ def list_not_observable(
     workspace = selection.workspace
     runs = workspace.bank.runs
     blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
-    shown = _find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.price)
+    larger = max(1.0, vehicle.rigid_body.mass / SCALED_FOR)
+    shown = _find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.price, larger)
     if selection.found.hypothesis.model.thrust_path.autopilots:
         driven = [block for block in blocks if block.candidate.effect.through == "thrusters"]
         sizes = workspace.columns.sizes(selection.found.hypothesis)
-        shown |= _find_shown(sizes, driven, workspace.price)
+        shown |= _find_shown(sizes, driven, workspace.price, larger)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
     if not workspace.bank.shows_drift(workspace.noise):
@@ -49,24 +53,34 @@ def list_not_observable(
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
 
 
-def _find_shown(sizes: Array, blocks: Sequence[CandidateColumns], price: float) -> dict[str, bool]:
-    """Of each effect, whether a column, `sizes` (c,) long at one scale, surely pays the price."""
+def _find_shown(
+    sizes: Array, blocks: Sequence[CandidateColumns], price: float, larger: float
+) -> dict[str, bool]:
+    """Of each effect, whether a column, `sizes` (c,) long at one scale, surely pays the price.
+
+    `larger`: than what the scales are for, that many times, is the vehicle.
+    """
     needed = np.sqrt(price) + SURELY
     shown: dict[str, bool] = {}
     for block in blocks:
         name = block.candidate.effect.id
-        own = sizes[_list_telling(block)]
-        shown[name] = shown.get(name, False) or bool(np.any(own > needed))
+        told = any(sizes[k] * more > needed for k, more in _list_telling(block, larger))
+        shown[name] = shown.get(name, False) or told
     return shown
 
 
-def _list_telling(block: CandidateColumns) -> list[int]:
-    """The columns by any of which an effect shows."""
-    if block.secant is not None:
-        return [block.secant]
+def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, float]]:
+    """The columns by any of which an effect shows, and how many scales are worth looking for."""
     candidate = block.candidate
+    if block.secant is not None:
+        return [(block.secant, 1.0)]
+    units = {p.name: p.unit for p in candidate.effect.parameters}
     each = zip(candidate.free, block.derivatives, strict=True)
-    return [column for name, column in each if name in (candidate.effect.telling or (name,))]
+    return [
+        (column, larger if units[name].startswith(OF_SIZE) else 1.0)
+        for name, column in each
+        if name in (candidate.effect.telling or (name,))
+    ]
 
 
 def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle) -> set[str]:

@@ -87,6 +87,12 @@ def _step_inward(at: Hypothesis, x: Array, i: int) -> Array:
     return -step if (x[i] + step[i]) * parameter.scale > parameter.high else step
 
 
+def step_back(at: Hypothesis, i: int) -> Hypothesis | None:
+    """The other way from `linearise`'s step of one parameter; None where its range ends there."""
+    to = at.at(at.x - _step_inward(at, at.x, i))
+    return to if to.x[i] != at.x[i] else None
+
+
 def evaluate_possible(
     models: Sequence[Model], count: int, errors: Callable[[Sequence[Model]], Array]
 ) -> Array:

@@ -11,14 +11,14 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.observer.evidence import Linearised, step_back
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
 
-# Standard deviations that a whole scale moves all readings together: less is no slope, but what the
-# curvature leaves of a difference (a tilt seen in the plane), as random as the readings.
-FAINTEST = 1e-2
+FAINT = 0.1  # standard deviations that a whole scale moves all readings together
+SLOPE = 0.5  # of a difference: less of it stays if taken both ways, and it is curvature
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +113,39 @@ def _columns(
 ) -> list[Array]:
     """The secant, if the start is not the effect's absence, and the derivatives (c, 6, n)."""
     seen = bank.linearise(Hypothesis(base.model, (candidate.term(),)))
-    columns = seen.J
+    columns = _silence_curvature(bank, seen)
     if not candidate.absent:
         each = zip(seen.e, absent, seen.J, strict=True)
         columns = [np.concatenate([(there - without)[None], J]) for there, without, J in each]
-    shown = _measure(bank, columns)[:, None, None] >= FAINTEST
-    # six digits are enough for columns; what is not finite stays so, and is refused
-    return [np.where(shown | ~np.isfinite(own), own, 0.0).astype(np.float32) for own in columns]
+    return [own.astype(np.float32) for own in columns]  # six digits are enough for columns
+
+
+def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
+    """Derivatives (k, 6, n) of each run, zero where a difference shows no slope.
+
+    In the plane a small tilt acts by its square. What that leaves of a difference is faint, but as
+    random as the readings: scaled to one, it would explain all their noise.
+    """
+    faint = np.flatnonzero(_measure(bank, seen.J) < FAINT).tolist()
+    back = [step_back(seen.at, i) for i in faint]
+    able = [(i, one) for i, one in zip(faint, back, strict=True) if one is not None]
+    if not able or not seen.finite:
+        return seen.J
+    kept, moved = [J.copy() for J in seen.J], bank.evaluate([one.model for _, one in able])
+    for k, (i, one) in enumerate(able):
+        size = (seen.at.x - one.x)[i]
+        both = [
+            0.5 * (J[i] + (e - beside[k]) / size)
+            for J, e, beside in zip(seen.J, seen.e, moved, strict=True)
+        ]
+        own, slope = (
+            _measure(bank, [row[None] for row in rows])[0]
+            for rows in ([J[i] for J in seen.J], both)
+        )
+        if slope < SLOPE * own:
+            for J in kept:
+                J[i] = 0.0
+    return kept
 
 
 def _measure(bank: FilterBank, columns: Sequence[Array]) -> Array:
