@@ -1,11 +1,13 @@
 """What numbers say, in plain language: one statement for terminal, report, workbench and notebook.
 
 verdict           what a diagnosis found
+shown             what recordings could not show
 symbols           what the symbols of an equation stand for
 sentences         the report's summary
 speed             what the timing says about control loops
 published_errors  folds beside published errors, pitfalls
 experiment        what a designed flight promises
+shown             what recordings could not show
 symbols           what the letters of an equation stand for
 terminal          what `compare` and `diagnose` say when they are done
 """

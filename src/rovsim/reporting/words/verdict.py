@@ -17,11 +17,11 @@ from rovsim.reporting.wording import (
     minus,
     significant,
 )
+from rovsim.reporting.words.shown import shown_sentences
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
     Diagnosis,
-    LookedAt,
     RivalEffect,
     ScaleOfForces,
 )
@@ -80,10 +80,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         *apart_sentences(found),
         *scale_sentences(found.common_scale),
         *unexplained_sentences(found),
-        *still_sentences(found.not_excited),
-        *silent_sentences(found),
-        *part_sentences(found.looked_at),
-        *lost_sentences(found.not_followed_from_s),
+        *shown_sentences(found),
     ]
     missing = tuple(
         _missing(one, catalogue.get(one.effect), above=bool(place))
@@ -276,38 +273,3 @@ def _disturbance_sentences(found: Diagnosis) -> list[str]:
     said += f" Most of its power lies between {low:.2g} and {high:.2g} Hz."
     times = [f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MOST_PUSHES]]
     return [said + (f" It was strongest at {listed(times)}." if times else "")]
-
-
-def still_sentences(axes: Sequence[str]) -> list[str]:
-    """Axes that nobody moved."""
-    if not axes:
-        return []
-    return [f"Nothing can be said about {listed(axes)}: no train run moves on that axis."]
-
-
-def silent_sentences(found: Diagnosis) -> list[str]:
-    """Axes that nobody measured, and effects that the recordings could not show."""
-    axes, effects = found.not_measured, found.not_observable
-    unmeasured = f"Not measured, and so without errors: {listed(axes)}."
-    unseen = f"Even if present, these could not be seen in these recordings: {listed(effects)}."
-    return [*([unmeasured] if axes else []), *([unseen] if effects else [])]
-
-
-def lost_sentences(lost: Mapping[str, float]) -> list[str]:
-    """Train runs of which a part was left out, because the model runs away there."""
-    if not lost:
-        return []
-    parts = listed(f"{run} from {at:.1f} s on" for run, at in lost.items())
-    return [f"The model runs away although it is corrected at every reading: {parts} is not used."]
-
-
-def part_sentences(looked_at: LookedAt | None) -> list[str]:
-    """How much of long train runs was looked at, and what that costs."""
-    if looked_at is None or looked_at.wider <= 1.0:
-        return []
-    part, whole = (significant(s / 60.0, 3) for s in (looked_at.seconds, looked_at.of))
-    return [
-        f"Of {whole} min of train runs, the {part} min that tell most were looked at. With all of "
-        f"them the intervals could be up to {looked_at.wider:.1f} times narrower "
-        "(search.most_seconds)."
-    ]

@@ -1,0 +1,51 @@
+"""What the recordings of a diagnosis could show, and which of them were used."""
+
+from typing import Mapping, Sequence
+
+from rovsim.reporting.wording import listed, significant
+from rovsim.results.diagnosis import Diagnosis, LookedAt
+
+
+def shown_sentences(found: Diagnosis) -> list[str]:
+    """All that the recordings could not show, or were not used for."""
+    return [
+        *still_sentences(found.not_excited),
+        *silent_sentences(found),
+        *part_sentences(found.looked_at),
+        *lost_sentences(found.not_followed_from_s),
+    ]
+
+
+def still_sentences(axes: Sequence[str]) -> list[str]:
+    """Axes that nobody moved."""
+    if not axes:
+        return []
+    return [f"Nothing can be said about {listed(axes)}: no train run moves on that axis."]
+
+
+def silent_sentences(found: Diagnosis) -> list[str]:
+    """Axes that nobody measured, and effects that the recordings could not show."""
+    axes, effects = found.not_measured, found.not_observable
+    unmeasured = f"Not measured, and so without errors: {listed(axes)}."
+    unseen = f"Even if present, these could not be seen in these recordings: {listed(effects)}."
+    return [*([unmeasured] if axes else []), *([unseen] if effects else [])]
+
+
+def lost_sentences(lost: Mapping[str, float]) -> list[str]:
+    """Train runs of which a part was left out, because the model runs away there."""
+    if not lost:
+        return []
+    parts = listed(f"{run} from {at:.1f} s on" for run, at in lost.items())
+    return [f"The model runs away although it is corrected at every reading: {parts} is not used."]
+
+
+def part_sentences(looked_at: LookedAt | None) -> list[str]:
+    """How much of long train runs was looked at, and what that costs."""
+    if looked_at is None or looked_at.wider <= 1.0:
+        return []
+    part, whole = (significant(s / 60.0, 3) for s in (looked_at.seconds, looked_at.of))
+    return [
+        f"Of {whole} min of train runs, the {part} min that tell most were looked at. With all of "
+        f"them the intervals could be up to {looked_at.wider:.1f} times narrower "
+        "(search.most_seconds)."
+    ]
