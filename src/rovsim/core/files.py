@@ -52,6 +52,8 @@ def folder_beside(path: Path, told: Path | None = None) -> Iterator[Path]:
     try:
         yield folder
     except BadInput as error:
+        if str(folder) not in error.where:
+            raise
         where = error.where.replace(str(folder), str(told or path), 1)
         raise BadInput(
             error.found, where=where, expected=error.expected, remedy=error.remedy
