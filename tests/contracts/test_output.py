@@ -3,6 +3,7 @@
 import pytest
 
 from rovsim.apps.cli.main import main
+from rovsim.core.columns import fold
 from rovsim.core.progress import counted, heard_by, reported, staged, step
 
 
@@ -65,3 +66,9 @@ def test_a_diagnosis_tells_of_its_steps_and_of_every_figure(tmp_path, monkeypatc
         main(["diagnose", "campaign=raw", "out=found", "--json"])
     assert len({share for what, share in told if what == "diagnosing: observing"}) > 20
     assert len({share for what, share in told if what == "drawing"}) > 3
+
+
+def test_what_is_typed_is_not_folded():
+    message = f"{'word ' * 14}Install it: pip install 'rovsim[learn]'."
+    assert any("pip install 'rovsim[learn]'" in line for line in fold(message))
+    assert max(map(len, fold(message))) <= 80

@@ -1,21 +1,24 @@
-"""Text that fits a terminal of 80 columns, folded between words; paths stay whole."""
+"""Text that fits a terminal of 80 columns, folded between words; what is typed stays whole."""
 
 import re
 import textwrap
 
 WIDTH = 80  # of a terminal, unless it was made wider
+TYPED = re.compile(r"pip install '[^']*'")
+WHOLE = "\N{NO-BREAK SPACE}"
 
 
 def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
     """The lines of one paragraph, after `first`; the following ones after `then`."""
-    return textwrap.wrap(
-        text,
+    lines = textwrap.wrap(
+        TYPED.sub(lambda found: found[0].replace(" ", WHOLE), text),
         WIDTH,
         initial_indent=first,
         subsequent_indent=first if then is None else then,
         break_long_words=False,
         break_on_hyphens=False,
     )
+    return [line.replace(WHOLE, " ") for line in lines]
 
 
 def fold_page(text: str) -> str:
