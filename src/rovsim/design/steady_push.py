@@ -16,7 +16,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.innovations import observe
 from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.noise import Noise, Tuning, tune
-from rovsim.diagnosis.observer.observed_run import BLOCK, ObservedRun
+from rovsim.diagnosis.observer.observed_run import BLOCK, ObservedRun, number_blocks
 from rovsim.dynamics.model import Model
 from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
@@ -102,6 +102,6 @@ def _follow(model: Model, run: ObservedRun, tuning: Tuning) -> Array:
 
 def _average(run: ObservedRun, push: Array) -> list[Array]:
     """Means (6,) over blocks of at least half of the usual length."""
-    number, settled = (run.time / BLOCK).astype(int), run.settled
-    parts = (push[settled & (number == k)] for k in np.unique(number[settled]))
+    settled, number = push[run.settled], number_blocks([run])
+    parts = (settled[number == k] for k in np.unique(number))
     return [own.mean(axis=0) for own in parts if len(own) * run.period > 0.5 * BLOCK]

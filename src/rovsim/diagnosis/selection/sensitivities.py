@@ -126,26 +126,21 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
     In the plane a small tilt acts by its square. What that leaves of a difference is faint, but as
     random as the readings: scaled to one, it would explain all their noise.
     """
-    faint = np.flatnonzero(_measure(bank, seen.J) < FAINT).tolist()
-    back = [step_back(seen.at, i) for i in faint]
-    able = [(i, one) for i, one in zip(faint, back, strict=True) if one is not None]
+    lengths = _measure(bank, seen.J)
+    back = {i: step_back(seen.at, i) for i in np.flatnonzero(lengths < FAINT).tolist()}
+    able = {i: one for i, one in back.items() if one is not None}
     if not able or not seen.finite:
         return seen.J
-    kept, moved = [J.copy() for J in seen.J], bank.evaluate([one.model for _, one in able])
-    for k, (i, one) in enumerate(able):
-        size = (seen.at.x - one.x)[i]
-        both = [
-            0.5 * (J[i] + (e - beside[k]) / size)
-            for J, e, beside in zip(seen.J, seen.e, moved, strict=True)
-        ]
-        own, slope = (
-            _measure(bank, [row[None] for row in rows])[0]
-            for rows in ([J[i] for J in seen.J], both)
-        )
-        if slope < SLOPE * own:
-            for J in kept:
-                J[i] = 0.0
-    return kept
+    faint = list(able)
+    sizes = np.array([(seen.at.x - one.x)[i] for i, one in able.items()])[:, None, None]
+    moved = bank.evaluate([one.model for one in able.values()])
+    both = [
+        0.5 * (J[faint] + (e - beside) / sizes)
+        for J, e, beside in zip(seen.J, seen.e, moved, strict=True)
+    ]
+    shown = np.ones((len(lengths), 1, 1))
+    shown[faint, 0, 0] = _measure(bank, both) >= SLOPE * lengths[faint]
+    return [shown * J for J in seen.J]
 
 
 def _measure(bank: FilterBank, columns: Sequence[Array]) -> Array:

@@ -39,12 +39,12 @@ def list_unsure(found: Fit, workspace: SearchWorkspace) -> list[int]:
     h, unsure = found.hypothesis, set()
     for seconds in LASTING:
         blocks = number_blocks(workspace.bank.runs, seconds)
-        V, count = estimate_spread(found, workspace.bank, blocks), len(np.unique(blocks))
+        as_blocks_see = replace(found, covariance=estimate_spread(found, workspace.bank, blocks))
+        most = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
-            if term.vanishes and own and count >= BLOCKS_EACH * len(own):
-                off, spread = (h.x - h.absence)[own], V[own][:, own]
-                if off @ solve(spread, off) < workspace.price * term.choices:
-                    unsure.add(i)
+            judged = term.vanishes and 0 < len(own) <= most
+            if judged and as_blocks_see.distance(own) < workspace.price * term.choices:
+                unsure.add(i)
     return sorted(unsure)
 
 
