@@ -120,7 +120,3 @@ def require_news(worth: Worth, known: Knowledge) -> None:
         remedy="Widen design.limits (speed, turn_rate, tilt, slew), give more seconds, or ask "
         "about something else.",
     )
-
-
-def _by(excess: float) -> str:
-    return f" by {excess:.2g} m" if np.isfinite(excess) else ""

@@ -28,16 +28,15 @@ def _file_name(text: str) -> str:
     return text
 
 
-def _interval(value: list[float]) -> list[float]:
-    if value[0] >= value[1]:
-        raise ValueError("[low, high] with low below high, in m")
-    return value
+def _rising(expected: str) -> AfterValidator:
+    """Refuse two numbers of which the first is not the lesser."""
 
+    def check(value: list[float]) -> list[float]:
+        if value[0] >= value[1]:
+            raise ValueError(expected)
+        return value
 
-def _span(value: list[float]) -> list[float]:
-    if value[0] >= value[1]:
-        raise ValueError("[from, to] in s, the earlier time first")
-    return value
+    return AfterValidator(check)
 
 
 def _distinct(names: list[str]) -> list[str]:
@@ -49,9 +48,9 @@ def _distinct(names: list[str]) -> list[str]:
 Text = Annotated[Name, BeforeValidator(_as_text), Field(min_length=1)]
 Place = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
 FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
-Interval = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_interval)]
-
-Span = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_span)]
+Two = Annotated[list[float], Field(min_length=2, max_length=2)]
+Interval = Annotated[Two, _rising("[low, high] with low below high, in m")]
+Span = Annotated[Two, _rising("[from, to] in s, the earlier time first")]
 
 
 class Tank(Section):

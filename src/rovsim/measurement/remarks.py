@@ -86,7 +86,7 @@ def _repairs(report: Quality) -> Iterator[str]:
     if repairs["wrong_header_rate"]:
         rate = report.rate_hz.median
         yield f"The header's FREQUENCY is not the {rate:.4g} Hz of the times; the times are used."
-    if repairs.get("left_out"):
+    if repairs["left_out"]:
         yield f"{repairs['left_out']} frames lie outside of what `use` says, and were left out."
     if repairs["bad_rotations"]:
         yield f"{repairs['bad_rotations']} frames hold no rotation and count as not found."

@@ -30,7 +30,7 @@ def tell_total(body: Body, effect: str, parameter: str, value: float, unit: str 
         return Total("", "")
     before = float(TOTALS[effect](body)[AXES.index(parameter)])
     sign = "+" if value >= 0.0 else "−"
-    total = significant(before + value).replace("-", "−")
+    total = significant(before + value)
     told = f"in all {significant(before)} {sign} {significant(abs(value))} = {total} {unit}"
     return Total(told.strip(), warn(effect, before + value))
 
