@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import shutil
 import signal
 import subprocess
@@ -20,6 +21,7 @@ from rovsim.core.files import write_text
 from rovsim.core.shipped import conf_names, shipped
 from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.reporting.html.picture import Drawn, Picture
 from said import unfolded
 
 AWKWARD = [
@@ -221,6 +223,17 @@ def test_a_trained_model_is_accepted_wherever_a_model_is(campaign, tmp_path, mon
     assert found["models"]["model"] == alone["models"]["model"]
     main(["train", *arguments])
     assert (tmp_path / "knn" / "residual.npz").read_bytes() == first
+
+
+def test_a_figure_that_another_process_drew_is_read_without_what_drew_it(tmp_path):
+    """Results of a second process are unpacked while the first one computes, and hold it up."""
+    drawn = Drawn(("where", ""), Picture("where", b"\x89PNG"), [tmp_path / "where.png"])
+    (tmp_path / "drawn").write_bytes(pickle.dumps(drawn))
+    code = (
+        f"import pickle, sys; pickle.load(open({str(tmp_path / 'drawn')!r}, 'rb'));"
+        "print(sorted({'matplotlib','jinja2','scipy','mlflow'} & set(sys.modules)))"
+    )
+    assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "[]"
 
 
 @pytest.mark.parametrize("words", [["--help"], ["diagnose", "--help"]])

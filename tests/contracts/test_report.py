@@ -16,6 +16,7 @@ from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.formula import mathml
 from rovsim.reporting.html import report
+from rovsim.reporting.html.picture import Picture
 from rovsim.reporting.pages import against_published, leave_one_run_out
 from rovsim.reporting.pages.marked import BEGIN, END
 from rovsim.reporting.report_data import ReportData, describe
@@ -45,7 +46,7 @@ def content():
 def html(content, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     save(kind("ladder").draw(ladder=content["ladder"]), folder, "ladder")
-    picture = report.Picture.read(folder / "ladder.png", "ladder")
+    picture = Picture.read(folder / "ladder.png", "ladder")
     known = {k: content[k] for k in ("comparison", "ladder", "timing", "quality", "where")}
     data = ReportData(**known, diagnosis=_rude(content["diagnosis"]))
     return report.render(report.Report("tank <b>&", data, [picture], {"settings": {"seed": 0}}))
@@ -306,7 +307,7 @@ def test_mistakes_are_said_run_by_run(content, tmp_path):
 
 def test_figures_of_the_first_run_are_shown_and_those_of_others_unfold():
     drawn = (("error_growth", ""), ("velocities", "a"), ("velocities", "b"), ("path_3d", "a"))
-    pictures = [report.Picture(name, b"\x89PNG", describe(name, run), run) for name, run in drawn]
+    pictures = [Picture(name, b"\x89PNG", describe(name, run), run) for name, run in drawn]
     compared = ReportData(comparison=Comparison(models={}))
     html = report.render(report.Report("x", compared, pictures))
     before, of_a, of_b = html.split("<details")

@@ -6,6 +6,7 @@ from typing import Mapping, Sequence
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.figures import kinds
 from rovsim.reporting.html import report
+from rovsim.reporting.html.picture import Picture
 from rovsim.reporting.report_data import ReportData, describe
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.results.comparison import Comparison
@@ -36,7 +37,7 @@ def write_report(
     report.write(out, report.Report(campaign, data, pictures, provenance, catalogue))
 
 
-def _read_picture(path: Path) -> report.Picture:
+def _read_picture(path: Path) -> Picture:
     """A figure's file is called by the figure, or by figure-run."""
     name, _, run = (path.stem, "", "") if path.stem in kinds() else path.stem.partition("-")
-    return report.Picture.read(path, name, describe(name, run), run)
+    return Picture.read(path, name, describe(name, run), run)

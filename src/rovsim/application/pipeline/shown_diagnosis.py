@@ -6,7 +6,8 @@ from typing import Any, Mapping, Sequence
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking import track_diagnosis
 from rovsim.dynamics.catalogue import load_catalogue
-from rovsim.reporting.html.folder import Drawn, present
+from rovsim.reporting.html.folder import present
+from rovsim.reporting.html.picture import Drawn
 from rovsim.reporting.report_data import ReportData
 
 

@@ -1,25 +1,14 @@
 """A command's results for the eye: figures as files, and all of them on one page."""
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterable, Mapping, Sequence
+from typing import Iterable, Mapping
 
 from rovsim.core.progress import counted
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import report
+from rovsim.reporting.html.picture import Drawn, Picture, Wanted
 from rovsim.reporting.report_data import ReportData, describe, list_run_figures
-
-Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """A figure that was wanted, as a picture and as files."""
-
-    wanted: Wanted
-    picture: report.Picture
-    files: Sequence[Path]
 
 
 def present(
@@ -55,5 +44,5 @@ def draw_one(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
     """Draw one figure of what is known, or of one run of it, into `out`/figures."""
     paths = save(data.draw(figure, run), out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
-    picture = report.Picture.read(png, figure, describe(figure, run, data), run)
+    picture = Picture.read(png, figure, describe(figure, run, data), run)
     return Drawn((figure, run), picture, paths)

@@ -1,6 +1,5 @@
 """Put the numbers, sentences and figures of a study into one self-contained HTML page."""
 
-from base64 import b64encode
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Mapping, Sequence
@@ -9,12 +8,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from rovsim import AXES
-from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
 from rovsim.core.making import tell_making
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, kind
 from rovsim.reporting.formula import mathml
+from rovsim.reporting.html.picture import Picture
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import (
     Table,
@@ -40,45 +39,6 @@ COMPARED = (
     (HORIZON, "velocity_mae"),
     (OPEN_LOOP, "velocity_rmse"),
 )
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A drawn figure: registered name, PNG, what it shows ("run 6dof-2, 2 s windows"), its run."""
-
-    name: str
-    png: bytes
-    about: str = ""
-    run: str = ""
-
-    @staticmethod
-    def read(path: Path, name: str, about: str = "", run: str = "") -> "Picture":
-        """Read a PNG that `rovsim.reporting.figures.style.save` wrote.
-
-        Raises:
-            BadInput: the file cannot be read or is no PNG.
-        """
-        try:
-            png = path.read_bytes()
-        except OSError as error:
-            found = f"cannot be read ({error.strerror})"
-        else:
-            if png.startswith(b"\x89PNG"):
-                return Picture(name, png, about, run)
-            found = "is not a PNG picture"
-        remedy = "Draw the figure again."
-        raise BadInput(found, where=path, expected="a figure of the study", remedy=remedy)
-
-    @property
-    def source(self) -> str:
-        """The picture as a data address."""
-        return f"data:image/png;base64,{b64encode(self.png).decode()}"
-
-    @property
-    def caption(self) -> str:
-        """What is seen, and of which run."""
-        text = kind(self.name).caption
-        return f"{self.about[0].upper()}{self.about[1:]}. {text}" if self.about else text
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,63 @@
+"""Figures that are drawn, as pictures for a page.
+
+This needs no library for drawing: another process draws, and who asked for it may hold the result
+without waiting for those to be loaded.
+"""
+
+from base64 import b64encode
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Sequence
+
+from rovsim.core.errors import BadInput
+from rovsim.reporting.figures import kind
+
+Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawn figure: registered name, PNG, what it shows ("run 6dof-2, 2 s windows"), its run."""
+
+    name: str
+    png: bytes
+    about: str = ""
+    run: str = ""
+
+    @staticmethod
+    def read(path: Path, name: str, about: str = "", run: str = "") -> "Picture":
+        """Read a PNG that `rovsim.reporting.figures.style.save` wrote.
+
+        Raises:
+            BadInput: the file cannot be read or is no PNG.
+        """
+        try:
+            png = path.read_bytes()
+        except OSError as error:
+            found = f"cannot be read ({error.strerror})"
+        else:
+            if png.startswith(b"\x89PNG"):
+                return Picture(name, png, about, run)
+            found = "is not a PNG picture"
+        remedy = "Draw the figure again."
+        raise BadInput(found, where=path, expected="a figure of the study", remedy=remedy)
+
+    @property
+    def source(self) -> str:
+        """The picture as a data address."""
+        return f"data:image/png;base64,{b64encode(self.png).decode()}"
+
+    @property
+    def caption(self) -> str:
+        """What is seen, and of which run."""
+        text = kind(self.name).caption
+        return f"{self.about[0].upper()}{self.about[1:]}. {text}" if self.about else text
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A figure that was wanted, as a picture and as files."""
+
+    wanted: Wanted
+    picture: Picture
+    files: Sequence[Path]
