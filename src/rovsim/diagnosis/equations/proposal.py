@@ -4,17 +4,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Callable, NamedTuple, Sequence
 
-import numpy as np
-from numpy import ndarray as Array
-
-from rovsim import AXES
 from rovsim.core.extras import installed
-from rovsim.diagnosis.checks.residual_structure import find_structure
+from rovsim.diagnosis.equations.action import find_action, is_half
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
 from rovsim.diagnosis.equations.seek import Judged, seek_law
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.innovations import accelerate
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gate import Gate
@@ -22,10 +17,8 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.idle_effects import cross_validate
 from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.results.base import or_nan
-from rovsim.simulation.measured_states import as_true
 
 ID, FILE = "proposed_effect", "proposed_effect.py"
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
@@ -110,15 +103,15 @@ def propose_law(
     fit, bank = polish(judged.fit)
     if not fit.held:
         return None
-    sizes, axis = _measure(judged.form, fit, runs)
-    if any(left.axis == axis for left in find_structure(fit, bank)):
+    action = find_action(judged.form, fit, runs)
+    if is_half(action.axis, fit, bank):
         return None
     bare = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, bare, fit.hypothesis.model], runs).normalised
     start, before, after = (or_nan(e) for e in errors)
     beside = (*camera, *(one for one in name_terms(fit, ()) if one.term.effect.listed))
     share = (before - after) / start
-    return ProposedLaw(judged.form, fit, share, sizes, axis, judged.rivals, beside)
+    return ProposedLaw(judged.form, fit, share, action.sizes, action.axis, judged.rivals, beside)
 
 
 def _holds(judged: Judged, selection: Selection, best: Catalogued, gate: Gate) -> bool:
@@ -127,21 +120,3 @@ def _holds(judged: Judged, selection: Selection, best: Catalogued, gate: Gate) -
         return False
     law = judged.fit.hypothesis.model
     return gate.improves(law, best.whole, ENOUGH) and gate.keeps(law, best.chosen)
-
-
-def _measure(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> tuple[tuple[float, ...], str]:
-    """RMS of each term in N or N m, and the axis where it stands out most from the disturbance."""
-    bare, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
-    each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
-    whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
-    sizes = np.sqrt(np.mean(np.sum((each @ bare.M.T) ** 2, axis=2), axis=1))
-    return tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.level))]
-
-
-def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
-    """Accelerations (k, n, 6) that each effect adds to a model where a run was measured."""
-    state = as_true(model, run.motion).state[run.index]
-    known = np.isfinite(state).all(axis=1)
-    index, states = run.index[known], state[None, known]
-    there = [accelerate(model + effect, run, index, states)[0] for effect in effects]
-    return np.stack(there) - accelerate(model, run, index, states)

@@ -1,13 +1,14 @@
 """From what is left to an equation, or to none."""
 
 from dataclasses import dataclass, replace
-from typing import Iterable, Sequence
+from typing import Iterable, Mapping, Sequence, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
 from scipy.stats import chi2
 
 from rovsim import AXES
+from rovsim.diagnosis.equations.action import find_action, is_half
 from rovsim.diagnosis.equations.form import Form, get_law
 from rovsim.diagnosis.equations.products.as_effect import (
     Surroundings,
@@ -37,7 +38,10 @@ from rovsim.dynamics.effects.law import TERMS
 
 TRIED = 5  # terms that are fitted before one is added
 BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
+SURELY = 2.0  # times what chance allows: no fit to all runs brings so much below it
 FALSE_ALARM = 0.002  # of all terms together, as of every kind of structure
+
+Key = TypeVar("Key")
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,16 +94,23 @@ class LawSearch:
         """What the best of all terms gains by chance, its price paid (Bonferroni's bound)."""
         return max(0.0, float(chi2.isf(FALSE_ALARM / self.candidates, 1)) - self.price)
 
-    def judge(self, form: Form, h: Hypothesis) -> Judged:
-        """A law, fitted with all else."""
-        return self._judge(form, self.selection.fit(form.follow(h)))
+    def challenge(self, form: Form, h: Hypothesis, current: Fit, score: float) -> Judged | None:
+        """A law, fitted with all else; None as soon as it surely does not come near a score.
 
-    def challenge(self, form: Form, h: Hypothesis, current: Judged) -> Judged | None:
-        """The same, but None as soon as it surely does not come near what is there."""
+        `current`: a fit whose derivatives it may begin with.
+        """
         start = form.follow(h)
-        wanted = current.score + self._ask(start)
-        fitted = self.selection.challenge(start, current.fit, wanted)
+        fitted = self.selection.challenge(start, current, score + self._ask(start))
         return None if fitted is None else self._judge(form, fitted)
+
+    def race(self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit) -> dict[Key, Judged]:
+        """Laws beside what is there, the likeliest first; none that surely falls far behind."""
+        found: dict[Key, Judged] = {}
+        for key, (form, h) in laws.items():
+            best = max((one.score for one in found.values()), default=-np.inf)
+            judged = self.challenge(form, h, current, best)
+            found |= {key: judged} if judged else {}
+        return dict(sorted(found.items(), key=lambda one: -one[1].score))
 
     def _judge(self, form: Form, fitted: Fit) -> Judged:
         return Judged(form, fitted, self.workspace.score(fitted) - self._ask(fitted.hypothesis))
@@ -130,11 +141,11 @@ class LawSearch:
             columns = weigh(self.workspace, fit, left, middle)
             if len(columns.terms) < TERMS:
                 break
-            tried = {}
-            for more in choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]:
-                h = add_term(fit.hypothesis, terms, more, columns, middle, around)
-                tried[more] = self.judge(Products((*terms, more)), h)
-            more = max(tried, key=lambda one: tried[one].score)
+            kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]
+            starts = [add_term(fit.hypothesis, terms, k, columns, middle, around) for k in kinds]
+            forms = [Products((*terms, k)) for k in kinds]
+            tried = self.race(dict(zip(kinds, zip(forms, starts, strict=True), strict=True)), fit)
+            more = next(iter(tried))
             if not self.is_worth(tried[more], fit, score):
                 break
             best = tried.pop(more).beats(tried.values())
@@ -152,14 +163,24 @@ class LawSearch:
         for kind in (k for k in FORMS if k.effect.through in means):
             beside = tuple(term for term in start.terms if term.id not in kind.imitates)
             bare = self.selection.fit(replace(start, terms=beside))
-            tried = [
-                self.judge(form, replace(bare.hypothesis, terms=(*bare.hypothesis.terms, law)))
-                for form, law in kind.begin(moving)
-            ]
-            best = max(tried, key=lambda one: one.score)
+            if not bare.held:
+                continue
+            laws = [(form, bare.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
+            best = next(iter(self.race(dict(enumerate(laws)), bare).values()))
             if self.is_worth(best, bare, self.workspace.score(bare)):
                 found.append(best)
         return found
+
+    def keep_close(self, grown: Sequence[Judged]) -> list[Judged]:
+        """Laws that may be the likeliest once they are finished."""
+        most = max((one.score for one in grown), default=0.0)
+        return [one for one in grown if one.score > most - HOPELESS]
+
+    def is_surely_half(self, grown: Judged) -> bool:
+        """Whether a law leaves so much on its own axis that it cannot hold."""
+        bank = self.workspace.bank
+        action = find_action(grown.form, grown.fit, bank.runs)
+        return is_half(action.axis, grown.fit, bank, SURELY)
 
     def finish(self, grown: Judged) -> Judged:
         """Without effects of the catalogue that the law has made idle, and terms it can spare."""
@@ -168,7 +189,7 @@ class LawSearch:
             h, form = current.fit.hypothesis, current.form
             fewer = [(form, h.without(i)) for i in self._list_idle(current.fit)]
             less = (*fewer, *form.simplify(h))
-            tried = [self.challenge(*one, current) for one in less]
+            tried = [self.challenge(*one, current.fit, current.score) for one in less]
             best = max(filter(None, tried), key=lambda one: one.score, default=None)
             if best is None or best.score < current.score:
                 return current
@@ -218,6 +239,8 @@ def seek_law(selection: Selection) -> Judged | None:
         starts.append(replace(found.hypothesis, terms=()))
     grown = [one for start in starts if (one := search.grow(start)) is not None]
     grown += [one for start in starts for one in search.remember(start)]
+    if all(search.is_surely_half(one) for one in search.keep_close(grown)):
+        return None  # which effects it can spare need not be known
     finished = sorted((search.finish(one) for one in grown), key=lambda one: -one.score)
     if not finished or finished[0].score <= selection.workspace.score(found):
         return None

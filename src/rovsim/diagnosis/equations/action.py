@@ -1,0 +1,48 @@
+"""Where a law acts, how strongly, and whether something is left there."""
+
+from typing import NamedTuple, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.diagnosis.checks.residual_structure import find_structure
+from rovsim.diagnosis.equations.form import Form, get_law, split_law
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.innovations import accelerate
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.model import Model
+from rovsim.simulation.measured_states import as_true
+
+
+class Action(NamedTuple):
+    """RMS of each term in N or N m, and the axis where they stand out most from the disturbance."""
+
+    sizes: tuple[float, ...]
+    axis: str
+
+
+def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
+    """Of the law of a fitted hypothesis, where runs were measured."""
+    bare, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
+    each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
+    whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
+    sizes = np.sqrt(np.mean(np.sum((each @ bare.M.T) ** 2, axis=2), axis=1))
+    return Action(tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.level))])
+
+
+def is_half(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
+    """Whether something is left on the axis of a law, `margin` times what chance allows."""
+    left = find_structure(fit, bank)
+    return any(one.axis == axis and one.surprise > margin for one in left)
+
+
+def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
+    """Accelerations (k, n, 6) that each effect adds to a model where a run was measured."""
+    state = as_true(model, run.motion).state[run.index]
+    known = np.isfinite(state).all(axis=1)
+    index, states = run.index[known], state[None, known]
+    there = [accelerate(model + effect, run, index, states)[0] for effect in effects]
+    return np.stack(there) - accelerate(model, run, index, states)
