@@ -133,7 +133,7 @@ def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts
     readings = {back.key: run.read(back) for back in {v.key: v for v in views}.values()}
     first = np.array([a for a, _ in run.spans], np.int64)
     steps = np.array([b - a for a, b in run.spans], np.int64)
-    true = {m.mocap_view.key: as_true(m, run.motion).state[run.sample[first]] for m in models}
+    true = {m.mocap_view.key: as_true(m, run.motion).state_at(run.sample[first]) for m in models}
     states = np.stack([true[m.mocap_view.key] for m in models])
     starts = Starts(states, first, steps, recall(models, run, run.edges, run.ends[first]))
     return [readings[back.key] for back in views], starts

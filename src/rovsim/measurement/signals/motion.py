@@ -85,7 +85,11 @@ class Motion:
     @property
     def state(self) -> Array:
         """Instantaneous state (n, 13): position, quaternion, velocity."""
-        return np.concatenate([self.eta, self.state_nu], axis=1)
+        return self.state_at(slice(None))
+
+    def state_at(self, index: Array | slice) -> Array:
+        """The state (k, 13) of some samples or bins."""
+        return np.concatenate([self.eta[index], self.state_nu[index]], axis=1)
 
     def part(self, at: slice) -> "Motion":
         """Some samples or bins of it, which know where in the recording they lie."""
