@@ -9,7 +9,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.sensitivities import _measure, linearise_candidates
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
@@ -57,6 +57,21 @@ def test_what_has_no_slope_has_no_column(tmp_path):
     found = linearise_candidates(bank, Hypothesis(base), tilts)
     assert found.count
     assert all(not own.any() for own in found.columns)
+
+
+def test_what_acts_on_axes_that_nobody_reads_has_no_length(tmp_path):
+    """Markers that lean turn a ship about its roll, which x, y and yaw do not tell."""
+    base, runs = observed(tmp_path, duration=20.0)
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    listed = list_candidates(runs, built_in(), base.vehicle)
+    (lean,) = (c for c in listed if c.effect.id == "marker_misalignment")
+    columns = bank.linearise(Hypothesis(base, (lean.term(),))).J
+    in_roll = [own * (np.arange(6) == 3)[:, None] for own in columns]
+    assert (_measure(bank, in_roll) > 0.0).all()
+    for run in runs:
+        vars(run)["shown"] = run.shown & (np.arange(6) != 3)
+    assert not _measure(bank, in_roll).any()
+    assert (_measure(bank, columns) > 0.0).all()
 
 
 def test_of_a_larger_vehicle_more_is_worth_looking_for(tmp_path):

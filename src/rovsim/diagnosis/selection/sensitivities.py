@@ -144,9 +144,12 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
 
 
 def _measure(bank: FilterBank, columns: Sequence[Array]) -> Array:
-    """Lengths (c,) of columns (c, 6, n), in standard deviations of the innovations."""
+    """Lengths (c,) of columns (c, 6, n), in standard deviations of the innovations that are read.
+
+    What turns a vehicle about an axis that is held changes innovations there, and nobody sees it.
+    """
     squares = [
-        np.sum((own / np.sqrt(found.variance)[:, None]) ** 2, axis=(1, 2))
-        for own, found in zip(columns, bank.tunings, strict=True)
+        np.sum((run.shown.T * own / np.sqrt(found.variance)[:, None]) ** 2, axis=(1, 2))
+        for own, run, found in zip(columns, bank.runs, bank.tunings, strict=True)
     ]
     return np.asarray(np.sqrt(np.sum(squares, axis=0)))
