@@ -8,7 +8,12 @@ from hypothesis import strategies as st
 from rovsim.core import rotations
 from rovsim.core.errors import BadInput
 from rovsim.measurement.signals.binned import backward_difference, bin_means, edge_values
-from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.chain import (
+    SignalSettings,
+    differentiated,
+    filtered,
+    velocities,
+)
 from rovsim.measurement.signals.differentiate import (
     Central,
     SavitzkyGolay,
@@ -17,6 +22,8 @@ from rovsim.measurement.signals.differentiate import (
 )
 from rovsim.measurement.signals.filter import Butterworth, Unfiltered, filter_eta
 from rovsim.measurement.signals.filter import SavitzkyGolay as SavitzkyGolayFilter
+from rovsim.measurement.signals.motion import Poses
+from worlds import motion, sticks
 
 
 class Sway:
@@ -143,6 +150,20 @@ def test_constant_acceleration_passes_the_filter_up_to_the_ends(method, n):
 def test_a_filter_above_half_the_sampling_rate_is_refused():
     with pytest.raises(BadInput, match=r"below 4 Hz.*filter\.cutoff"):
         filter_eta(np.tile([0, 0, 0, 1.0, 0, 0, 0], (20, 1)), 1 / 8, Butterworth())
+
+
+@pytest.mark.parametrize("method", [Butterworth(), SavitzkyGolayFilter(), Unfiltered()])
+def test_cameras_of_ten_frames_a_second_pass_the_chain_as_it_is(method):
+    """A motion of 0.3 Hz comes through, with the filter lowered to 0.4 of the rate."""
+    still, time = motion(sticks(2, rows=40), seconds=2.0), 0.1 * np.arange(200)
+    eta = np.tile(still.eta[:1], (200, 1))
+    eta[:, 0] = 0.5 * np.sin(2.0 * np.pi * 0.3 * time)
+    slow = Poses(still.run, still.site, time, eta, np.ones(200, bool), still.commands)
+    chain = SignalSettings(filter=method)
+    found = differentiated(filtered(slow, chain), chain)
+    speed = 0.3 * np.pi * np.cos(2.0 * np.pi * 0.3 * time)
+    assert found.usable.sum() > 190
+    np.testing.assert_allclose(found.nu[found.usable, 0], speed[found.usable], atol=0.02)
 
 
 @settings(deadline=None, max_examples=10)

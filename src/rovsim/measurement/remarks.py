@@ -2,6 +2,7 @@
 
 from typing import Iterator
 
+from rovsim.measurement.signals.chain import HIGHEST
 from rovsim.results.quality import Quality
 
 # Above these a recording is worth a second look; they change nothing else.
@@ -35,7 +36,10 @@ def _frames(report: Quality) -> Iterator[str]:
         yield (f"The longest gap is {report.longest_gap_s:.2f} s; motion across it is not rebuilt.")
     rate = report.rate_hz.median
     if rate < SLOW:
-        yield f"{rate:.3g} Hz is slow: noise is overestimated and lags are hard to see."
+        yield (
+            f"{rate:.3g} Hz is slow: noise is overestimated, lags are hard to see, and the filter "
+            f"cuts off at {HIGHEST * rate:.2g} Hz at most."
+        )
     noise = report.noise
     if rate >= SLOW and (
         (noise.position_m or 0.0) > NOISY_POSITION or (noise.attitude_rad or 0.0) > NOISY_ATTITUDE

@@ -99,7 +99,7 @@ def predict_all(
         return [Prediction.empty(len(case.motion.time)) for case in cases]
     if cases[0].motion.binned:
         return [_predict_bins(case, spans, settings) for case in cases]
-    return _predict_samples(cases, spans, signals.suited(cases[0].motion.measured), settings)
+    return _predict_samples(cases, spans, signals.suited(cases[0].motion), settings)
 
 
 def simulate(

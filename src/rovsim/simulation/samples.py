@@ -58,7 +58,7 @@ def sample_run(
     """
     motion = as_true(model, motion)
     make = _of_bins if motion.binned else _of_samples
-    found = make(model, motion, signals.suited(motion.measured), settings)
+    found = make(model, motion, signals.suited(motion), settings)
     return replace(found, a_res=blank(motion.measured, found.a_res, 0.0))
 
 

@@ -25,12 +25,14 @@ from rovsim.measurement.signals.filter import (
     filter_eta,
     filter_poses,
 )
-from rovsim.measurement.signals.measured import Measured, blank
+from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.measurement.signals.outliers import OutlierSettings
 from rovsim.measurement.signals.resample import Linear, Resampling, resample
 from rovsim.measurement.signals.track import track_channels
 
+# Of the sampling rate: a low-pass that cuts off nearer to its half hardly filters.
+HIGHEST = 0.4
 # What a stage hands on: poses, or a binned recording that passes unchanged.
 Stage: TypeAlias = Poses | Recording
 
@@ -42,11 +44,11 @@ class SignalSettings(OutlierSettings):
     filter: Filter = Butterworth()
     differentiate: Differentiation = Spline()
 
-    def suited(self, measured: Measured | None) -> "SignalSettings":
+    def suited(self, motion: Poses | Motion) -> "SignalSettings":
         """The same, with a filter that lets through no more than what was measured can show."""
-        if measured is None:
-            return self
-        cutoff = float(measured.cutoff[0])
+        if motion.measured is None:
+            return self._below_sampling(motion)
+        cutoff = float(motion.measured.cutoff[0])
         margin = max(self.differentiate.margin, 0.5 / cutoff)  # half a period, as by default
         return self.model_copy(
             update={
@@ -54,6 +56,12 @@ class SignalSettings(OutlierSettings):
                 "differentiate": self.differentiate.model_copy(update={"margin": margin}),
             }
         )
+
+    def _below_sampling(self, motion: Poses | Motion) -> "SignalSettings":
+        if len(motion.time) < 2 or (isinstance(motion, Motion) and motion.binned):
+            return self
+        highest = HIGHEST / time_step(motion.time)
+        return self.model_copy(update={"filter": self.filter.below(highest)})
 
     @property
     def reach(self) -> float:
@@ -87,7 +95,7 @@ def filtered(stage: Stage, settings: SignalSettings) -> Stage:
     """Second stage: filtered poses. A binned recording passes unchanged."""
     if isinstance(stage, Recording):
         return stage
-    return filter_poses(stage, settings.suited(stage.measured).filter)
+    return filter_poses(stage, settings.suited(stage).filter)
 
 
 def differentiated(stage: Stage, settings: SignalSettings) -> Motion:
@@ -122,7 +130,7 @@ def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
         nu[first:last], nu_dot[first:last] = differentiate_eta(
             poses.eta[first:last], dt, settings.differentiate
         )
-    margin = settings.suited(poses.measured).differentiate.margin
+    margin = settings.suited(poses).differentiate.margin
     usable = without_margins(poses.usable, round(margin / dt))
     usable &= np.isfinite(nu).all(axis=1)
     nu, nu_dot = blank(poses.measured, nu, 0.0), blank(poses.measured, nu_dot, 0.0)
