@@ -9,6 +9,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from rovsim import AXES
+from rovsim.diagnosis.equations.spectrum import find_spectrum
 from rovsim.evaluation.budget import Budget
 from rovsim.evaluation.error_conditions.conditions import SPEEDS, THROUGHOUT, Blocks, Condition
 from rovsim.evaluation.error_conditions.entries import list_conditions
@@ -306,6 +307,7 @@ def disturbance() -> dict[str, Any]:
     t = np.arange(0.0, 60.0, 0.5)
     place = np.stack([5.0 + np.cos(0.2 * t), 2.5 + np.sin(0.2 * t), 0.0 * t], 1)
     force = np.outer(6.0 * np.exp(-((t - 24.0) ** 2)), [0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    found = find_spectrum([force], 0.5)
     run = {
         "run": "6dof-1",
         "time_s": t.tolist(),
@@ -322,6 +324,9 @@ def disturbance() -> dict[str, Any]:
     return {
         "axes": ["sway"], "rms": {"sway": 0.9}, "band_hz": [0.02, 0.4], "strongest": [push],
         "runs": [run],
+        "spectrum": {
+            "frequency_hz": found.frequency.tolist(), "density": found.density.tolist(),
+        },
     }  # fmt: skip
 
 

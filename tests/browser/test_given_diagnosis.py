@@ -6,7 +6,7 @@ from chromium import PICTURES, Tab, started
 from rovsim.results.diagnosis import Diagnosis
 
 pytestmark = pytest.mark.browser
-PICTURE = "What pushes and follows no law, on the path and in time"
+PICTURE = "What pushes and follows no law: on the path, in time and by frequency"
 
 
 def drawn_why(tab):

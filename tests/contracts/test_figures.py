@@ -197,6 +197,29 @@ def test_the_map_frames_the_findings():
     assert len(framed) == len(model.findings) > 0
 
 
+def test_forces_and_moments_have_spectra_of_their_own():
+    force = study()["disturbance"]
+    density = np.array(force.spectrum.density)
+    density[:, [2, 5]] = density[:, [1]] * [2.0, 3.0]
+    louder = force.spectrum.model_copy(update={"density": tuple(map(tuple, density))})
+    more = force.model_copy(update={"axes": ("sway", "heave", "yaw"), "spectrum": louder})
+    axes = drawn("disturbance", {"disturbance": more}).axes
+    below = [one for one in axes if one.get_xlabel() == "frequency (Hz)"]
+    assert [one.get_ylabel() for one in below] == ["power (N²/Hz)", "power (N² m²/Hz)"]
+    lines = [line for one in below for line in one.get_lines()]
+    assert [line.get_label() for line in lines] == ["sway", "heave", "yaw"]
+    for line, i in zip(lines, (1, 2, 5), strict=True):
+        np.testing.assert_array_equal(line.get_xdata(), force.spectrum.frequency_hz[1:])
+        np.testing.assert_array_equal(line.get_ydata(), density[1:, i])
+
+
+def test_a_disturbance_of_an_earlier_version_is_drawn_without_a_spectrum():
+    force = study()["disturbance"].model_copy(update={"spectrum": None})
+    axes = drawn("disturbance", {"disturbance": force}).axes
+    assert [one.get_xlabel() for one in axes[:2]] == ["x (m)", "time (s)"]
+    assert not any(one.get_xlabel() == "frequency (Hz)" for one in axes)
+
+
 def test_each_cell_of_the_published_figure_is_error_over_mark():
     found = study()["published_errors"]
     cells = [cell for cell in found.cells if cell.metric == "velocity_mae"]

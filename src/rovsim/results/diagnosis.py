@@ -66,10 +66,21 @@ class ForceOfRun(Section):
     force: tuple[tuple[float, float, float, float, float, float], ...]
 
 
+class ForceSpectrum(Section):
+    """One-sided power spectral `density` of a disturbance, N²/Hz and (N m)²/Hz by body axis.
+
+    Mean over the train runs, at frequencies Hz. What pushes all the time is not in it.
+    """
+
+    frequency_hz: tuple[float, ...]
+    density: tuple[tuple[float, float, float, float, float, float], ...]
+
+
 class Disturbance(Section):
     """What pushes and follows no law: `rms` N, N m; `axes` on which it is more than noise.
 
-    Four fifths of its power on the strongest of these lie in `band_hz`.
+    Four fifths of its power on the strongest of these lie in `band_hz`. No `spectrum` in files of
+    earlier versions.
     """
 
     axes: tuple[str, ...]
@@ -77,6 +88,7 @@ class Disturbance(Section):
     band_hz: tuple[float, float]
     strongest: tuple[Push, ...]
     runs: tuple[ForceOfRun, ...]
+    spectrum: ForceSpectrum | None = None
 
 
 class Unexplained(Section):

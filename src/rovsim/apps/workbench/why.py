@@ -139,7 +139,7 @@ async def _left(bench: Workbench, found: Diagnosis) -> None:
         section("A disturbance, and no law")
         path = bench.out / "pictures" / "disturbance.png"
         await computed(draw_disturbance, found.unexplained.disturbance, path)
-        png(path, "What pushes and follows no law, on the path and in time")
+        png(path, "What pushes and follows no law: on the path, in time and by frequency")
 
 
 def _take(bench: Workbench, failure: Failure) -> None:

@@ -8,5 +8,6 @@ effect_file  a law as a file that can be read and edited
 seek         the likeliest law
 proposal     whether it holds, and what it is worth
 disturbance  the force in time, where none does
+spectrum     how fast that force is
 describe     either of them as `diagnosis.json` says it
 """

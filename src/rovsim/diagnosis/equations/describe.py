@@ -7,9 +7,18 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.equations.disturbance import ForceInTime
 from rovsim.diagnosis.equations.proposal import FILE, ID, ProposedLaw
+from rovsim.diagnosis.equations.spectrum import Spectrum
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.results.base import ByAxis
-from rovsim.results.diagnosis import Disturbance, ForceOfRun, Proposal, ProposedTerm, Push, RivalLaw
+from rovsim.results.diagnosis import (
+    Disturbance,
+    ForceOfRun,
+    ForceSpectrum,
+    Proposal,
+    ProposedTerm,
+    Push,
+    RivalLaw,
+)
 from rovsim.results.fitted import FittedEffect, FittedValue
 
 LINE = 0.2  # s between two lines of a force in time: what the readings resolve (sudden_pushes.py)
@@ -41,6 +50,7 @@ def describe_force(force: ForceInTime) -> Disturbance:
     return Disturbance(
         axes=force.axes, rms=ByAxis.of(_round_all(force.rms)),
         band_hz=(round(force.band[0], 3), round(force.band[1], 3)),
+        spectrum=_describe_spectrum(force.spectrum),
         strongest=tuple(
             Push(run=p.run, time_s=round(p.time, 2), axis=p.axis, force=float(f"{p.force:.4g}"),
                  place_m=_triple(p.place))
@@ -48,6 +58,14 @@ def describe_force(force: ForceInTime) -> Disturbance:
         ),
         runs=tuple(_describe_run(*one) for one in each),
     )  # fmt: skip
+
+
+def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
+    density = np.vectorize(lambda d: float(f"{d:.4g}"))(spectrum.density)
+    return ForceSpectrum(
+        frequency_hz=tuple(np.round(spectrum.frequency, 4).tolist()),
+        density=tuple(map(tuple, density.tolist())),
+    )
 
 
 def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfRun:

@@ -11,18 +11,17 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 from scipy.fft import next_fast_len
-from scipy.signal import find_peaks, welch
+from scipy.signal import find_peaks
 
 from rovsim import AXES
 from rovsim.diagnosis.checks.residual import AxisResidual, Structure, split_by_axis
+from rovsim.diagnosis.equations.spectrum import Spectrum, find_spectrum
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.kalman import AxisFilter
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
 
-BAND = (0.1, 0.9)  # shares of the power: four fifths of it lie between
 APART, STRONG, LISTED = 1.0, 2.0, 8  # s between pushes, RMS that one stands out by, how many
-SEGMENT = 20.0  # s of a spectrum: resolves 0.05 Hz, and a run of a minute has several
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +41,8 @@ class ForceInTime:
 
     `runs` and their `time` (n,) s on the clock of the motion capture, `place` (n, 3) MoCap m and
     `force` (n, 6) N, N m along the body;
-    `axes` on which it is more than noise; `rms` (6,); `band` Hz that holds most of its power on the
-    strongest of these; `pushes`, the strongest first.
+    `axes` on which it is more than noise; `rms` (6,); its `spectrum`, and the `band` Hz that holds
+    most of its power on the strongest of these; `pushes`, the strongest first.
     """
 
     runs: tuple[str, ...]
@@ -52,6 +51,7 @@ class ForceInTime:
     force: tuple[Array, ...]
     axes: tuple[str, ...]
     rms: Array
+    spectrum: Spectrum
     band: tuple[float, float]
     pushes: tuple[Push, ...]
 
@@ -106,9 +106,10 @@ def _gather(
     index = [AXES.index(a) for a in axes]
     places = [run.motion.state[run.index, :3] * run.motion.site.axes for run in runs]
     strongest = max(index, key=lambda i: rms[i] / _usual(residuals[AXES[i]], runs))
+    spectrum = find_spectrum(forces, runs[0].period)
     return ForceInTime(
         tuple(run.motion.run.id for run in runs), tuple(map(_tell_time, runs)), tuple(places),
-        tuple(forces), axes, rms, _find_band([f[:, strongest] for f in forces], runs[0].period),
+        tuple(forces), axes, rms, spectrum, spectrum.find_band(strongest),
         tuple(_find_pushes(runs, forces, places, index, rms)),
     )  # fmt: skip
 
@@ -123,15 +124,6 @@ def _usual(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
     i = AXES.index(residual.axis)
     nu_dot = np.concatenate([run.motion.nu_dot[run.motion.usable, i] for run in runs])
     return max(float(np.nanstd(nu_dot)), 1e-9)
-
-
-def _find_band(forces: Sequence[Array], period: float) -> tuple[float, float]:
-    """Lowest and highest frequency, Hz, of most of the power."""
-    length = min(round(SEGMENT / period), max(len(f) for f in forces))
-    spectra = [welch(f, 1.0 / period, nperseg=length) for f in forces if len(f) >= length]
-    share = np.cumsum(sum(power for _, power in spectra))
-    low, high = np.searchsorted(share / max(share[-1], 1e-300), BAND)
-    return float(spectra[0][0][low]), float(spectra[0][0][min(high, len(share) - 1)])
 
 
 def _find_pushes(

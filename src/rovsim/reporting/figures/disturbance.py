@@ -1,17 +1,19 @@
-"""Where something pushed that follows no law: its force on the path, and in time."""
+"""Where something pushed that follows no law: its force on the path, in time and by frequency."""
 
-from typing import Any
+from typing import Any, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.reporting.figures.legends import note, nothing
-from rovsim.reporting.figures.palette import FAMILIES
+from rovsim.reporting.figures.legends import note, nothing, plain_log
+from rovsim.reporting.figures.palette import FAMILIES, looks
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.units import FORCE_UNITS
+from rovsim.reporting.units import DENSITY_UNITS, FORCE_UNITS
 from rovsim.reporting.wording import short
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Disturbance, ForceOfRun, Push
@@ -20,9 +22,12 @@ SECTION = "verdict"
 PLACE = 2
 CAPTION = (
     "What pushes and follows no law: the smooth force that is left, as colour on the path seen "
-    "from above, and in time; a circle marks the strongest moments."
+    "from above, and in time; a circle marks the strongest moments. Below, its power by frequency, "
+    "without what pushes all the time: what swings or turns makes a peak. Above some 1 Hz it "
+    "is stronger than shown, since the noise of the measurement hides it."
 )
 COLORS = "cividis"  # as bright in grey as in colour
+DECADES, TINY = 1e-5, 1e-12  # of the highest peak, below which a spectrum is not shown; N²/Hz
 BETWEEN = 0.2  # s: lines of a force are as far apart
 
 
@@ -35,8 +40,7 @@ def draw(*, disturbance: Disturbance | None) -> Figure:
         nothing(figure.subplots(), "no disturbance was found")
         return figure
     axis = max(force.axes, key=lambda name: or_nan(force.rms[name]))
-    figure = sheet(20 + 42 * len(force.runs))
-    panels = figure.subplots(len(force.runs), 2, squeeze=False, width_ratios=(1, 2))
+    figure, panels, below = _lay_out(force)
     i = AXES.index(axis)
     most = max(float(np.max(np.abs(np.array(run.force)[:, i]))) for run in force.runs)
     scale = Normalize(-most, most)
@@ -51,8 +55,44 @@ def draw(*, disturbance: Disturbance | None) -> Figure:
         shrink=0.7,
     )
     low, high = force.band_hz
+    for axes, family in zip(below, _list_families(force), strict=True):
+        _draw_spectrum(axes, family, force)
     note(figure, [f"Train runs; four fifths of its power between {low:.2g} and {high:.2g} Hz."])
     return figure
+
+
+def _lay_out(force: Disturbance) -> tuple[Figure, Array, list[Axes]]:
+    """A row of two panels (n, 2) for each run, and below them one for each family of spectra."""
+    count, families = len(force.runs), _list_families(force)
+    figure = sheet(20 + 42 * (count + bool(families)))
+    grid = figure.add_gridspec(count + bool(families), 2, width_ratios=(1, 2))
+    rows = [[figure.add_subplot(grid[k, i]) for i in range(2)] for k in range(count)]
+    places = [grid[-1, :]] if len(families) == 1 else [grid[-1, 0], grid[-1, 1]]
+    below = [figure.add_subplot(place) for _, place in zip(families, places, strict=False)]
+    return figure, np.array(rows), below
+
+
+def _list_families(force: Disturbance) -> list[list[int]]:
+    """Forces and moments that have a spectrum: they have two units."""
+    shown = [AXES.index(a) for a in force.axes] if force.spectrum else []
+    families = [[i for i in shown if i < 3], [i for i in shown if i >= 3]]
+    return [family for family in families if family]
+
+
+def _draw_spectrum(axes: Axes, family: Sequence[int], force: Disturbance) -> None:
+    """Densities of forces, or of moments; not at zero, where the logarithm has no place."""
+    if force.spectrum is None:
+        return
+    frequency, density = np.array(force.spectrum.frequency_hz), np.array(force.spectrum.density)
+    named = looks([f"effects-{AXES[i]}" for i in family])
+    for i, look in zip(family, named.values(), strict=True):
+        axes.plot(frequency[1:], density[1:, i], label=AXES[i], **look.line())
+    plain_log(axes, "xy")
+    most = max(float(np.max(density[1:, family])), TINY)
+    axes.set_ylim(DECADES * most, 3.0 * most)
+    axes.legend(loc="lower left")
+    axes.set_xlabel("frequency (Hz)")
+    axes.set_ylabel(f"power ({DENSITY_UNITS[family[0]]})")
 
 
 def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Disturbance) -> None:
