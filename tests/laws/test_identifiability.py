@@ -16,8 +16,9 @@ from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.diagnosis.selection.ranking import Named, Selected, doubt_lead, name_drift
-from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.clocks import InputDelay
+from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
@@ -78,6 +79,17 @@ def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     reveals = built_in()["onboard_control"].revealed_by
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
     assert advise(found, [], [], built_in()).startswith("Nothing is needed")
+
+
+def test_an_effect_that_does_not_say_what_reveals_it_asks_for_a_planned_flight():
+    base = fit(alike()).hypothesis.base
+    law = Selected(Term(Law(c1=1.0), ("c1", "x")), {"c1": 0.1, "x": 0.1}, 1.0, 0.5)
+    found = TrainDiagnosis(base, UsableRuns((), (), (), (), 60.0), fit(alike()), selected=(law,))
+    plan = "plan a flight with `rovsim design 'know=[law.c1,law.x]'`."
+    assert advise(found, [], [], built_in()) == f"To be surer of law: {plan}"
+    own = Catalogue({**built_in(), "law": Law})
+    known = advise(found, [], [["law.c1", "law.x"]], own)
+    assert known == f"To know law.c1, law.x one by one: {plan}"
 
 
 @pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])

@@ -5,6 +5,7 @@ from typing import Sequence
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.selection.ranking import leads
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 
 FIX_SCALE = (
@@ -78,11 +79,18 @@ def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue) -> str:
     owners = [name.split(".")[0] for group in joint for name in group]
     most = max(dict.fromkeys(owners), key=owners.count)
     group = next(g for g in joint if any(name.startswith(f"{most}.") for name in g))
-    return f"To know {', '.join(group)} one by one: {catalogue[most].revealed_by}"
+    return f"To know {', '.join(group)} one by one: {_how(catalogue[most], group)}"
 
 
 def _confirm(found: TrainDiagnosis) -> str:
     if not found.selected:
         return "Nothing is needed: drive faster or in other places to look for rarer effects."
     weakest = min(found.selected, key=lambda one: one.error_reduction)
-    return f"To be surer of {weakest.term.id}: {weakest.term.effect.revealed_by}"
+    asked = [f"{weakest.term.id}.{name}" for name in weakest.term.free]
+    return f"To be surer of {weakest.term.id}: {_how(type(weakest.term.effect), asked)}"
+
+
+def _how(effect: type[Effect], parameters: Sequence[str]) -> str:
+    """What reveals an effect; where a user's own does not say, a flight that is planned for it."""
+    asked = f"plan a flight with `rovsim design 'know=[{','.join(parameters)}]'`."
+    return effect.revealed_by or asked
