@@ -17,7 +17,7 @@ def test_a_campaign_gives_absolute_paths_and_the_tank_in_ned(tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     campaign = load_campaign(Path("c"))
     run = campaign.run("one")
-    assert campaign.mocap_path(run) == tmp_path / "c" / "poses.tsv"
+    assert campaign.mocap_paths(run) == [tmp_path / "c" / "poses.tsv"]
     assert campaign.commands_path(run).is_absolute()
     np.testing.assert_array_equal(campaign.tank_ned(), [[0, 10], [-5, 0], [-3, 0]])
     assert load_campaign(Path("c/campaign.yaml")) == campaign

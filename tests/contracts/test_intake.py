@@ -1,5 +1,6 @@
 """`rovsim init`: what is written is read back the same; what cannot be used is one message."""
 
+import re
 import shutil
 import zlib
 from pathlib import Path
@@ -96,7 +97,7 @@ def test_recordings_elsewhere_stay_there(tmp_path):
         text = text.replace(f"{place}: ANSWER", f"{place}: {answer}")
     (out / "campaign.yaml").write_text(text)
     campaign = load_campaign(out)
-    assert campaign.mocap_path(campaign.runs[0]) == raw / "poses.csv"
+    assert campaign.mocap_paths(campaign.runs[0]) == [raw / "poses.csv"]
 
 
 @pytest.mark.parametrize(
@@ -164,3 +165,60 @@ def described_or_refused(raw: Path, scratch: Path) -> str:
         (raw / "campaign.yaml").unlink(missing_ok=True)
         shutil.rmtree(scratch, ignore_errors=True)
     return text
+
+
+def sensor_lines(column: str, start: float = 0.0) -> list[str]:
+    """A csv of one sensor: ten seconds at 10 Hz."""
+    return [f"time_s,{column}", *(f"{start + 0.1 * k:.1f},{0.01 * k:.2f}" for k in range(100))]
+
+
+def taken_for_runs(folder: Path, files: dict[str, list[str]]) -> list[list[str]]:
+    """The files of each run, of files that init finds in a folder; their campaign can be read."""
+    for name, lines in files.items():
+        write_lines(folder / name, lines)
+    main(["init", str(folder), "-q"])
+    text = (folder / "campaign.yaml").read_text()
+    for asked in re.findall(r"(\w+): ANSWER", text):
+        known = {"vehicle": "bluerov2", "world_axes": "ned", "body_axes": "frd"}
+        text = text.replace(f"{asked}: ANSWER", f"{asked}: {known[asked]}")
+    (folder / "campaign.yaml").write_text(text)
+    return [run.sensor_files for run in load_campaign(folder).runs]
+
+
+@pytest.mark.parametrize("name", ["run{}_{}.csv", "{1}{0}.csv", "{1}-dive {0}.csv", "run{}/{}.csv"])
+def test_files_whose_names_differ_in_the_sensor_are_one_run(tmp_path, name):
+    files = {
+        name.format(k, sensor): sensor_lines(column)
+        for k in (1, 2, 3)
+        for sensor, column in (("depth", "depth_m"), ("imu", "p_rad_s"))
+    }
+    names = list(files)
+    assert taken_for_runs(tmp_path, files) == [sorted(names[k : k + 2]) for k in (0, 2, 4)]
+    assert "their names differ in the sensor alone" in told(tmp_path)
+
+
+def test_clocks_that_go_on_tell_which_files_are_one_run(tmp_path):
+    files = {
+        "a.csv": sensor_lines("depth_m", 1e3), "b.csv": sensor_lines("depth_m", 2e3),
+        "c.csv": sensor_lines("p_rad_s", 2e3), "d.csv": sensor_lines("p_rad_s", 1e3),
+    }  # fmt: skip
+    assert taken_for_runs(tmp_path, files) == [["a.csv", "d.csv"], ["b.csv", "c.csv"]]
+
+
+def test_where_nothing_tells_which_files_are_one_run_init_says_so(tmp_path):
+    files = {f"{n}.csv": sensor_lines("depth_m" if n < "c" else "p_rad_s") for n in "abcd"}
+    assert taken_for_runs(tmp_path, files) == [[name] for name in files]
+    assert "CHECK: a.csv, b.csv (depth) and c.csv, d.csv (rates): neither names" in told(tmp_path)
+
+
+def test_one_name_and_two_clocks_are_told(tmp_path):
+    files = {
+        "run1_depth.csv": sensor_lines("depth_m"), "run1_imu.csv": sensor_lines("p_rad_s", 1.7e9),
+    }  # fmt: skip
+    assert taken_for_runs(tmp_path, files) == [[name] for name in files]
+    assert "look like one run by their names, but runs from 1700000000" in told(tmp_path)
+
+
+def told(folder: Path) -> str:
+    """The text of campaign.yaml on one line."""
+    return re.sub(r"\n\s*#\s*", " ", (folder / "campaign.yaml").read_text())

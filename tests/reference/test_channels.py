@@ -305,3 +305,45 @@ def test_what_lies_outside_of_the_used_spans_is_left_out_and_counted(tmp_path, p
 def test_spans_that_hold_nothing_are_refused(tmp_path, use, said):
     with pytest.raises(BadInput, match=said):
         read(tmp_path, csv_lines(Swim.ned()), run={"use": use})
+
+
+def test_several_files_of_a_run_say_what_one_says(tmp_path):
+    together, _ = read(tmp_path, sparse({"depth_m": (SLOW, 1 + SLOW), **ANGLES}))
+    write_lines(tmp_path / "poses.csv", sparse(ANGLES))
+    write_lines(tmp_path / "depth.csv", sparse({"depth_m": (SLOW, 1 + SLOW)}))
+    several = read_several(tmp_path, ["poses.csv", "depth.csv"])
+    np.testing.assert_array_equal(several.time, together.time)
+    assert several.rate == together.rate
+    for kind, channel in together.channels.items():
+        np.testing.assert_array_equal(several.channels[kind].time, channel.time)
+        np.testing.assert_array_equal(several.channels[kind].value, channel.value)
+
+
+def test_full_poses_in_one_file_stand_for_those_parts_in_another(tmp_path):
+    write_lines(tmp_path / "poses.csv", csv_lines(Swim.ned(frames=60)))
+    write_lines(tmp_path / "imu.csv", sparse(ANGLES | {"p_rad_s": (FAST, FAST)}))
+    recording = read_several(tmp_path, ["imu.csv", "poses.csv"])
+    assert recording.posed
+    assert set(recording.channels) == {"rates"}
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        ({"depth_m": (SLOW, SLOW)}, r"other.csv: 'depth' is in poses.csv and in other.csv"),
+        ({"p_rad_s": (SLOW + 1e5, SLOW)}, r"other.csv: runs from 100000 to .* on one clock"),
+    ],
+)
+def test_files_that_cannot_be_of_one_run_are_refused(tmp_path, columns, said):
+    write_lines(tmp_path / "poses.csv", sparse({"depth_m": (SLOW, 1 + SLOW)}))
+    write_lines(tmp_path / "other.csv", sparse(columns))
+    with pytest.raises(BadInput, match=said):
+        read_several(tmp_path, ["poses.csv", "other.csv"])
+
+
+def read_several(folder, files) -> Recording:
+    """The recording of a run without commands that lies in several files."""
+    content = campaign_content("csv")
+    content["mocap"] |= {"world_axes": "ned", "body_axes": "frd"}
+    content["runs"][0] |= {"mocap": files, "commands": "none"}
+    return read_run(load_campaign(write_campaign(folder, content)), "one")[0]

@@ -154,7 +154,7 @@ def test_practice_campaigns_read_whole(campaign):
     for run in loaded.runs:
         recording, anomalies = read_run(loaded, run.id)
         report = assess(recording, anomalies)
-        rows = loaded.mocap_path(run).read_text().splitlines()[11:]
+        rows = loaded.mocap_paths(run)[0].read_text().splitlines()[11:]
         lost = sum(row.split("\t")[8] in ("-1", "-1.000") for row in rows)
         assert (report.frames, report.not_found) == (len(rows), lost)
         assert np.isnan(recording.position[~recording.found]).all()

@@ -114,7 +114,7 @@ class Study:
             one = self.campaign.run(run)
             return [str(self.campaign.file), *map(str, self.campaign.raw_files(one))]
         runs = [r for r in self.campaign.runs if run in ("", r.id)]
-        files = [name for r in runs for name in (r.mocap, r.commands)]
+        files = [name for r in runs for name in (*r.sensor_files, r.commands)]
         own = [VEHICLE] if own_vehicle(self.settings.tank) else []
         extra = own if run else [*own, SEALED]
         return [f"{self.folder}/raw/{name}" for name in ["campaign.yaml", *extra, *files]]

@@ -57,9 +57,9 @@ class Campaign:
         raw = {path for run in self.runs for path in self.raw_files(run)}
         return sorted({self.file} | raw)
 
-    def mocap_path(self, run: Run) -> Path:
-        """Absolute path of the run's poses."""
-        return self.folder / run.mocap
+    def mocap_paths(self, run: Run) -> list[Path]:
+        """Absolute paths of what was measured in the run: one file, or one a sensor."""
+        return [self.folder / name for name in run.sensor_files]
 
     def commands_path(self, run: Run) -> Path:
         """Absolute path of the commands of a run that has any."""
@@ -67,7 +67,7 @@ class Campaign:
 
     def raw_files(self, run: Run) -> list[Path]:
         """Files that hold the run, each once; of a folder (a bag) those in it."""
-        paths = [self.mocap_path(run), *([self.commands_path(run)] if run.commanded else [])]
+        paths = [*self.mocap_paths(run), *([self.commands_path(run)] if run.commanded else [])]
         inside = [sorted(p.iterdir()) if p.is_dir() else [p] for p in paths]
         return list(dict.fromkeys(path for files in inside for path in files))
 
@@ -197,12 +197,17 @@ def _folder(text: str, file: Path) -> Path:
     return Path(os.path.normpath(file.parent / named))
 
 
+def _files_of(campaign: Campaign, run: Run) -> list[tuple[str, Path]]:
+    measured = [("mocap", path) for path in campaign.mocap_paths(run)]
+    return [*measured, *([("commands", campaign.commands_path(run))] if run.commanded else [])]
+
+
 def _check_files(campaign: Campaign) -> None:
     missing = [
         (key, run.id, path)
         for run in campaign.runs
-        for key in ("mocap", "commands")[: 1 + run.commanded]
-        if not (path := campaign.folder / getattr(run, key)).exists()
+        for key, path in _files_of(campaign, run)
+        if not path.exists()
     ]
     if not missing:
         return

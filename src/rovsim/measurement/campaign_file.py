@@ -138,6 +138,7 @@ class CommandLog(Section):
 class Run(Section):
     """One run: its files, relative to the folder of the recordings.
 
+    `mocap` is one file, or several that hold different sensors on one clock.
     `commands` is `none` where nothing was commanded (free decay, towing, drifting). `use`: spans
     [from, to] in s, on the clock of the recording, outside of which it is left out (held by hand,
     on the floor); None: all of it.
@@ -146,9 +147,14 @@ class Run(Section):
     id: FileName
     control: Literal["3dof", "6dof"]
     split: Literal["train", "test"]
-    mocap: Place
+    mocap: Annotated[list[Place], Field(min_length=1), AfterValidator(_distinct)] | Place
     commands: Place
     use: Annotated[list[Span], Field(min_length=1)] | None = None
+
+    @property
+    def sensor_files(self) -> list[str]:
+        """The files that hold what was measured."""
+        return [self.mocap] if isinstance(self.mocap, str) else self.mocap
 
     @property
     def commanded(self) -> bool:

@@ -2,6 +2,7 @@
 
 survey      all files: what they hold, or one message for each that cannot be used
 names       what their names say: runs, and which files belong together
+together    files of one run that hold different sensors
 bodies      which body or topic is the vehicle, where a file holds several
 vehicles    which vehicle files fit the commands
 predicted   which velocity commands ought to cause

@@ -38,7 +38,7 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> Proposal:
         {place: tuple(lines) for place, lines in draft.comments.items()},
         tuple(draft.questions),
         (*_lines(facts), *notes, *found.left_out),
-        tuple(_checked(facts)),
+        (*found.apart, *_checked(facts)),
         places.copies,
     )
 
@@ -48,7 +48,7 @@ def _lines(facts: Facts) -> Iterator[str]:
     for name, one in zip(facts.ids, facts.pairs, strict=True):
         log = f" with {one.log.path.name}" if one.log and one.log.path != one.motion.path else ""
         timing = Timing.of(one.motion.track.export.time)
-        yield f"{name}: {one.motion.path.name}{log}, {timing}{missing(one)}"
+        yield f"{name}: {one.motion.name}{log}, {timing}{missing(one)}"
 
 
 def _checked(facts: Facts) -> Iterator[str]:

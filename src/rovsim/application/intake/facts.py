@@ -13,6 +13,7 @@ from rovsim.application.intake.motions import Log, Motion, alike, highest
 from rovsim.application.intake.names import run_ids
 from rovsim.application.intake.pairing import Pair, pair
 from rovsim.application.intake.survey import Survey
+from rovsim.application.intake.together import list_stems
 from rovsim.application.intake.vehicles import Fit, fitting
 from rovsim.core.errors import BadInput
 from rovsim.measurement.survey import Contents
@@ -55,14 +56,17 @@ def find_facts(found: Survey) -> Facts:
         return max((highest(alike(motion, log, fit)) for fit in fits), default=0.0)
 
     body = find_body(found.motions, lambda name: _of_body(found, name, logs, score))
-    motions = [Motion(one.named, track_of(one, body.name)) for one in found.motions]
+    motions = [
+        Motion(one.named, track_of(one, body.name), tuple(file.named for file in one.beside))
+        for one in found.motions
+    ]
     pairs = pair(motions, logs, score)
     choice = choose(fits, pairs) if fits else _no_choice(logs)
     known = body.name or body.choices == ("",)
     axes = find_axes(
         found.motions[0].format, [m.track for m in motions], choice.turned if known else ()
     )
-    ids = run_ids([m.path.stem if m.path.is_file() else m.path.name for m in motions])
+    ids = run_ids(list_stems(found.motions))
     return Facts(found, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
 
 
@@ -82,7 +86,7 @@ def _logs(found: Survey) -> list[Log]:
     if alone:
         return alone
     inside = []
-    for one in found.motions:
+    for one in (file for motion in found.motions for file in motion.files):
         moving = [drive for drive in one.drives if drive.moves]
         for drive in (moving or list(one.drives))[:1]:
             inside.append(Log(one.named, drive))

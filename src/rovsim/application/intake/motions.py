@@ -21,10 +21,19 @@ BEFORE, AFTER = 1.0, 3.0  # s around the commands
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """One run's motion; its rough velocities are computed when they are needed."""
+    """One run's motion; its rough velocities are computed when they are needed.
+
+    `beside`: further files of the run.
+    """
 
     path: Path
     track: Track
+    beside: tuple[Path, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The names of its files."""
+        return ", ".join(path.name for path in (self.path, *self.beside))
 
     @cached_property
     def measured(self) -> Velocities | None:

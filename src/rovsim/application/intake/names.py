@@ -11,12 +11,30 @@ ROLES = (
     "commands?|cmds?|pwms?|rc|rcout|thrusters?|thrust|servos?|inputs?|control_?inputs?|actuation|"
     "setpoints?|log|data|raw"
 )
+# Words that say which sensor a file is of.
+SENSORS = (
+    "depth|pressure|baro(meter)?|imu|gyro(scope)?|accel(erometer)?|ahrs|attitude|att|euler|angles?|"
+    "orientation|heading|compass|dvl|velocity|velocities|vel|speed|usbl|gps|position|pos|nav|ekf|odom|"
+    "odometry|battery|voltage|bat|sensors?"
+)
 WORD = re.compile(rf"(^|[_\-\s.]+)({ROLES})(?=$|[_\-\s.]+)", re.IGNORECASE)
+# `depth1` and `pwm1` are of run 1
+OF_SENSOR = re.compile(rf"(^|[_\-\s.]+)({ROLES}|{SENSORS})(?=$|[_\-\s.]+|\d+$)", re.IGNORECASE)
 
 
 def run_key(stem: str) -> str:
     """What is left of a file's stem without the words that say what it is."""
     return re.sub(r"[\s_\-.]+", "-", _without_role(stem)).strip("-").casefold()
+
+
+def sensor_key(stem: str) -> str:
+    """What is left without the words that say which sensor it is of, either."""
+    return re.sub(r"[\s_\-.]+", "-", without_sensor(stem)).strip("-").casefold()
+
+
+def without_sensor(stem: str) -> str:
+    """A stem without the words for its role and for its sensor."""
+    return _without(OF_SENSOR, stem)
 
 
 def run_ids(stems: Sequence[str]) -> list[str]:
@@ -29,8 +47,12 @@ def run_ids(stems: Sequence[str]) -> list[str]:
 
 
 def _without_role(stem: str) -> str:
+    return _without(WORD, stem)
+
+
+def _without(words: re.Pattern[str], stem: str) -> str:
     left = stem
-    while (shorter := WORD.sub("", left)) != left:
+    while (shorter := words.sub("", left)) != left:
         left = shorter
     return left.strip(" _-.")
 

@@ -1,13 +1,14 @@
 """Which log of commands belongs to which motion: by file, by what they cause, by name, by clock."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.intake.motions import Log, Motion
-from rovsim.application.intake.names import run_key
+from rovsim.application.intake.names import run_key, sensor_key
 
 # Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
 # most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).
@@ -65,12 +66,29 @@ def _by_content(table: Array) -> list[int | None]:
 
 
 def _by_name(motions: Sequence[Motion], logs: Sequence[Log]) -> list[int | None]:
-    """The log whose name differs only in the words for motion and commands."""
-    ours, theirs = ([run_key(x.path.stem) for x in group] for group in (motions, logs))
-    return [
-        theirs.index(key) if key and ours.count(key) == theirs.count(key) == 1 else None
-        for key in ours
-    ]
+    """The log whose name differs only in the words for motion, sensor and commands.
+
+    Where that tells nothing, the only log in the folder of a motion that is alone there.
+    """
+    found: list[int | None] = [None] * len(motions)
+    for key in (_by_role, _by_sensor, _by_folder):
+        ours, theirs = ([key(x.path) for x in group] for group in (motions, logs))
+        for k, one in enumerate(ours):
+            if found[k] is None and one and ours.count(one) == theirs.count(one) == 1:
+                found[k] = theirs.index(one)
+    return found
+
+
+def _by_role(path: Path) -> str:
+    return run_key(path.stem)
+
+
+def _by_sensor(path: Path) -> str:
+    return sensor_key(path.stem)
+
+
+def _by_folder(path: Path) -> str:
+    return str(path.absolute().parent)
 
 
 def _by_clock(motions: Sequence[Motion], logs: Sequence[Log]) -> list[int | None]:

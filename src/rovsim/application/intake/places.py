@@ -29,7 +29,8 @@ class Places:
     @staticmethod
     def beside(found: Survey, out: Path) -> "Places":
         """Of the files of a survey: they stay where they are."""
-        out, every = out.absolute(), (*found.motions, *found.logs)
+        out = out.absolute()
+        every = [file for one in (*found.motions, *found.logs) for file in one.files]
         files = [one.path.absolute() for one in every if one.original is None]
         inside = all(file.is_relative_to(out) for file in files)
         base = out if inside else Path(os.path.commonpath([file.parent for file in files]))

@@ -32,7 +32,7 @@ def runs(facts: Facts, places: Places, draft: Draft) -> None:
                 "id": facts.ids[k],
                 "control": controls[k][0],
                 "split": splits[k],
-                "mocap": places.of(facts.motions[k].named),
+                "mocap": _measured(facts, k, places),
                 "commands": _log(facts, k, places, draft),
             }
         )
@@ -43,7 +43,7 @@ def runs(facts: Facts, places: Places, draft: Draft) -> None:
 
 def described(one: Pair) -> list[str]:
     """What the files of a run hold."""
-    lines = [f"{one.motion.path.name}: {Timing.of(one.motion.track.export.time)}{missing(one)}"]
+    lines = [f"{one.motion.name}: {Timing.of(one.motion.track.export.time)}{missing(one)}"]
     if one.log is None:
         return lines
     time = np.unique(one.log.drive.time)
@@ -60,6 +60,12 @@ def missing(one: Pair) -> str:
         return f"; no full poses, but {', '.join(held)}"
     lost = int(np.sum(~export.found))
     return f", {lost} of them without the body" if lost else ""
+
+
+def _measured(facts: Facts, k: int, places: Places) -> str | list[str]:
+    """The file of the sensors, or the files."""
+    files = [places.of(file.named) for file in facts.motions[k].files]
+    return files if len(files) > 1 else files[0]
 
 
 def _log(facts: Facts, k: int, places: Places, draft: Draft) -> str:

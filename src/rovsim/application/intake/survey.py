@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Sequence
 
+from rovsim.application.intake.together import put_together
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.progress import counted
 from rovsim.measurement.survey import Contents, gather, look
@@ -11,11 +12,15 @@ from rovsim.measurement.survey import Contents, gather, look
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """Files with motions, files with commands alone, and why others of a folder were left out."""
+    """Files with motions, files with commands alone, and why others of a folder were left out.
+
+    `apart`: files that may belong together, and why they were not taken for one run.
+    """
 
     motions: tuple[Contents, ...]
     logs: tuple[Contents, ...]
     left_out: tuple[str, ...] = ()
+    apart: tuple[str, ...] = ()
 
 
 def survey(paths: Sequence[Path], scratch: Path) -> Survey:
@@ -44,7 +49,8 @@ def survey(paths: Sequence[Path], scratch: Path) -> Survey:
     motions = tuple(one for one in found if one.tracks)
     logs = tuple(one for one in found if not one.tracks)
     _check(motions, logs, list(refused.values()), paths)
-    return Survey(motions, logs, left_out)
+    runs, apart = put_together(motions)
+    return Survey(runs, logs, left_out, apart)
 
 
 def _check(

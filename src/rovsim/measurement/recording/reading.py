@@ -14,6 +14,7 @@ from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap, Run
 from rovsim.measurement.recording import channels
 from rovsim.measurement.recording.channels import Channels
+from rovsim.measurement.recording.joined import join
 from rovsim.measurement.recording.readers import (
     KIND,
     Export,
@@ -63,8 +64,8 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     """
     run, mocap = campaign.run(run_id), campaign.mocap
     read = reader_of(mocap.format, mocap_readers(), f"{campaign.file}, mocap.format")
-    path = campaign.mocap_path(run)
-    export, counts = tidy_export(read(path, mocap), path)
+    paths = campaign.mocap_paths(run)
+    export, counts = tidy_export(join({path: read(path, mocap) for path in paths}), paths[0])
     commands, command_counts, notes = _read_commands(campaign, run)
     if run.commanded:
         _check_overlap(export.time, commands.time, campaign.commands_path(run))

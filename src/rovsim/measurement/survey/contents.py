@@ -93,7 +93,8 @@ class Contents:
     """One file (or bag folder): its format, motions to choose from, commands to choose from.
 
     `path` is what the readers open; `original` the file that was named, another one where only a
-    copy with other column names can be read. `notes` are sentences for its owner.
+    copy with other column names can be read. `notes` are sentences for its owner. `beside`: other
+    files of the same run, whose sensors are joined in the track.
     """
 
     path: Path
@@ -102,6 +103,12 @@ class Contents:
     drives: tuple[Drive, ...] = ()
     original: Path | None = None
     notes: tuple[str, ...] = ()
+    beside: tuple["Contents", ...] = ()
+
+    @property
+    def files(self) -> tuple["Contents", ...]:
+        """The file, and those beside it."""
+        return (self, *self.beside)
 
     @property
     def named(self) -> Path:

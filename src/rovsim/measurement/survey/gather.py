@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim.core.errors import BadInput
+from rovsim.measurement.survey.sniff import sniff
 
 STORAGE = (".db3", ".mcap")
 # Bytes that a reader takes into memory at once, several times over; bags are read bit by bit.
@@ -15,6 +16,8 @@ OTHERS = ("campaign.yaml", "truth.yaml", "metadata.yaml")
 
 def gather(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     """Files and bag folders that were named, and those that lie in named folders.
+
+    A folder without recordings of its own stands for the folders in it, one a run.
 
     Raises:
         BadInput: one of them is not there, is too large, or is no folder of recordings.
@@ -37,6 +40,29 @@ def is_bag(path: Path) -> bool:
 
 
 def _within(folder: Path) -> list[Path]:
+    own = _directly_within(folder)
+    if any(map(_is_recording, own)):
+        return own
+    inner = [p for p in sorted(folder.iterdir()) if p.is_dir() and not p.name.startswith(".")]
+    deeper = [path for one in inner for path in _directly_within(one)]
+    if not own and not deeper:
+        raise BadInput(
+            "the folder holds no recordings",
+            where=folder,
+            expected="exported motions and command logs",
+            remedy="Name the folder or the files of your recordings.",
+        )
+    return own + deeper
+
+
+def _is_recording(path: Path) -> bool:
+    try:
+        return bool(sniff(path))
+    except (BadInput, OSError):
+        return False
+
+
+def _directly_within(folder: Path) -> list[Path]:
     found = sorted(p for p in folder.iterdir() if not p.name.startswith("."))
     if len(found) > MANY:
         raise BadInput(
@@ -47,13 +73,6 @@ def _within(folder: Path) -> list[Path]:
         )
     bags = [p for p in found if p.is_dir() and is_bag(p)]
     files = [p for p in found if p.is_file() and p.name not in OTHERS and p.stat().st_size]
-    if not bags and not files:
-        raise BadInput(
-            "the folder holds no recordings",
-            where=folder,
-            expected="exported motions and command logs",
-            remedy="Name the folder or the files of your recordings.",
-        )
     return bags + [p for p in files if p.suffix in STORAGE or p.stat().st_size <= LARGEST]
 
 

@@ -1,0 +1,100 @@
+"""Several files of one run become one export: each holds other sensors, all on one clock."""
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from typing import Mapping
+
+import numpy as np
+
+from rovsim.core.errors import BadInput
+from rovsim.measurement.recording.readers import Export
+
+POSES = "full poses"
+TOLD = ("position", "attitude", "euler")  # kinds that full poses tell as well
+
+
+def list_held(export: Export) -> list[str]:
+    """What a file holds: full poses, and kinds of channels that were measured at any time."""
+    channels = [kind for kind, channel in export.channels.items() if len(channel.time)]
+    return [*([POSES] if len(export.time) and export.found.any() else []), *channels]
+
+
+def join(exports: Mapping[Path, Export]) -> Export:
+    """One export of all files: the poses of the one that has them, the channels of each.
+
+    Beside full poses the position and attitude of other files are not used, and a note says so.
+
+    Raises:
+        BadInput: two of them hold the same, or have no time in common.
+    """
+    if len(exports) == 1:
+        return next(iter(exports.values()))
+    _check_clocks(exports)
+    exports, left_out = _beside_poses(exports)
+    _check_different(exports)
+    posed = [one for one in exports.values() if POSES in list_held(one)]
+    first = (posed or list(exports.values()))[0]
+    counts: Counter[str] = Counter()
+    for one in exports.values():
+        counts.update(one.counts)
+    channels = {kind: c for one in exports.values() for kind, c in one.channels.items()
+                if len(c.time)}  # fmt: skip
+    notes = dict.fromkeys(note for one in exports.values() for note in one.notes)
+    return replace(first, counts=dict(counts), channels=channels, notes=(*notes, *left_out))
+
+
+def _beside_poses(exports: Mapping[Path, Export]) -> tuple[Mapping[Path, Export], list[str]]:
+    """Without what the full poses of another file tell as well, and sentences about it."""
+    posed = [path for path, one in exports.items() if POSES in list_held(one)]
+    if len(posed) != 1:
+        return exports, []
+    kept, said = dict(exports), []
+    for path, one in exports.items():
+        double = [kind for kind in list_held(one) if kind in TOLD and path != posed[0]]
+        if double:
+            channels = {kind: c for kind, c in one.channels.items() if kind not in TOLD}
+            kept[path] = replace(one, channels=channels)
+            said.append(
+                f"The {' and '.join(double)} in {path.name} is not used: {posed[0].name} holds "
+                "full poses."
+            )
+    return kept, said
+
+
+def _check_different(exports: Mapping[Path, Export]) -> None:
+    seen: dict[str, Path] = {}
+    for path, export in exports.items():
+        for held in list_held(export):
+            if held in seen:
+                raise BadInput(
+                    f"'{held}' is in {seen[held].name} and in {path.name}",
+                    where=path,
+                    expected="files of one run that hold different sensors",
+                    remedy="Take one of them out of 'mocap' of that run, or make two runs of them.",
+                )
+            seen[held] = path
+
+
+def _check_clocks(exports: Mapping[Path, Export]) -> None:
+    spans = {path: span_of(export) for path, export in exports.items()}
+    latest = max(spans, key=lambda path: spans[path][0])
+    earliest = min(spans, key=lambda path: spans[path][1])
+    if spans[latest][0] < spans[earliest][1]:
+        return
+    begin, end = spans[latest]
+    other = spans[earliest]
+    raise BadInput(
+        f"runs from {begin:.10g} to {end:.10g} s, {earliest.name} from {other[0]:.10g} to "
+        f"{other[1]:.10g} s",
+        where=latest,
+        expected="files of one run on one clock",
+        remedy="Shift the times of one of them, or make two runs of them.",
+    )
+
+
+def span_of(export: Export) -> tuple[float, float]:
+    """First and last time in s at which anything was measured."""
+    times = [export.time, *(channel.time for channel in export.channels.values())]
+    every = np.concatenate([time for time in times if len(time)] or [np.zeros(1)])
+    return float(every.min()), float(every.max())
