@@ -6,6 +6,7 @@ import pytest
 from pandas import DataFrame
 
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.pooled import pool
 from rovsim.reporting.html import report
@@ -16,7 +17,7 @@ from rovsim.reporting.words import terminal
 from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
-from rovsim.results.fitted import FittedValue
+from rovsim.results.fitted import FittedEffect, FittedValue
 from synthetic_study import study
 
 FUNCTIONS = "exp|max|tanh|min|to|cdot|le|leftrightarrow|quad|sqrt|sim|pi|top"
@@ -46,6 +47,24 @@ def test_an_effect_that_harms_is_not_said_to_remove_anything(content):
     found = content["diagnosis"].model_copy(update={"selected": (harmful,)})
     (said,) = explain(found, built_in()).missing
     assert said.worth.startswith("raises the error by 3")
+
+
+def test_thrusters_are_called_as_in_the_vehicle_file(content):
+    gain = {"t3": FittedValue(value=0.5, std=0.01, unit="1"), "all": FittedValue(value=0.9)}
+    swapped = {"first": FittedValue(value=1), "second": FittedValue(value=3)}
+    selected = (
+        FittedEffect(effect="thruster_gain", parameters=gain),
+        FittedEffect(effect="thruster_order", parameters=swapped),
+    )
+    found = content["diagnosis"].model_copy(update={
+        "selected": selected, "thrusters": ("port", "starboard", "bow"),
+        "known_together": (("thruster_gain.t1", "added_mass.surge"),),
+    })  # fmt: skip
+    told = " ".join(terminal.tell_diagnosis(found, built_in()).split())
+    assert "bow (t3) 0.500 ± 0.020 all 0.9" in told
+    assert "first 1 (port) second 3 (bow)" in told
+    assert "thruster_gain.port (t1), added_mass.surge" in told
+    assert name_parameter("thruster_gain", "t2", ("t1", "t2")) == "t2"
 
 
 @pytest.mark.parametrize("effect", built_in().values(), ids=list(built_in()))

@@ -1,5 +1,7 @@
 """Values known only together, from covariances made up for the purpose."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,7 @@ from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
+from worlds import motion, sticks
 
 TERMS = ("linear_damping", "net_buoyancy")  # surge … yaw, and a force
 NOISE = Noise(np.ones(6), np.ones(6), np.ones(6))
@@ -90,6 +93,41 @@ def test_an_effect_that_does_not_say_what_reveals_it_asks_for_a_planned_flight()
     own = Catalogue({**built_in(), "law": Law})
     known = advise(found, [], [["law.c1", "law.x"]], own)
     assert known == f"To know law.c1, law.x one by one: {plan}"
+
+
+def flown(commands, kind):
+    """What stands for a run that was commanded so."""
+    return SimpleNamespace(motion=motion(commands, kind))
+
+
+def advised(*usable):
+    """What to record where nothing was selected, and what was never commanded."""
+    found = TrainDiagnosis(fit(alike()).hypothesis.base, UsableRuns(*usable), fit(alike()))
+    return advise(found, [], [], built_in()), found.not_commanded
+
+
+def test_a_thruster_that_was_never_commanded_is_named():
+    idle = sticks() * (np.arange(8) != 2)
+    runs = (flown(idle, "thruster"), flown(0.5 * idle, "thruster"))
+    advice, named = advised(runs, (), (), (), 60.0)
+    assert named == ("t3",)
+    assert advice == "Command t3 in a train run, alone for some seconds each time."
+    assert advised((*runs, flown(sticks(), "thruster")), (), (), (), 60.0)[1] == ()
+    assert advised((), (), (), (), 60.0)[1] == ()  # nothing was logged
+
+
+def test_an_axis_that_was_never_pushed_is_named_unless_nothing_moved_in_it():
+    run = flown(sticks()[:, :6] * [1, 0, 1, 1, 0, 0], "demand")
+    assert advised((run,), ("pitch",), (), (), 60.0)[1] == ("sway", "yaw")
+
+
+def test_what_was_not_measured_is_what_to_record():
+    advice, _ = advised((), (), ("surge", "sway", "yaw"), (), 60.0)
+    assert "Record a position (x_m, y_m) or a velocity" in advice
+    assert "what acts in surge, sway." in advice
+    assert "Record a heading (yaw_rad)" in advice
+    assert "Nothing is needed" not in advice
+    assert "depth" not in advice
 
 
 @pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])

@@ -7,11 +7,23 @@ from rovsim.diagnosis.selection.ranking import leads
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.effects.thrusters import with_thruster_names
 
 FIX_SCALE = (
     "To fix the common scale of thrust, inertia and drag, measure one force. Either measure the "
     "pull on a spring balance at a steady command (for the force curve of the vehicle file), or "
     "how far a known weight heels the vehicle (for its centre of buoyancy)."
+)
+
+# By axes: what to record where nothing was, and the columns of docs/formats.md.
+CHANNELS = (
+    (
+        ("surge", "sway"),
+        "a position (x_m, y_m) or a velocity over ground (u_m_s, v_m_s, as a DVL gives it)",
+    ),
+    (("heave",), "a depth (depth_m)"),
+    (("roll", "pitch"), "an attitude (roll_rad, pitch_rad) or turn rates (p_rad_s, q_rad_s)"),
+    (("yaw",), "a heading (yaw_rad) or a turn rate (r_rad_s)"),
 )
 
 LOOKS_AHEAD = (
@@ -54,12 +66,10 @@ def advise(
             "in one place."
         )
     if joint:
-        parts.append(_apart(joint, catalogue))
+        parts.append(_apart(joint, catalogue, found.base.vehicle.thruster_names))
     if found.scale:
         parts.append(FIX_SCALE)
-    if found.usable.still:
-        axes = ", ".join(found.usable.still)
-        parts.append(f"Move {axes} in a train run: nothing can be said about what acts there.")
+    parts += _show_more(found)
     if found.structures:
         first = found.structures[0]
         parts.append(
@@ -70,16 +80,34 @@ def advise(
     return " ".join(parts) or _confirm(found)
 
 
+def _show_more(found: TrainDiagnosis) -> list[str]:
+    """What to move, to command and to measure that nobody did."""
+    parts = []
+    if still := found.usable.still:
+        parts.append(
+            f"Move {', '.join(still)} in a train run: nothing can be said about what acts there."
+        )
+    if idle := found.not_commanded:
+        parts.append(f"Command {', '.join(idle)} in a train run, alone for some seconds each time.")
+    axes = found.usable.unmeasured
+    return parts + [
+        f"Record {channel}: without it nothing can be said about what acts in {', '.join(missing)}."
+        for told, channel in CHANNELS
+        if (missing := [axis for axis in axes if axis in told])
+    ]
+
+
 def _revealed(names: Sequence[str], catalogue: Catalogue) -> str:
     return " ".join(text for name in names if (text := catalogue[name].revealed_by))
 
 
-def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue) -> str:
+def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue, thrusters: Sequence[str]) -> str:
     """How to tell values apart: by what reveals the effect that most of them belong to."""
     owners = [name.split(".")[0] for group in joint for name in group]
     most = max(dict.fromkeys(owners), key=owners.count)
     group = next(g for g in joint if any(name.startswith(f"{most}.") for name in g))
-    return f"To know {', '.join(group)} one by one: {_how(catalogue[most], group)}"
+    names = ", ".join(with_thruster_names(group, thrusters))
+    return f"To know {names} one by one: {_how(catalogue[most], group)}"
 
 
 def _confirm(found: TrainDiagnosis) -> str:

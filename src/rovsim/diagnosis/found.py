@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Sequence
 
+from rovsim.diagnosis.checks.commanded import list_not_commanded
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.equations.disturbance import ForceInTime
@@ -56,6 +57,11 @@ class TrainDiagnosis:
         if self.selected:
             return "missing_effects"
         return "insufficient_data" if self.usable.still else "adequate"
+
+    @property
+    def not_commanded(self) -> tuple[str, ...]:
+        """Thrusters, surfaces or axes that these runs never commanded."""
+        return list_not_commanded(self.usable, self.base.vehicle)
 
     def models(self) -> list[Model]:
         """The base, then one model more for each selected effect."""

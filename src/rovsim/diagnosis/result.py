@@ -75,6 +75,7 @@ def report(
         error=_errors(ladder, len(found.selected)),
         not_excited=found.usable.still,
         not_measured=found.usable.unmeasured,
+        not_commanded=found.not_commanded,
         not_observable=tuple(found.not_observable),
         rivals=tuple(
             RivalEffect(effect=r.effect, instead_of=r.instead_of, deficit=rounded(r.deficit))
@@ -85,6 +86,7 @@ def report(
         posterior=_describe_posterior(found),
         looked_at=looked_at,
         not_followed_from_s={run: round(at, 1) for run, at in found.usable.lost.items()},
+        thrusters=found.base.vehicle.thruster_names,
         base=dict(base),
         ladder=ladder,
     )

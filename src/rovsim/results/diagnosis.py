@@ -156,8 +156,10 @@ class Diagnosis(Result):
     """The verdict and all that led to it; `base` is the diagnosed model's file.
 
     `not_excited` axes that nobody moved, `not_measured` those that nobody measured;
+    `not_commanded` thrusters and surfaces by name, or axes, that stayed at rest;
     `not_observable` effects that the runs could not show, were they there; `not_followed_from_s` s
-    from which on the model runs away from a train run, by its id.
+    from which on the model runs away from a train run, by its id; `thrusters` their names in the
+    vehicle file: the parameter `t1` of an effect is of the first.
     """
 
     noun: ClassVar[str] = "diagnosis"
@@ -176,12 +178,14 @@ class Diagnosis(Result):
     error: DiagnosisErrors
     not_excited: tuple[str, ...] = ()
     not_measured: tuple[str, ...] = ()
+    not_commanded: tuple[str, ...] = ()
     not_observable: tuple[str, ...] = ()
     rivals: tuple[RivalEffect, ...] = ()
     noise: FittedNoise = FittedNoise()
     posterior: Posterior | None = None
     looked_at: LookedAt | None = None
     not_followed_from_s: dict[str, float] = Field(default_factory=dict)
+    thrusters: tuple[str, ...] = ()
     base: dict[str, JsonValue]
     ladder: Ladder
 

@@ -9,6 +9,7 @@ from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.parts import Failure, Slider, alarm, tell_probability, text
 from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.wording import rounded
 
@@ -85,19 +86,21 @@ class Effects:
     def _slider(self, effect: str, parameter: Any, value: float) -> None:
         low, high = reach(parameter, value)
         shown = unit(parameter.unit)
+        names = self.bench.base.vehicle.thruster_names
+        called = name_parameter(effect, parameter.name, names).replace('"', "'")
 
         def told(now: float) -> str:
             total = tell_total(self.bench.base.body, effect, parameter.name, now, shown)
             return f"{escape(total.told)} {alarm(total.wrong)}".strip()
 
         with ui.row().classes("slider"):
-            ui.label(parameter.name).classes("name")
+            ui.label(called).classes("name")
             slider = Slider(min=low, max=high, step=(high - low) / STEPS, value=value)
-            slider.props(f'aria-label="{effect}, {parameter.name}"')
+            slider.props(f'aria-label="{effect}, {called}"')
             number = ui.number(value=rounded(value), suffix=shown).classes("value")
-            number.props(f'dense borderless aria-label="{effect}, {parameter.name}, number"')
+            number.props(f'dense borderless aria-label="{effect}, {called}, number"')
             back = ui.button(icon="settings_backup_restore").classes("reset")
-            about = f"{effect}, {parameter.name}: back to where it began"
+            about = f"{effect}, {called}: back to where it began"
             back.props(f'flat dense aria-label="{about}" title="{about}"')
             total = ui.html(told(value), sanitize=False).classes("total")
 

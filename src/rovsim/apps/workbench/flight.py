@@ -25,6 +25,7 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.core.schema import checked
 from rovsim.design.settings import LONGEST, SHORTEST, Question
+from rovsim.dynamics.effects.thrusters import with_thruster_names
 from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.words.experiment import size_of_odds, tell_limits, tell_share
 from rovsim.results.experiment import Experiment
@@ -133,7 +134,7 @@ class Flight:
             if known is None:
                 self._ask(question)
             else:
-                _tell(known, folder)
+                _tell(known, folder, self.bench.data.vehicle.thruster_names)
             self._terminal()
 
     def _ask(self, question: Question) -> None:
@@ -157,12 +158,12 @@ class Flight:
         in_a_terminal(f"rovsim design {line}")
 
 
-def _tell(found: Experiment, folder: Path) -> None:
+def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
     """What it is expected to tell, where it leads, and what to do."""
     section(f"A flight of {found.seconds:g} s")
     for one in found.warnings:
         text(one, "warning")
-    _expected(found)
+    _expected(found, thrusters)
     text(tell_limits(found))
     png(folder / "experiment.png", "The predicted path from above and from the side, the commands")
     with ui.row().classes("controls"):
@@ -183,7 +184,7 @@ def _tell(found: Experiment, folder: Path) -> None:
     )
 
 
-def _expected(found: Experiment) -> None:
+def _expected(found: Experiment, thrusters: Sequence[str]) -> None:
     if found.expects.odds:
         rows = [
             (name, [words(size_of_odds(one.now)), words(size_of_odds(one.then))])
@@ -192,10 +193,11 @@ def _expected(found: Experiment) -> None:
         table("Odds of each effect against the other, if it is the true one",
               ["effect", "now", "after the flight"], rows)  # fmt: skip
     if found.expects.std:
+        named = with_thruster_names(found.expects.std, thrusters)
         rows = [
-            (f"{name} ({one.unit})" if one.unit not in (None, "1") else name,
+            (f"{called} ({one.unit})" if one.unit not in (None, "1") else called,
              [cell(one.now, f"{name}/now"), cell(one.then, f"{name}/then")])
-            for name, one in found.expects.std.items()
+            for called, (name, one) in zip(named, found.expects.std.items(), strict=True)
         ]  # fmt: skip
         table("Standard deviation of each value", ["value", "now", "after the flight"], rows)
 

@@ -35,6 +35,7 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.catalogue.entries import unit
@@ -249,7 +250,8 @@ def _values(model: Model) -> dict[tuple[str, str], str]:
         units = {p.name: p.unit for p in effect.parameters}
         for name, known in describe_effect(effect).parameters.items():
             value = FittedValue(value=known.value, std=known.std, unit=units[name])
-            found[effect.id, name] = interval(value)
+            called = name_parameter(effect.id, name, model.vehicle.thruster_names)
+            found[effect.id, called] = interval(value)
     if (learned := model.residual) is not None:
         found["learned residual", ""] = f"{learned.kind}, {learned.points} points"
     return found

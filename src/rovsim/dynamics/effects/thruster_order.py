@@ -2,6 +2,7 @@
 
 from functools import cache
 from itertools import combinations
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -36,6 +37,12 @@ class ThrusterOrder(Shaping):
         for name, symbol in (("first", "i"), ("second", "j"))
     )
     starts = ({"first": 1.0, "second": 2.0},)
+
+    @classmethod
+    def describe(cls, value: float, names: Sequence[str]) -> str:
+        """An output by its number, and by the name of the thruster (`names` in that order)."""
+        k = int(value)
+        return f"{k} ({names[k - 1]})" if 0 < k <= len(names) else f"{k}"
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:

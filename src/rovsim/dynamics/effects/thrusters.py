@@ -1,5 +1,7 @@
 """What happens between a command that has arrived and a thruster's force."""
 
+from typing import Iterable, Sequence
+
 import numpy as np
 import scipy
 from numpy import ndarray as Array
@@ -216,3 +218,20 @@ class PropellerTorque(Coefficients):
     def enter(self, body: Body) -> None:
         """Add each propeller's moment to its column of the allocation."""
         body.B[3:] += self["ratio"] * (body.spin[:, None] * body.directions).T
+
+
+def name_parameter(effect: str, parameter: str, thrusters: Sequence[str]) -> str:
+    """A parameter as people read it: `bow (t3)` is that of the third of `thrusters`, the bow's.
+
+    In model files and results it is t3 in the vehicle file's order, for every vehicle alike.
+    """
+    if effect != ThrusterGain.id or parameter not in THRUSTERS[: len(thrusters)]:
+        return parameter
+    name = thrusters[THRUSTERS.index(parameter)]
+    return parameter if name == parameter else f"{name} ({parameter})"
+
+
+def with_thruster_names(parameters: Iterable[str], thrusters: Sequence[str]) -> list[str]:
+    """The same of parameters that are called `effect.parameter`."""
+    parts = (one.partition(".") for one in parameters)
+    return [f"{effect}.{name_parameter(effect, name, thrusters)}" for effect, _, name in parts]

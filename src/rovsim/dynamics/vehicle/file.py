@@ -115,6 +115,11 @@ class Vehicle(Section):
         return len(self.thrusters.units)
 
     @property
+    def thruster_names(self) -> tuple[str, ...]:
+        """Names of the thrusters, in the file's order."""
+        return tuple(unit.name for unit in self.thrusters.units)
+
+    @property
     def surface_names(self) -> tuple[str, ...]:
         """Names of the control surfaces, in the file's order."""
         return tuple(one.name for one in self.surfaces)

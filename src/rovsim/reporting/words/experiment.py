@@ -1,5 +1,8 @@
 """What a designed flight promises, in words: on the terminal and in the workbench."""
 
+from typing import Sequence
+
+from rovsim.dynamics.effects.thrusters import with_thruster_names
 from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 from rovsim.results.experiment import Experiment, RivalOdds, Surer, UsualManoeuvre
@@ -7,11 +10,15 @@ from rovsim.results.experiment import Experiment, RivalOdds, Surer, UsualManoeuv
 SURE = 1e6
 
 
-def tell_experiment(found: Experiment) -> str:
-    """What the flight is expected to tell, what usual manoeuvres would, and what it keeps to."""
+def tell_experiment(found: Experiment, thrusters: Sequence[str] = ()) -> str:
+    """What the flight is expected to tell, what usual manoeuvres would, and what it keeps to.
+
+    `thrusters`: their names in the vehicle file.
+    """
     lines = ["", f"A flight of {found.seconds:g} s ({found.manoeuvre}) is expected to give", ""]
     lines += [_odds(name, one) for name, one in found.expects.odds.items()]
-    lines += [_std(name, one) for name, one in found.expects.std.items()]
+    names = with_thruster_names(list(found.expects.std), thrusters)
+    lines += map(_std, names, found.expects.std.values())
     lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
     lines += [f"  {name:<11}{tell_share(one)}" for name, one in found.baselines.items()]
     warnings = [line for one in found.warnings for line in ("", f"Warning: {one}")]

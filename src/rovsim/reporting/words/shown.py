@@ -10,6 +10,7 @@ def shown_sentences(found: Diagnosis) -> list[str]:
     """All that the recordings could not show, or were not used for."""
     return [
         *still_sentences(found.not_excited),
+        *idle_sentences(found.not_commanded),
         *silent_sentences(found),
         *part_sentences(found.looked_at),
         *lost_sentences(found.not_followed_from_s),
@@ -21,6 +22,13 @@ def still_sentences(axes: Sequence[str]) -> list[str]:
     if not axes:
         return []
     return [f"Nothing can be said about {listed(axes)}: no train run moves on that axis."]
+
+
+def idle_sentences(names: Sequence[str]) -> list[str]:
+    """Thrusters, surfaces or axes that nobody commanded."""
+    if not names:
+        return []
+    return [f"Never commanded in a train run, and so not judged: {listed(names)}."]
 
 
 def silent_sentences(found: Diagnosis) -> list[str]:

@@ -8,6 +8,8 @@ from typing import Mapping, Sequence
 from rovsim import AXES
 from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
+from rovsim.dynamics.effects.thruster_order import ThrusterOrder
+from rovsim.dynamics.effects.thrusters import name_parameter, with_thruster_names
 from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import (
     ERROR,
@@ -83,7 +85,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         *shown_sentences(found),
     ]
     missing = tuple(
-        _missing(one, catalogue.get(one.effect), above=bool(place))
+        _missing(one, catalogue.get(one.effect), found.thrusters, above=bool(place))
         for place, one in enumerate(found.selected)
     )
     return Verdict(
@@ -106,17 +108,32 @@ def _key(effects: int) -> str:
     )
 
 
-def _missing(one: FittedEffect, known: type[Effect] | None, above: bool) -> Missing:
-    """`above`: whether effects stand above it, on top of which it removes its share."""
+def _missing(
+    one: FittedEffect, known: type[Effect] | None, thrusters: Sequence[str], above: bool
+) -> Missing:
+    """`thrusters`: their names; `above`: whether effects stand above it.
+
+    What it removes then comes on top of these.
+    """
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
     equation, cause = (known.equation, known.cause) if known else ("", "")
     symbols = explain_symbols(known, one.parameters) if known else []
-    values = tuple(f"{name} {interval(v)}" for name, v in one.parameters.items())
+    values = tuple(
+        f"{name_parameter(one.effect, name, thrusters)} {_value(one.effect, v, thrusters)}"
+        for name, v in one.parameters.items()
+    )
     removed = _removed(one.error_reduction, above)
     if known and issubclass(known, Wander):
         removed = "cannot be foreseen"
     worth = f"{removed}, {_sure(one.probability)}"
     return Missing(one.effect, meaning, values, worth, equation, tuple(symbols), cause)
+
+
+def _value(effect: str, value: FittedValue, thrusters: Sequence[str]) -> str:
+    """A value with its interval; an output that is swapped, by its thruster's name as well."""
+    if effect == ThrusterOrder.id:
+        return ThrusterOrder.describe(or_nan(value.value), thrusters)
+    return interval(value)
 
 
 def _removed(share: float | None, above: bool) -> str:
@@ -184,10 +201,14 @@ def apart_sentences(found: Diagnosis) -> list[str]:
         f"These runs cannot tell {listed(group)} apart." for group in found.indistinguishable
     ]
     sentences += [
-        f"Known only together, not one by one: {', '.join(group)}."
+        f"Known only together, not one by one: {', '.join(_named(group, found))}."
         for group in found.known_together
     ]
     return sentences + _runner_up_sentences(_list_runners_up(found))
+
+
+def _named(group: Sequence[str], found: Diagnosis) -> list[str]:
+    return with_thruster_names(group, found.thrusters)
 
 
 def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:

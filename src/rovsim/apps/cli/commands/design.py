@@ -41,7 +41,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     model = load_one_model(settings.model, data.vehicle, catalogue)
     found = design(data, model, question, catalogue)
     write_flight(out, found)
-    text = tell_experiment(found.experiment)
+    text = tell_experiment(found.experiment, model.vehicle.thruster_names)
     say(settings, f"{text}\n\n{out / 'experiment.csv'}", found.experiment.to_json())
 
 
