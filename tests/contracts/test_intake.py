@@ -222,3 +222,23 @@ def test_one_name_and_two_clocks_are_told(tmp_path):
 def told(folder: Path) -> str:
     """The text of campaign.yaml on one line."""
     return re.sub(r"\n\s*#\s*", " ", (folder / "campaign.yaml").read_text())
+
+
+@pytest.mark.parametrize(
+    ("names", "columns", "axes"),
+    [
+        (["chan3_raw", "chan4_raw", "chan5_raw"], ["chan5_raw", "-chan3_raw", "chan4_raw"],
+         ["surge", "heave", "yaw"]),
+        (["surge", "heave", "yaw"], ["surge", "heave", "yaw"], None),
+    ],
+)  # fmt: skip
+def test_pulses_of_a_radio_are_demands(tmp_path, names, columns, axes):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    time = np.arange(0.0, 12.0, 0.1)
+    rows = [f"{t:.1f},{1500 + 300 * np.sin(t):.0f},1500,1600" for t in time]
+    write_lines(tmp_path / "poses_rc.csv", [",".join(["time_s", *names]), *rows])
+    main(["init", str(tmp_path), "-q"])
+    content = YAML(typ="safe", pure=True).load((tmp_path / "campaign.yaml").read_text())
+    assert content["commands"]["kind"] == "demand"
+    assert content["commands"]["columns"] == columns
+    assert content["commands"].get("axes") == axes

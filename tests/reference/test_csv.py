@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from recordings import Swim, csv_lines, write_lines, write_run
+from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix, matrix, rotate
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap
@@ -119,3 +120,34 @@ def test_the_kth_runs_are_ned_and_frd(run):
     if heave.any():  # positive down, like w
         assert np.corrcoef(heave, w)[0, 1] > 0.5
     assert assess(recording, anomalies).unusable is None
+
+
+def radio(columns, axes=(), rows=("1500,1900,1300", "1540,1100,1500")):
+    """Lines of a log of pulses, and the section that reads it as demands."""
+    log = CommandLog(format="csv", kind="demand", columns=columns, axes=list(axes))
+    names = ",".join(log.names)
+    return log, [f"time_s,{names}", *(f"{0.1 * k:.1f},{row}" for k, row in enumerate(rows))]
+
+
+def test_demands_of_a_radio_are_pulses(tmp_path):
+    names = ("surge", "heave", "yaw")
+    log, lines = radio(["chan5_raw", "-chan3_raw", "chan4_raw"], names)
+    found = read_commands(write_lines(tmp_path / "rc.csv", lines), log)
+    np.testing.assert_allclose(found.value[:, [0, 2, 5]], [[0, -1, -0.5], [0.1, 1, 0]])
+    assert found.notes == ("The demands are pulses in us, read as (pulse - 1500) / 400.",)
+    log, lines = radio(list(names))
+    said = read_commands(write_lines(tmp_path / "rc.csv", lines), log).notes[0]
+    assert "'-heave'" in said
+
+
+def test_inputs_that_were_not_given_leave_their_line_out(tmp_path):
+    rows = ("1500,1900,1300", "0,1100,1500", "1500,65535,1500")
+    log, lines = radio(["surge", "sway", "yaw"], rows=rows)
+    found = read_commands(write_lines(tmp_path / "rc.csv", lines), log)
+    assert (len(found.time), found.counts["dropped"]) == (1, 2)
+
+
+def test_pulses_beside_shares_are_refused(tmp_path):
+    log, lines = radio(["surge", "sway", "yaw"], rows=("0.1,1900,1300",))
+    with pytest.raises(BadInput, match=r"in \[-1, 1\], or pulses of 800 to 2200 us in all"):
+        read_commands(write_lines(tmp_path / "rc.csv", lines), log)

@@ -6,6 +6,9 @@ from numpy import ndarray as Array
 # PWM = 1500 us + 400 us c, as the vehicle files' comments say.
 CENTER, SPAN = 1500.0, 400.0
 NONE = (0.0, 65535.0)  # what MAVLink tells of an output or input without pulses
+# ArduSub, "RC input and output": channels of the pilot; throttle is up.
+PILOT = {"RC5": "surge", "RC6": "sway", "-RC3": "heave", "RC2": "roll", "RC1": "pitch",
+         "RC4": "yaw"}  # fmt: skip
 
 
 def absent(pulses: Array) -> Array:

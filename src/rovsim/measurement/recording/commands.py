@@ -17,7 +17,7 @@ from rovsim.measurement.recording.readers import KIND, CommandExport, finite_row
 ALLOWED = {
     "pwm": (800.0, 2200.0, "pulses of 800 to 2200 us"),
     "normalized": (-1.05, 1.05, "commands in [-1, 1]"),
-    "demand": (-1.05, 1.05, "demands in [-1, 1]"),
+    "demand": (-1.05, 1.05, "demands in [-1, 1], or pulses of 800 to 2200 us in all columns"),
     "wrench": (-np.inf, np.inf, "a finite wrench in N, N m"),
 }
 

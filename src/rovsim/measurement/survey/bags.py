@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.core.pwm import absent
+from rovsim.core.pwm import PILOT, absent
 from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 from rovsim.measurement.recording.rosbag2.commands import MANUAL, PULSES, pushed
@@ -41,9 +41,6 @@ OUTPUTS = (
     "OverrideRCIn",
     "RCIn",
 )
-# ArduSub, "RC input and output": channels of the pilot; throttle is up.
-PILOT = {"RC5": "surge", "RC6": "sway", "-RC3": "heave", "RC2": "roll", "RC1": "pitch",
-         "RC4": "yaw"}  # fmt: skip
 
 
 def look_into_bag(path: Path) -> Contents:

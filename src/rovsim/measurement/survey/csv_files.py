@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.pwm import PILOT
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.commands import ALLOWED
 from rovsim.measurement.recording.csv import KNOWN, read_csv
@@ -29,6 +30,7 @@ WATCHED = re.compile(
     r"pressure.*|mode|armed|status|quality|residual|sec|nsec|stamp|time.*|)(_.*)?",
     re.IGNORECASE,
 )
+RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
 SOME = 0.5  # share of the lines in which a column of commands has a value
 
 
@@ -77,6 +79,12 @@ def _drive(lines: Lines) -> Drive | None:
     time = times(table, places[0])
     columns = {n: v for n, p in zip(kept, places[1:], strict=True)
                if (v := _numbers(table, p)) is not None}  # fmt: skip
+    if radio := _radio(columns):
+        value = np.stack([columns[name] for name in radio.values()], axis=1)
+        signed = tuple("-" * (c[0] == "-") + name for c, name in radio.items())
+        said = "the pilot's radio by ArduSub's order of channels"
+        return Drive("csv", signed, time, value, "demand", said,
+                     axes=tuple(PILOT[c] for c in radio), auxiliary=voltage)  # fmt: skip
     kind, chosen, said = _kind(columns)
     if not chosen:
         return None
@@ -94,12 +102,25 @@ def _numbers(table: Lines, place: int) -> Array | None:
     return value if np.isfinite(value).mean() >= SOME else None
 
 
+def _radio(columns: dict[str, Array]) -> dict[str, str]:
+    """Columns of a pilot's radio, by the channels of ArduSub: RC1, or chan1_raw of RC_CHANNELS."""
+    numbered = {f"RC{int(found[1])}": name for name, value in columns.items()
+                if (found := RADIO.fullmatch(name)) and within(value, "pwm")}  # fmt: skip
+    return {c: numbered[c.lstrip("-")] for c in PILOT if c.lstrip("-") in numbered}
+
+
 def _kind(columns: dict[str, Array]) -> tuple[Kind | None, list[str], str]:
     """Kind, columns and how both are known."""
     axes = [name for name in columns if name in AXES]
     if len(axes) > 1 or (axes and len(columns) == 1):
         if all(within(columns[name], "demand") for name in axes):
             return "demand", axes, "named after axes, within -1 and 1"
+        if all(within(columns[name], "pwm") for name in axes):
+            return (
+                "demand",
+                axes,
+                "named after axes, pulses in us (-heave where long is up)",
+            )
         return "wrench", axes, "named after axes, beyond -1 and 1"
     pulses = [name for name in columns if within(columns[name], "pwm")]
     if pulses:

@@ -5,14 +5,13 @@ from typing import Iterator
 
 import numpy as np
 
-from rovsim.core.pwm import absent
+from rovsim.core.pwm import PILOT, absent
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.ardupilot.commands import SOURCES
 from rovsim.measurement.recording.ardupilot.logs import open_log
 from rovsim.measurement.recording.ardupilot.motion import read_log
 from rovsim.measurement.recording.ardupilot.series import Log
 from rovsim.measurement.recording.tidying import tidy_export
-from rovsim.measurement.survey.bags import PILOT
 from rovsim.measurement.survey.contents import Contents, Drive, Track
 
 MOST = 16  # outputs and channels of a log
