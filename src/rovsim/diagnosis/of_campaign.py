@@ -8,6 +8,7 @@ import numpy as np
 
 from rovsim.core.files import write_text
 from rovsim.core.progress import step
+from rovsim.diagnosis.checks.held_still import find_standstills
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.equations.proposal import FILE
 from rovsim.diagnosis.found import TrainDiagnosis
@@ -28,6 +29,7 @@ from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step
 from rovsim.simulation.replay import replay
+from rovsim.simulation.samples import sample_run
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
@@ -79,6 +81,13 @@ def diagnose_campaign(
     )
     where = list_conditions(searched)
     failing(where)
+    standstills = find_standstills(
+        (
+            runs.motions[name],
+            sample_run(base, runs.motions[name], settings.signals, settings.replay),
+        )
+        for name in runs.of("train")
+    )
     train = prepare_train(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
@@ -88,10 +97,10 @@ def diagnose_campaign(
     stage("scoring")
     shares = [finding.share() for one in searched for finding in one.explanation.findings]
     ladder = _climb(found, runs, settings, catalogue)
-    return Diagnosed(
-        report(found, shares, ladder, describe_model(base), catalogue, train.looked_at),
-        where, found.proposed.source if found.proposed else None,
-    )  # fmt: skip
+    told = report(
+        found, shares, ladder, describe_model(base), catalogue, train.looked_at, standstills
+    )
+    return Diagnosed(told, where, found.proposed.source if found.proposed else None)
 
 
 def _climb(

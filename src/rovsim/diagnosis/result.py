@@ -29,6 +29,7 @@ from rovsim.results.diagnosis import (
     LookedAt,
     RivalEffect,
     ScaleOfForces,
+    Standstill,
     Unexplained,
 )
 from rovsim.results.error_conditions import ConditionShare
@@ -49,6 +50,7 @@ def report(
     base: Mapping[str, JsonValue],
     catalogue: Catalogue,
     looked_at: LookedAt | None = None,
+    standstills: Sequence[Standstill] = (),
 ) -> Diagnosis:
     """What is written of a diagnosis.
 
@@ -59,6 +61,7 @@ def report(
         base: file of the model that was diagnosed, so that `rovsim add` needs nothing else.
         catalogue: what the effects are.
         looked_at: how much of the train runs.
+        standstills: of train runs, where the model would move.
     """
     alike = group_indistinguishable(found.rivals)
     joint = _list_joint(found)
@@ -86,6 +89,7 @@ def report(
         posterior=_describe_posterior(found),
         looked_at=looked_at,
         not_followed_from_s={run: round(at, 1) for run, at in found.usable.lost.items()},
+        standstills=tuple(standstills),
         thrusters=found.base.vehicle.thruster_names,
         base=dict(base),
         ladder=ladder,

@@ -142,6 +142,21 @@ class LookedAt(Section):
     wider: float
 
 
+class Standstill(Section):
+    """A run stands still although the model would gain speed: held by hand, or on the floor?
+
+    From when to when, s; what the model would have `gained` (m/s, rad/s) on the `axis` on which
+    that is most; `use`: what is left of the run, as campaign.yaml takes it.
+    """
+
+    run: str
+    from_s: float
+    to_s: float
+    axis: str
+    gained: float
+    use: tuple[tuple[float, float], ...]
+
+
 class Answer(Section):
     """What any method says is missing, the part of a diagnosis that can be judged by the truth."""
 
@@ -158,7 +173,8 @@ class Diagnosis(Result):
     `not_excited` axes that nobody moved, `not_measured` those that nobody measured;
     `not_commanded` thrusters and surfaces by name, or axes, that stayed at rest;
     `not_observable` effects that the runs could not show, were they there; `not_followed_from_s` s
-    from which on the model runs away from a train run, by its id; `thrusters` their names in the
+    from which on the model runs away from a train run, by its id; `standstills` of train runs;
+    `thrusters` their names in the
     vehicle file: the parameter `t1` of an effect is of the first.
     """
 
@@ -185,6 +201,7 @@ class Diagnosis(Result):
     posterior: Posterior | None = None
     looked_at: LookedAt | None = None
     not_followed_from_s: dict[str, float] = Field(default_factory=dict)
+    standstills: tuple[Standstill, ...] = ()
     thrusters: tuple[str, ...] = ()
     base: dict[str, JsonValue]
     ladder: Ladder

@@ -10,6 +10,7 @@ common_scale        does a factor of all forces stay open?
 left_open           what would not be known if further parameters were free
 rest_of_file        what does the rest of a vehicle file that is off leave open?
 whole_file          all of such a file, fitted together with what was selected
+held_still          does the vehicle stand still although the model would move?
 commanded           what could have been commanded, and never was?
 identifiability     which values are known only together?
 observability       which effects could these runs not show?

@@ -2,19 +2,36 @@
 
 from typing import Mapping, Sequence
 
+from rovsim import AXES
+from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import listed, significant
-from rovsim.results.diagnosis import Diagnosis, LookedAt
+from rovsim.results.diagnosis import Diagnosis, LookedAt, Standstill
 
 
 def shown_sentences(found: Diagnosis) -> list[str]:
     """All that the recordings could not show, or were not used for."""
     return [
+        *held_sentences(found.standstills),
         *still_sentences(found.not_excited),
         *idle_sentences(found.not_commanded),
         *silent_sentences(found),
         *part_sentences(found.looked_at),
         *lost_sentences(found.not_followed_from_s),
     ]
+
+
+def held_sentences(standstills: Sequence[Standstill]) -> list[str]:
+    """Runs that stand still although the model would move: held, or on the floor?"""
+    return [_held(one) for one in standstills]
+
+
+def _held(one: Standstill) -> str:
+    unit, use = VELOCITY_UNITS[AXES.index(one.axis)], str([list(span) for span in one.use])
+    return (
+        f"Run {one.run} stands still from {one.from_s:.1f} to {one.to_s:.1f} s, where the model "
+        f"would gain {significant(one.gained, 2)} {unit} in {one.axis}. If it was held by hand or "
+        f"lay on the floor, leave that out: `use: {use}` in this run of campaign.yaml."
+    )
 
 
 def still_sentences(axes: Sequence[str]) -> list[str]:
