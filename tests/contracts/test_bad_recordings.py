@@ -74,7 +74,6 @@ CSV = {
                              ["no column 'qz'", "qw"]),
     "nothing measured": (lambda lines: [lines[0], "0,,,,,,", "1,,,,,,"], ["no frame", "'runs'"]),
     "twice": (replaced("y_m", "x_m"), ["two columns are named 'x_m'", "Rename"]),
-    "semicolons": (replaced(",", ";"), ["line 1", "semicolons", "Save it again with commas"]),
     "word": (cell(7, 2, "far", ","), ["line 8", "column 'y_m'", "'far'", "Correct"]),
     "NaN time": (cell(7, 0, "nan", ","), ["line 8", "column 'time_s'", "'nan'", "Correct"]),
     "infinite time": (cell(7, 0, "inf", ","), ["line 8", "column 'time_s'", "'inf'", "Correct"]),

@@ -12,6 +12,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.channels import Channel, measured
+from rovsim.measurement.recording.csv_checks import check_plausible, without_fillers
 from rovsim.measurement.recording.readers import (
     Export,
     finite_rows,
@@ -69,11 +70,13 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     places = column_places(path, lines.names, ["time_s", *names])
     table, cut = without_cut_line(lines, places)
     values = numbers(table, places[1:])
+    values, filled = without_fillers(names, values)
     zeros = _zeros(names, values)
     poses = np.isin(names, [*POSITION, *EULER])
     values[np.ix_(zeros, poses)] = np.nan
     columns = Columns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
-    notes = _near_misses(lines.names) + _said(int(zeros.sum()))
+    check_plausible(path, columns.time, columns.values)
+    notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
     return _export(columns, mocap, {"cut_lines": cut}, notes)
 
 

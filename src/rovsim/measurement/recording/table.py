@@ -10,7 +10,13 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
+from rovsim.measurement.recording.units_row import with_units
 
+MISSING = {"", "na", "n/a", "null", "none", "-"}  # words for "not measured", in any case
+# What loggers write where a sensor gave nothing; believed where no other value comes near.
+FILLERS = (-999.0, -9999.0, -99999.0, 9999.0, 99999.0)
+NEAR = 0.5  # of a filler: a column that reaches so far may mean it
+LATEST = 1e11  # s since 1970: the year 5138
 AT_ONCE = 10_000  # lines: where one of them needs a closer look, so many get it
 
 
@@ -50,12 +56,15 @@ class Lines:
 def csv_lines(path: Path) -> Lines:
     """Lines of a csv file below its line of column names.
 
+    Commas separate, else semicolons or tabs; then a comma in a number is a decimal point. Remarks
+    (#), a line of units and further lines of the same names are no data.
+
     Raises:
-        BadInput: the file is empty, or is not separated by commas.
+        BadInput: the file is empty.
     """
     text = read_text(path)
     lines = text.split("\n")
-    header = next((n for n, line in enumerate(lines) if line.strip()), None)
+    header = find_header(lines)
     if header is None:
         raise BadInput(
             "the file is empty",
@@ -63,16 +72,27 @@ def csv_lines(path: Path) -> Lines:
             expected="a line of column names and lines of numbers",
             remedy="Export the run again.",
         )
-    names = [cell.strip().strip('"') for cell in lines[header].rstrip(" ,").split(",")]
-    for separator, word in ((";", "semicolons"), ("\t", "tabs")):
-        if len(names) == 1 and separator in lines[header]:
-            raise BadInput(
-                f"the columns are separated by {word}",
-                where=f"{path}, line {header + 1}",
-                expected="commas between columns and decimal points",
-                remedy="Save it again with commas.",
-            )
-    return split_lines(path, lines, header, names, ",", ended=text.endswith("\n"))
+    head = lines[header].lstrip("# ")
+    separator = next((s for s in ",;\t" if s in head), ",")
+    names = [cell.strip().strip('"') for cell in head.rstrip(f" {separator}").split(separator)]
+    rows = [line if line != lines[header] else "" for line in lines]  # of files put end to end
+    if separator != ",":
+        rows = [line.replace(",", ".") for line in rows]
+    names, below = with_units(names, rows, header, separator)
+    return split_lines(path, rows, below, names, separator, ended=text.endswith("\n"))
+
+
+def find_header(lines: Sequence[str]) -> int | None:
+    """Which line holds the names of columns: the first that is no remark.
+
+    Remarks start with #; where numbers follow at once, the last of them holds the names.
+    """
+    filled = [n for n, line in enumerate(lines) if line.strip()]
+    first = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
+    before = [n for n in filled if first is None or n < first]
+    if first is None or (before and _is_number(re.split(r"[,;\t]", lines[first])[0])):
+        return before[-1] if before else first
+    return first
 
 
 def split_lines(
@@ -158,14 +178,32 @@ def times(table: Lines, column: int) -> Array:
     if bad.size:
         cell = table.cells(int(bad[0]))[column].strip()
         raise _bad_cell(table, table.numbers[bad[0]], column, cell, "a finite time in s")
+    if len(time) and np.abs(time).max() > LATEST:
+        raise BadInput(
+            f"times up to {np.abs(time).max():.3g}: ms, us or ns since 1970?",
+            where=f"{table.path}, column '{table.names[column]}'",
+            expected="seconds",
+            remedy="Name the column after its unit (time_ms, time_us, time_ns), and let "
+            "`rovsim init` make a copy in s.",
+        )
     return time
+
+
+def find_filler(values: Array) -> float | None:
+    """The value of a column (n,) that stands for "not measured"; None without one."""
+    for filler in FILLERS:
+        here = values == filler
+        others = np.abs(values[~here & np.isfinite(values)])
+        if here.sum() > 1 and len(others) and others.max() < NEAR * abs(filler):
+            return filler
+    return None
 
 
 def _is_number(cell: str) -> bool:
     try:
         float(cell)
     except ValueError:
-        return not cell.strip()
+        return cell.strip().lower() in MISSING
     return True
 
 
@@ -178,7 +216,7 @@ def _number(table: Lines, row: list[str], line: int, column: int) -> float:
             remedy="Export the run again, or remove that line.",
         )
     cell = row[column].strip()
-    if not cell:
+    if cell.lower() in MISSING:
         return float("nan")
     try:
         return float(cell)
@@ -188,6 +226,13 @@ def _number(table: Lines, row: list[str], line: int, column: int) -> float:
 
 def _bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) -> BadInput:
     place = f"{table.path}, line {line}, column '{table.names[column]}'"
+    if re.match(r"\d{4}-\d\d-\d\d|\d\d?:\d\d:", cell):
+        return BadInput(
+            f"{cell!r} is a date or a time of day",
+            where=place,
+            expected=expected,
+            remedy="Write seconds, from any start or since 1970; commands on the same clock.",
+        )
     if re.fullmatch(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?", cell):
         return BadInput(
             f"{cell!r} is written with a decimal comma",

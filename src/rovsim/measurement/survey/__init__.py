@@ -8,6 +8,7 @@ bags       in ROS 2 bags
 logs       in ArduPilot logs
 csv_files  in csv files
 headings   csv files whose columns have other names or units: a copy with ours
+quaternions  numbered columns that may be one
 grid       rough velocities on an even clock, to compare recordings with
 timing     rates, jitter, gaps
 """

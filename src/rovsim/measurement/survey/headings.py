@@ -15,7 +15,9 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
 from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
-from rovsim.measurement.recording.table import Lines, csv_lines, numbers
+from rovsim.measurement.recording.csv_checks import LONGEST_STEP, is_height
+from rovsim.measurement.recording.table import LATEST, Lines, csv_lines, find_filler, numbers
+from rovsim.measurement.survey.quaternions import check_quaternion
 
 DEGREE = np.pi / 180.0
 # Names after their units, brackets and case are gone; `{}` stands for a letter of the channel.
@@ -48,7 +50,7 @@ UNITS = {
 FASTEST, FARTHEST = 30.0, 1000.0  # m/s, m
 FASTEST_TURN = 10.0  # rad/s, usual over a recording
 SLOW_ENOUGH = 10.0  # m/s in which a unit of metres is believed
-SHORTEST_STEP, LONGEST_STEP = 2e-4, 5.0  # s between two lines of any recording
+SHORTEST_STEP = 2e-4  # s between two lines of any recording
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,7 @@ def rewritten(path: Path, scratch: Path) -> tuple[Path, tuple[str, ...]]:
         BadInput: not a csv file, or its units cannot be told.
     """
     lines = csv_lines(path)
+    check_quaternion(lines)
     found = _columns(lines)
     changed = [c for c in found if c.factor != 1.0 or lines.names[c.place] != c.ours]
     if not changed or not any(c.ours == "time_s" for c in found):
@@ -81,19 +84,24 @@ def rewritten(path: Path, scratch: Path) -> tuple[Path, tuple[str, ...]]:
 def _text(lines: Lines, columns: dict[int, Column]) -> str:
     names = [columns[k].ours if k in columns else name for k, name in enumerate(lines.names)]
     rows = [",".join(names)]
+    fillers = {k: find_filler(_raw(lines, k)) for k in columns}
     for cells in lines.all_cells():
-        rows.append(",".join(_cell(cell, columns.get(k)) for k, cell in enumerate(cells)))
+        told = (_cell(c, columns.get(k), fillers.get(k)) for k, c in enumerate(cells))
+        rows.append(",".join(told))
     return "\n".join(rows) + "\n"
 
 
-def _cell(text: str, column: Column | None) -> str:
+def _cell(text: str, column: Column | None, filler: float | None) -> str:
     text = text.strip()
-    if column is None or column.factor == 1.0 or not text:
+    if column is None or not text:
         return text
     try:
-        return repr(float(text) * column.factor)
+        value = float(text)
     except ValueError:
         return text
+    if value == filler:
+        return ""
+    return text if column.factor == 1.0 else repr(value * column.factor)
 
 
 def _columns(lines: Lines) -> list[Column]:
@@ -139,6 +147,12 @@ def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
 
 
 def _values(lines: Lines, place: int) -> Array:
+    value = _raw(lines, place)
+    filler = find_filler(value)
+    return value if filler is None else np.where(value == filler, np.nan, value)
+
+
+def _raw(lines: Lines, place: int) -> Array:
     try:
         return numbers(lines, [place])[:, 0]
     except BadInput:
@@ -147,12 +161,15 @@ def _values(lines: Lines, place: int) -> Array:
 
 def _time(lines: Lines, place: int, unit: str) -> tuple[float, str]:
     """Factor to seconds of the times, and how it is known."""
-    if lines.names[place] == "time_s":
-        return 1.0, ""
-    if unit:
-        return UNITS[unit], f" in {unit}"
     value = _values(lines, place)
+    if not np.isfinite(value).any():
+        return UNITS.get(unit, 1.0), ""  # no numbers: the reader says so
     step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
+    named = lines.names[place] == "time_s"
+    if named and step < LONGEST_STEP and not np.nanmax(np.abs(value), initial=0.0) > LATEST:
+        return 1.0, ""
+    if unit and not named:
+        return UNITS[unit], f" in {unit}"
     late = float(np.nanmax(np.abs(value), initial=0.0))
     for name, size in (("ns", 1e17), ("us", 1e14), ("ms", 1e11)):
         if late > size:
@@ -171,11 +188,20 @@ def _group(lines: Lines, here: dict[str, int], units: dict[int, str], time: Arra
     value = np.stack([_values(lines, place) for place in here.values()], axis=1)
     if names[0] in QUATERNION:
         return [Column(n, p, 1.0, "") for n, p in here.items()]
+    if names[0] == "depth_m" and is_height(value[:, 0]):
+        return _turned(lines, here, units)
     factor, said = _by_size(lines, names, value, time)
     return [
         Column(n, p, UNITS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
         for n, p in here.items()
     ]
+
+
+def _turned(lines: Lines, here: dict[str, int], units: dict[int, str]) -> list[Column]:
+    """A height for a depth: its sign is turned."""
+    ((ours, place),) = here.items()
+    factor, unit = UNITS.get(units[place], 1.0), units[place]
+    return [Column(ours, place, -factor, f"{_of(unit)} with its sign turned, for it is negative")]
 
 
 def _of(unit: str) -> str:

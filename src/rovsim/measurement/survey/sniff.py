@@ -84,6 +84,7 @@ def _of_text(path: Path, start: bytes) -> str:
             remedy="Export the run again in one of these formats.",
         )
     lines = [line for line in text.split("\n") if line.strip()]
+    lines = [line for line in lines if not line.startswith("#")] or lines
     if not lines:
         raise BadInput("the file is empty", where=path, expected=FORMATS, remedy="Export it again.")
     return _of_lines(path, lines)

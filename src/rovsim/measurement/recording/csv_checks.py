@@ -1,0 +1,60 @@
+"""What the numbers of a csv cannot be, whatever its columns are called: one message, no guess."""
+
+from pathlib import Path
+from typing import Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.measurement.recording.table import find_filler
+
+LONGEST_STEP = 5.0  # s between two lines of any recording
+TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and hardly any counts on
+ABOVE, SHARE = -0.1, 0.95  # m: a zero of the sensor that is off; of the lines
+DEEP = 0.5  # m
+RENAME = "Name the column after its unit ({}), and let `rovsim init` make a copy in {}."
+
+
+def without_fillers(names: Sequence[str], values: Array) -> tuple[Array, tuple[str, ...]]:
+    """Values (n, c) with NaN for what stands for "not measured", and sentences about it."""
+    found = [find_filler(column) for column in values.T]
+    said = tuple(
+        f"{int(np.sum(column == filler))} cells of '{name}' hold {filler:g}: not measured."
+        for name, filler, column in zip(names, found, values.T, strict=True)
+        if filler is not None
+    )
+    fillers = np.array([np.nan if filler is None else filler for filler in found])
+    return np.where(values == fillers, np.nan, values), said
+
+
+def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> None:
+    """Refuse times that are no seconds, angles that are no rad, and heights for depths.
+
+    Raises:
+        BadInput: says which column, and how to say what it holds.
+    """
+    step = float(np.median(np.abs(np.diff(time)))) if len(time) > 1 else 0.0
+    if step > LONGEST_STEP:
+        raise _refused(path, "time_s", f"steps of {step:.3g} s: ms, us or ns?", "seconds",
+                       RENAME.format("time_ms", "s"))  # fmt: skip
+    pitch = np.abs(values.get("pitch_rad", np.zeros(0)))
+    if np.nanmax(pitch, initial=0.0) > TURNED:
+        raise _refused(path, "pitch_rad", f"angles up to {np.nanmax(pitch):.3g}: degrees?",
+                       "rad, within a quarter turn", RENAME.format("pitch_deg", "rad"))  # fmt: skip
+    depth = values.get("depth_m", np.zeros(0))
+    if is_height(depth):
+        low, high = np.nanmin(depth), np.nanmax(depth)
+        raise _refused(path, "depth_m", f"depths from {low:.3g} to {high:.3g} m: heights?",
+                       "m, positive down", "Turn the sign of the column; `rovsim init` does so in "
+                       "a copy.")  # fmt: skip
+
+
+def is_height(depth: Array) -> bool:
+    """Whether a depth (n,) is positive up: nearly all of it above the surface otherwise."""
+    known = depth[np.isfinite(depth)]
+    return bool(len(known) and np.mean(known < ABOVE) > SHARE and known.min() < -DEEP)
+
+
+def _refused(path: Path, column: str, found: str, expected: str, remedy: str) -> BadInput:
+    return BadInput(found, where=f"{path}, column '{column}'", expected=expected, remedy=remedy)

@@ -1,0 +1,121 @@
+"""Csv files as other tools write them: read right, or refused with one message and a way out."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recordings import Swim, csv_lines, write_lines
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import from_matrix, matrix
+from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.csv import read_csv
+from rovsim.measurement.survey.csv_files import look_into_csv
+
+MOCAP = Mocap(format="csv", world_axes="ned", body_axes="frd")
+SWIM = Swim.ned(frames=400)
+LINES = csv_lines(SWIM)
+HEAD, ROWS = LINES[0], LINES[1:]
+POSE = np.array([row.split(",") for row in ROWS], float)
+FREE = "time,x,y,z,roll,pitch,yaw"
+
+
+def scaled(*factors: float) -> list[str]:
+    """Rows with their columns times these."""
+    return [",".join(f"{x:.9f}" for x in row) for row in POSE * np.array(factors)]
+
+
+def stamped(factor: int) -> list[str]:
+    """Rows whose times are since 1970, so many to a second."""
+    late = (round((1.7e9 + t) * factor) for t in POSE[:, 0])
+    return [f"{t},{row.partition(',')[2]}" for t, row in zip(late, ROWS, strict=True)]
+
+
+def every_50th(cell: str) -> list[str]:
+    """Rows of which some hold another word in all cells but the time."""
+    gone = [f"{row.partition(',')[0]},{','.join([cell] * 6)}" for row in ROWS]
+    return [gone[k] if k % 50 == 1 else row for k, row in enumerate(ROWS)]
+
+
+WRITTEN = {
+    "semicolons and decimal commas": [line.replace(",", ";").replace(".", ",") for line in LINES],
+    "tabs": [line.replace(",", "\t") for line in LINES],
+    "byte order mark": ["\ufeff" + HEAD, *ROWS],
+    "remarks": ["# logger 3", "# 2026-05-12", *LINES],
+    "names in a remark": [f"# {HEAD}", *ROWS],
+    "names again": [*LINES[:200], HEAD, *LINES[200:]],
+    "units below": [FREE, "s,m,m,m,rad,rad,rad", *ROWS],
+    "other units below": [
+        FREE, "[s],[mm],[mm],[mm],[deg],[deg],[deg]", *scaled(1, *[1e3] * 3, *[180 / np.pi] * 3)
+    ],
+    "ns in time_s": [HEAD, *stamped(10**9)],
+    "ms since 1970": [HEAD.replace("time_s", "stamp_ms").replace("stamp", "timestamp"),
+                      *stamped(1000)],
+    "ms in time_s": [HEAD, *scaled(1e3, *[1] * 6)],
+    "no pose is -999": [HEAD, *every_50th("-999")],
+    "no pose is NA": [HEAD, *every_50th("NA")],
+    "no pose is null": [HEAD, *every_50th("null")],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_what_other_tools_write_is_read_right(tmp_path, name):
+    path = write_lines(tmp_path / "run.csv", WRITTEN[name])
+    export = look_into_csv(path, tmp_path).tracks[0].export
+    seen = np.flatnonzero(export.found)
+    lost = np.arange(1, 400, 50) if name.startswith("no pose") else []
+    np.testing.assert_array_equal(np.delete(np.arange(400), lost), seen)
+    np.testing.assert_allclose(export.time - export.time[0], POSE[:, 0], atol=1e-6)
+    np.testing.assert_allclose(export.position[seen], SWIM.position[seen], atol=1e-5)
+    np.testing.assert_allclose(matrix(export.attitude[seen]), SWIM.rotation[seen], atol=1e-5)
+
+
+def test_a_filler_is_only_what_nothing_comes_near(tmp_path):
+    deep = [f"{0.1 * k:.1f},{999 if k < 3 else 5 * k}" for k in range(190)]
+    far = read_csv(write_lines(tmp_path / "a.csv", ["time_s,depth_m", *deep]), MOCAP)
+    assert len(far.channels["depth"].time) == 190
+    holed = ["time_s,depth_m", *(f"{0.1 * k:.1f},{-999 if k % 9 < 2 else 2}" for k in range(90))]
+    found = read_csv(write_lines(tmp_path / "b.csv", holed), MOCAP)
+    assert found.channels["depth"].value.max() == found.channels["depth"].value.min() == 2.0
+    assert found.notes == ("20 cells of 'depth_m' hold -999: not measured.",)
+
+
+def test_a_depth_that_is_a_height_is_turned_by_init_and_refused_by_the_reader(tmp_path):
+    rows = [f"{0.1 * k:.1f},{-1.0 - 0.01 * k:.2f}" for k in range(100)]
+    path = write_lines(tmp_path / "run.csv", ["time_s,depth_m", *rows])
+    with pytest.raises(BadInput, match=r"depths from -1.99 to -1 m: heights\?.*positive down"):
+        read_csv(path, MOCAP)
+    found = look_into_csv(path, tmp_path / "copy")
+    assert found.tracks[0].export.channels["depth"].value.min() == pytest.approx(1.0)
+    assert "with its sign turned" in found.notes[0]
+
+
+def with_quaternion(names: str) -> list[str]:
+    rows = np.column_stack([POSE[:, :4], from_matrix(SWIM.rotation)])
+    return [f"time_s,x_m,y_m,z_m,{names}", *(",".join(f"{x:.6f}" for x in row) for row in rows)]
+
+
+REFUSED = {
+    "numbered quaternion": (with_quaternion("q0,q1,q2,q3"), "none says which is w"),
+    "dates": ([HEAD, *(f"2026-05-12T10:00:{r}" for r in ROWS)], "is a date or a time of day"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_no_file_says_is_refused_with_a_way_out(tmp_path: Path, name):
+    lines, said = REFUSED[name]
+    with pytest.raises(BadInput, match=said):
+        look_into_csv(write_lines(tmp_path / "run.csv", lines), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        ([HEAD, *stamped(10**9)], "ms, us or ns since 1970.*time_ms.*rovsim init"),
+        ([HEAD, *scaled(1e3, *[1] * 6)], "steps of 10 s: ms, us or ns"),
+        ([HEAD, *scaled(*[1] * 4, *[180 / np.pi] * 3)], "angles up to 11.5: degrees"),
+    ],
+)
+def test_wrong_units_in_known_names_are_refused_by_the_reader(tmp_path, lines, said):
+    with pytest.raises(BadInput, match=said):
+        read_csv(write_lines(tmp_path / "run.csv", lines), MOCAP)
