@@ -1,9 +1,12 @@
 """Every command of README and docs, in a fresh shell: `make commands [PAGES="README.md …"]`.
 
-No test: the studies among them take minutes each. Every page begins in a new clone, in which lie
-recordings, a small campaign and a model, as its reader has them, and goes from its first command to
-its last. Names that stand for the reader's own are filled in (`OWN`); what serves is left once it
-answers; what is not run is told with the reason (`LEFT_OUT`).
+No test: the studies among them take minutes each. `.ci/weekly` runs it; of every command
+tests/contracts/test_shell.py asks in seconds whether it is understood.
+
+Every page begins in a new clone, in which lie recordings, a small campaign and a model, as its
+reader has them, and goes from its first command to its last. Names that stand for the reader's own
+are filled in (`OWN`); what serves is left once it answers; what is not run is told with the reason
+(`LEFT_OUT`).
 """
 
 import os
@@ -19,6 +22,8 @@ from walk import ROOT, write_own
 
 PAGES = ("README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md"))))
 SHELL = re.compile(r"```sh\n(.*?)```", re.DOTALL)
+PROGRAMS = r"rovsim|snakemake|mlflow|python -m rovsim\S*|gz"
+INDENTED = re.compile(rf"(?:^    (?:(?:{PROGRAMS}) .*)\n)+", re.MULTILINE)
 INLINE = re.compile(r"`((?:rovsim|snakemake|mlflow) [^`]*)`")
 OWN = {  # what a page calls by a name of its own, and what it is here
     "FILE…": '"my recordings"/*', "FOLDER": '"my recordings"', "model=FILE": "model=NEW.yaml",
@@ -27,6 +32,8 @@ OWN = {  # what a page calls by a name of its own, and what it is here
 COPIES = ("paper.yaml", "mine.yaml", "model.yaml", "repaired.yaml")
 LEFT_OUT = {  # begins with: why it is not run
     "make": "has a test or a page of its own",
+    "gz ": "needs Gazebo",
+    "python -m rovsim.benchmarks.designs": "takes 40 minutes",
     "rovsim blind": "takes hours; tests/contracts/test_blind.py",
     "snakemake -s workflow/blind.smk": "takes hours; tests/workflow/test_blind_workflow.py",
     "snakemake --profile workflow/profiles/slurm": "needs Slurm; make test-slurm",
@@ -45,11 +52,12 @@ PATIENCE = 120.0  # s for what serves to answer
 
 
 def commands(page: str) -> list[str]:
-    """Commands of a page, in their order: lines of shell blocks, and whole ones within the text."""
+    """Commands of a page, in their order: of shell and indented blocks, and whole ones in text."""
     text = (ROOT / page).read_text(encoding="utf-8")
+    places = [place for kind in (SHELL, INDENTED, INLINE) for place in kind.finditer(text)]
     found = []
-    for place in sorted([*SHELL.finditer(text), *INLINE.finditer(text)], key=lambda m: m.start()):
-        lines = place[1].replace("\\\n", " ").splitlines()
+    for place in sorted(places, key=lambda m: m.start()):
+        lines = place[place.lastindex or 0].replace("\\\n", " ").splitlines()
         found += [" ".join(line.partition(" #")[0].split()) for line in lines]
     return [line for line in dict.fromkeys(found) if line]
 

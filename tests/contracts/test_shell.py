@@ -2,34 +2,57 @@
 
 import json
 import re
+import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
+from commands import PAGES, ROOT, commands
 from rovsim import __version__
+from rovsim.application.settings import select
+from rovsim.apps.cli import dispatch
 from rovsim.apps.cli.main import main
+from rovsim.core.collector import import_large
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.words.terminal import tell_comparison, tell_diagnosis
 from said import unfolded
 from synthetic_study import study
 
-ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+README = ROOT / "README.md"
 QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")
 
 
-def commands(page):
-    """Lines of the shell blocks, and what stands between backticks and begins with a program."""
-    text = page.read_text(encoding="utf-8")
-    for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL):
-        yield from (line.partition(" #")[0] for line in block.splitlines())
-    yield from re.findall(r"`((?:rovsim|snakemake|mlflow) [^`]*)`", text)
-    yield from re.findall(r"^    ((?:rovsim|snakemake) .*)$", text, re.MULTILINE)
+# Of `rovsim`: what is to be typed as it is, and has keys.
+TYPED = [
+    line
+    for line in dict.fromkeys(line for page in PAGES for line in commands(page))
+    if re.match(r"rovsim (?!completion)[a-z]+ .*=", line) and "…" not in line
+]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_in_indented_blocks_are_found_too():
+    assert "gz sim vehicle.sdf" in commands("docs/export.md")
+    assert "rovsim diagnose campaign=after out=surer" in commands("docs/next_flight.md")
+    assert not any(line.startswith("source =") for line in commands("docs/your_own_effect.md"))
+
+
+@pytest.mark.parametrize("line", TYPED)
+def test_every_command_of_the_documents_is_understood(line, monkeypatch):
+    """What it does, `make commands` runs."""
+    understood = []
+
+    def run(settings):
+        command = import_large(f"rovsim.apps.cli.commands.{settings.command}")
+        understood.append(select(settings, command.Settings))
+
+    monkeypatch.setattr(dispatch, "run_command", run)
+    monkeypatch.setattr("rovsim.apps.cli.main._sweep", understood.append)
+    main(shlex.split(line)[1:])
+    assert understood
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_no_shell_takes_a_bracket_for_a_pattern(page):
     for command in commands(page):
         if "…" not in command:
@@ -37,14 +60,14 @@ def test_no_shell_takes_a_bracket_for_a_pattern(page):
 
 
 def test_no_command_of_the_readme_writes_over_another_ones_report():
-    blocks = re.findall(r"```sh\n(.*?)```", PAGES[0].read_text(encoding="utf-8"), re.DOTALL)
+    blocks = re.findall(r"```sh\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
     folders = re.findall(r"\bout=(\w+)", "\n".join(blocks))
     assert len(folders) == len(set(folders)) > 2
 
 
 @pytest.mark.slow
 def test_snakemake_without_cores_takes_those_of_the_profile():
-    (shown,) = re.findall(r'`snakemake (--config overrides="tank=lag")`', PAGES[0].read_text())
+    (shown,) = re.findall(r'`snakemake (--config overrides="tank=lag")`', README.read_text())
     command = [sys.executable, "-m", "snakemake", "-n", "-q", *shown.replace('"', "").split()]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
