@@ -1,8 +1,11 @@
 """The workbench with a diagnosis that was given: several effects, and a push that has no law."""
 
+import re
+
 import pytest
 
 from chromium import PICTURES, Tab, started
+from rovsim.reporting.wording import ERROR_MEANING
 from rovsim.results.diagnosis import Diagnosis
 
 pytestmark = pytest.mark.browser
@@ -44,8 +47,11 @@ def test_the_ranking_keeps_what_is_likely_and_its_values_are_those_of_the_file(
         assert value == getattr(ranking[effect], key)
     assert shown["ranking/thrust_asymmetry/probability"] == 0.97
     row = page.get_by_role("row", name="quadratic_damping")
-    assert row.get_by_role("cell").last.inner_text() == "< 0.001"
-    assert page.get_by_text("on top of those above it").count() == 1
+    assert row.get_by_role("cell").last.inner_text() == "below 0.001"
+    for once in ("on top of those above it", ERROR_MEANING):
+        assert page.get_by_text(once).count() == 1
+    seen = re.compile("On your data: .* over .* thrust, without thrust_asymmetry and with it")
+    assert page.get_by_role("img", name=seen).count() == 1
 
 
 REPLAYED = "[data-name='run/now'][data-value]"
@@ -66,7 +72,7 @@ def test_what_is_wrong_with_a_draft_is_told_in_words_and_colour(diagnosed_tab):
     page.wait_for_selector(REPLAYED)
     page.get_by_role("checkbox", name="quadratic_damping").click()
     card = page.locator(".card", has=page.get_by_role("checkbox", name="quadratic_damping"))
-    card.get_by_text("Warning: the diagnosis did not select it: probability < 0.001").wait_for()
+    card.get_by_text("Warning: the diagnosis did not select it: probability below 0.001").wait_for()
     type_value(page, "quadratic_damping", "surge", "-230")
     card.get_by_text("Warning: water would push, not brake").wait_for()
     page.get_by_text("The replay of the new model diverges after").wait_for()

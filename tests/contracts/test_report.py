@@ -167,7 +167,7 @@ def test_what_nobody_would_argue_about_is_said_once(content):
 def test_terminal_and_page_say_the_same(content):
     found = content["diagnosis"]
     text = " ".join(terminal.tell_diagnosis(found, built_in()).split())
-    for remark in explain(found, built_in()).remarks:
+    for remark in explain(found, built_in()).sentences:
         assert " ".join(remark.split()) in text
 
 
@@ -204,7 +204,7 @@ def test_too_little_data_is_a_verdict_without_an_error(content):
         "error": DiagnosisErrors(nominal=None, with_effects=None, noise_floor=None),
     }  # fmt: skip
     said = explain(content["diagnosis"].model_copy(update=found), built_in())
-    assert said.remarks[0].startswith("No test run could be used")
+    assert said.error.startswith("No test run could be used")
     assert not any("noise" in remark for remark in said.remarks)
 
 

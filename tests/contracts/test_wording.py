@@ -12,7 +12,15 @@ from rovsim.reporting.figures.pooled import pool
 from rovsim.reporting.html import report
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import Column, Table, tabulate_ladder
-from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, listed, rounded, significant
+from rovsim.reporting.wording import (
+    ERROR,
+    ERROR_MEANING,
+    LADDER,
+    listed,
+    rounded,
+    significant,
+    tell_probability,
+)
 from rovsim.reporting.words import terminal
 from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
 from rovsim.reporting.words.symbols import explain_symbols
@@ -126,6 +134,24 @@ def test_the_error_that_ranks_has_one_name_and_one_meaning(content):
     assert ERROR in kind("ladder").caption
 
 
+@pytest.mark.parametrize(
+    ("probability", "told"),
+    [(0.0, "below 0.001"), (1.84e-128, "below 0.001"), (0.03, "0.030"), (0.9995, "above 0.999"),
+     (None, "–")],
+)  # fmt: skip
+def test_a_probability_is_told_as_people_write_it(probability, told):
+    assert tell_probability(probability) == told
+
+
+@pytest.mark.parametrize("probability", [1e-9, 0.5, 0.9999])
+def test_a_verdict_tells_a_probability_as_tables_do(content, probability):
+    (first, *_) = content["diagnosis"].selected
+    one = first.model_copy(update={"probability": probability})
+    found = content["diagnosis"].model_copy(update={"selected": (one,)})
+    (said,) = explain(found, built_in()).missing
+    assert said.worth.endswith(f"probability {tell_probability(probability)}")
+
+
 def test_the_ladder_says_which_rows_build_on_each_other(content):
     assert LADDER in tabulate_ladder(content["ladder"]).caption
 
@@ -142,7 +168,7 @@ def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
 def test_what_is_unexplained_is_not_said_to_be_all_that_a_perfect_model_leaves(content):
     found = content["diagnosis"]
     left = found.unexplained.model_copy(update={"significant": True, "proposal": None})
-    said = explain(found.model_copy(update={"unexplained": left}), built_in()).remarks[0]
+    said = explain(found.model_copy(update={"unexplained": left}), built_in()).error
     assert "counts what is unexplained as noise" in said
     assert "perfect model" not in said
     steps = {"nominal": 0.2, "zero_acceleration": 0.9, "noise_floor": 0.19}

@@ -4,55 +4,90 @@ import numpy as np
 import pytest
 
 from rovsim import AXES
+from rovsim.dynamics.catalogue import built_in
+from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
 from rovsim.evaluation.error_conditions.lowered import find_most_lowered
-from rovsim.results.error_conditions import ConditionTable, ErrorSize, ModelConditions
+
+TIME = 0.5 * np.arange(240)
+VALUES = {
+    Condition("throughout", "", "throughout"): 0.0 * TIME,
+    Condition("surge speed", "m/s", "speed", "surge"): np.sin(TIME),
+    Condition("sway speed", "m/s", "speed", "sway"): np.sin(1.3 * TIME),
+    Condition("yaw rate", "rad/s", "speed", "yaw"): np.sin(0.7 * TIME),
+    Condition("surge thrust", "N", "thrust", "surge"): np.sin(TIME) + 0.2 * np.cos(2.1 * TIME),
+    Condition("sway thrust", "N", "thrust", "sway"): np.cos(1.7 * TIME),
+    Condition("heave thrust", "N", "thrust", "heave"): np.cos(0.9 * TIME),
+    Condition("heading", "rad", "attitude", "yaw"): np.sin(0.3 * TIME),
+    Condition("time in the run", "s", "time"): TIME,
+}
+BY_NAME = {condition.name: values for condition, values in VALUES.items()}
 
 
-def table(*mean, edges=(0.0, 1.0, 2.0, 3.0), judged=(True, True, True)):
-    """Means of three bins of ten blocks each."""
-    n = len(mean)
-    return ConditionTable(
-        unit="m/s", share_of_error=0.5, edges=edges[: n + 1], center=tuple(np.arange(n) + 0.5),
-        blocks=(10,) * n, effective=(10.0,) * n, judged=judged[:n], mean=mean,
-        std_error=(0.01,) * n, rms=mean,
-    )  # fmt: skip
+def blocks(accelerations=1.0, **errors):
+    """Blocks of one run; errors by axis."""
+    error = np.zeros((len(TIME), 6))
+    for axis, values in errors.items():
+        error[:, AXES.index(axis)] = values
+    measured = np.full_like(error, accelerations)
+    run = np.zeros(len(TIME), int)
+    return Blocks(error, measured, VALUES, TIME, run, np.ones(6, bool))
 
 
-def conditions(**axes):
-    """Tables of some axes; each axis was measured to accelerate by 1."""
-    return ModelConditions(
-        split="train", runs=("a",), enough=True, sentences=(), findings=(),
-        error={axis: ErrorSize(rms=0.1, measured_rms=1.0) for axis in AXES}, axes=axes,
-    )  # fmt: skip
+NONE = blocks()
 
 
-def test_the_axis_and_condition_at_which_most_is_gone():
-    before = conditions(
-        surge={"surge speed": table(0.1, 0.2, 0.3), "depth": table(0.2, 0.2, 0.2)},
-        sway={"sway speed": table(0.4, 0.0, 0.4)},
+def declared(effect):
+    return built_in()[effect].signature
+
+
+def test_without_a_declaration_the_axis_and_condition_at_which_most_is_gone():
+    before = blocks(surge=0.3 * BY_NAME["surge speed"], sway=0.2 * BY_NAME["sway speed"])
+    found = find_most_lowered(before, NONE, None)
+    assert (found.axis, found.condition.name) == ("surge", "surge speed")
+    assert found.removed == pytest.approx(0.045, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("effect", "before", "shown"),
+    [
+        ("thrust_asymmetry", {"surge": BY_NAME["surge speed"]}, ("surge", "surge thrust")),
+        ("thrust_asymmetry", {"sway": np.abs(BY_NAME["sway thrust"])}, ("sway", "sway thrust")),
+        ("quadratic_damping", {"surge": BY_NAME["surge thrust"]}, ("surge", "surge speed")),
+        ("coupled_damping", {"yaw": BY_NAME["yaw rate"] + BY_NAME["sway speed"]},
+         ("yaw", "sway speed")),
+        ("current", {"surge": BY_NAME["surge speed"]}, ("surge", "heading")),
+        ("voltage_sag", {"sway": TIME * BY_NAME["sway thrust"]}, ("sway", "time in the run")),
+    ],
+)  # fmt: skip
+def test_an_effect_is_shown_over_its_own_condition(effect, before, shown):
+    """Though more is gone from the bins of another one."""
+    found = find_most_lowered(blocks(**before), NONE, declared(effect))
+    assert (found.axis, found.condition.name) == shown
+    assert found.size == declared(effect).size
+
+
+def test_added_mass_is_shown_over_the_acceleration():
+    measured = np.outer(np.cos(TIME), np.ones(6))
+    found = find_most_lowered(
+        blocks(measured, surge=0.4 * np.cos(TIME)), blocks(measured), declared("added_mass")
     )
-    after = conditions(
-        surge={"surge speed": table(0.0, 0.0, 0.0), "depth": table(0.2, 0.2, 0.1)},
-        sway={"sway speed": table(0.4, 0.0, 0.4)},
+    assert (found.axis, found.condition.name) == ("surge", "surge acceleration")
+
+
+def test_where_its_condition_was_not_measured_any_other_shows_it():
+    found = find_most_lowered(
+        blocks(surge=0.3 * BY_NAME["surge speed"]), NONE, declared("wall_proximity")
     )
-    found = find_most_lowered(before, after)
-    assert (found.axis, found.condition) == ("surge", "surge speed")
-    assert found.removed == pytest.approx(np.mean([0.01, 0.04, 0.09]))
+    assert found.condition.name == "surge speed"
 
 
 def test_a_steady_force_is_shown_over_the_motion_of_its_own_axis():
-    gone, there = table(0.0, 0.0, 0.0), table(0.1, 0.1, 0.1)
-    names = ("roll thrust", "heave speed", "depth")
-    before, after = (conditions(heave=dict.fromkeys(names, t)) for t in (there, gone))
-    assert find_most_lowered(before, after).condition == "heave speed"
+    found = find_most_lowered(blocks(sway=0.1), NONE, None)
+    assert found.condition.name in ("sway speed", "sway thrust")
 
 
-def test_what_was_seldom_met_or_is_binned_otherwise_shows_nothing():
-    rare = {"judged": (True, False, True)}
-    before = conditions(
-        heave={"depth": table(0.0, 0.5, 0.0, **rare), "speed": table(0.1, 0.1, 0.1)}
-    )
-    other = table(0.0, 0.0, 0.0, edges=(0.0, 1.5, 2.0, 3.0))
-    after = conditions(heave={"depth": table(0.0, 0.0, 0.0, **rare), "speed": other})
-    assert find_most_lowered(before, after) is None
-    assert find_most_lowered(before, before) is None
+def test_what_did_not_fall_or_is_of_other_blocks_shows_nothing():
+    before = blocks(surge=BY_NAME["surge speed"])
+    assert find_most_lowered(before, before, None) is None
+    other = Blocks(**{**vars(NONE), "time": TIME + 0.1})
+    assert find_most_lowered(before, other, None) is None

@@ -37,6 +37,7 @@ FLOOR_COUNTS_ALL = (
     "The noise floor, {}, counts what is unexplained as noise: a model that knew it could be below."
 )
 LEAST = 0.01  # share of the error below which an effect by itself is not shown
+IMPROBABLE = 0.001  # a probability below this, or as near to one, is told as no more than that
 MOST = 8  # names told of many: a line of run ids
 
 
@@ -93,6 +94,16 @@ def fit(error: float) -> float:
 def known(value: float | None) -> str:
     """A number as `significant` writes it, and a dash for what is not known."""
     return "–" if value is None else significant(value)
+
+
+def tell_probability(probability: float | None) -> str:
+    """A probability to three decimals, also at its ends, where nobody knows more of them."""
+    if probability is None:
+        return "–"
+    if probability < IMPROBABLE:
+        return f"below {IMPROBABLE:g}"
+    certain = 1 - IMPROBABLE
+    return f"above {certain:g}" if probability > certain else f"{probability:.3f}"
 
 
 def significant(value: float, digits: int = 3) -> str:

@@ -163,7 +163,7 @@ class ShownDiagnosis(Figures):
         parts = [html.heading(said.sentence)]
         if self.result.selected:
             parts.append(html.table(self.selected))
-        parts.append(html.sentences([*said.remarks, *([said.next] if said.next else [])]))
+        parts.append(html.sentences([*said.sentences, *([said.next] if said.next else [])]))
         return "".join([*parts, self._picture("ladder")])
 
 

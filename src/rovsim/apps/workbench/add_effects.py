@@ -6,12 +6,12 @@ from typing import Any, Awaitable, Callable
 from nicegui import ui
 
 from rovsim.apps.workbench.draft import Draft, reach
-from rovsim.apps.workbench.parts import Failure, Slider, alarm, tell_probability, text
+from rovsim.apps.workbench.parts import Failure, Slider, alarm, text
 from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.catalogue.entries import unit
-from rovsim.reporting.wording import rounded
+from rovsim.reporting.wording import rounded, tell_probability
 
 STEPS = 400  # of a slider
 FIRST = 5  # effects that are offered without being asked for

@@ -9,79 +9,85 @@ from rovsim.apps.workbench.parts import chart, computed
 from rovsim.apps.workbench.where import BLUE, ERRORS, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.dynamics.model import Model
-from rovsim.evaluation.error_conditions.entries import list_conditions
+from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.evaluation.error_conditions.entries import tabulate
 from rovsim.evaluation.error_conditions.lowered import Lowered, find_most_lowered
 from rovsim.reporting.charts import chart_bins
 from rovsim.reporting.units import ACCELERATION_UNITS
-from rovsim.results.error_conditions import ConditionTable, ModelConditions
 
 SEEN = 1e-4  # of the measured power: one per cent of the acceleration
 LOOKS = {"without it": (MARK, "dashed"), "with it": (BLUE, "solid")}
 
 
 async def show_lowered(bench: Workbench, effect: str) -> bool:
-    """Show where a found effect lowers the error most, if that can be seen in accelerations."""
+    """Show what a found effect lowers over its condition, if that is seen in accelerations."""
     try:
         models = bench.draft.found(but=effect), bench.draft.found()
     except RovsimError:  # a diagnosis from elsewhere, of effects that are not known here
         return False
-    before, after = [await computed(_search, bench, model) for model in models]
-    found = find_most_lowered(before, after)
+    known = bench.catalogue.get(effect)
+    before, after = [await computed(bench.replays.searched, model) for model in models]
+    blocks = before.explanation.blocks, after.explanation.blocks
+    if blocks[0] is None or blocks[1] is None:
+        return False
+    found = find_most_lowered(*blocks, known.signature if known else None)
     if found is None or found.removed < SEEN:
         return False
     chart(
         lowered_chart(found),
-        f"On your data: mean {found.axis} error over {found.condition}, without {effect} and "
-        "with it", 230,
+        f"On your data: {_name(found)} over {found.condition.name}, without {effect} and with it",
+        230,
     )  # fmt: skip
+    what = "the size (RMS) of what is left" if found.size else "what is left"
     ui.label(
-        f"On your {before.split} runs: what is left on {found.axis}, measured minus model, beside "
-        "all other effects found."
+        f"On your {before.split} runs: {what} on {found.axis}, measured minus model, beside all "
+        "other effects found."
     )
     return True
 
 
-def _search(bench: Workbench, model: Model) -> ModelConditions:
-    (found,) = list_conditions([bench.replays.searched(model)]).models.values()
-    return found
+def _name(found: Lowered) -> str:
+    return f"{'size of ' if found.size else ''}{found.axis} error"
 
 
 def lowered_chart(found: Lowered) -> Options:
-    """Means of the bins with two standard errors, before and after."""
-    unit = chart_bins(found.before).unit
+    """Means of the bins with two standard errors, or their sizes, before and after."""
+    name, unit = found.condition.name, chart_bins(tabulate(found.before)).unit
     series = [
         one
-        for (name, (color, dash)), table in zip(
+        for (label, (color, dash)), table in zip(
             LOOKS.items(), (found.before, found.after), strict=True
         )
-        for one in _curve(name, color, dash, table)
+        for one in _curve(label, color, dash, table, found.size)
     ]
     return {
         "grid": {"left": 64, "right": 16, "top": 52, "bottom": 44},
         "legend": {"top": 0, "left": 56, "data": list(LOOKS)},
         "tooltip": {"trigger": "axis"},
         "xAxis": {"type": "value", "scale": True, "nameLocation": "middle", "nameGap": 26,
-                  "name": f"{found.condition} ({unit})" if unit else found.condition,
+                  "name": f"{name} ({unit})" if unit else name,
                   "nameTextStyle": {"color": SOFT}, "splitLine": {"show": False},
                   "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
                   "axisLabel": {"color": SOFT}},
         "yAxis": {"type": "value", "splitNumber": 4, "axisTick": {"show": False},
                   "axisLine": {"show": False, "onZero": False},
-                  "name": f"{found.axis} error ({ACCELERATION_UNITS[AXES.index(found.axis)]})",
+                  "name": f"{_name(found)} ({ACCELERATION_UNITS[AXES.index(found.axis)]})",
                   "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
                   "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
         "series": series,
     }  # fmt: skip
 
 
-def _curve(name: str, color: str, dash: str, table: ConditionTable) -> list[Options]:
-    curve = chart_bins(table)
-    at, mean, error = (x[curve.judged] for x in (curve.center, curve.mean, curve.error))
+def _curve(name: str, color: str, dash: str, table: Table, size: bool) -> list[Options]:
+    curve = chart_bins(tabulate(table))
+    height = table.rms if size else curve.mean
+    at, mean, error = (x[curve.judged] for x in (curve.center, height, curve.error))
     line = {
         "name": name, "type": "line", "symbolSize": 6, "itemStyle": {"color": color},
         "lineStyle": {"color": color, "type": dash}, "data": np.stack([at, mean], 1).tolist(),
     }  # fmt: skip
+    if size:
+        return [line]
     bars = {
         "type": "custom", "name": f"{name}, {ERRORS}", "silent": True,
         ":renderItem": WHISKER, "z": 4,

@@ -18,7 +18,6 @@ from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
-IMPROBABLE = 0.001  # a probability below this, or as near to one, is told as no more than that
 # Functions of charts.js
 SAVE = {"PNG": "savePicture", "SVG": "saveVectors", "CSV": "saveValues"}
 Columns = Mapping[str, Any]  # what the columns of the CSV are called: see saveValues
@@ -121,15 +120,6 @@ def cell(value: float | None, name: str = "", told: str = "") -> str:
     digits = str(value) if isinstance(value, int) else significant(or_nan(value))
     shown = escape(told or digits)
     return f'<td class="number" data-name="{escape(name)}"{known}>{shown}</td>'
-
-
-def tell_probability(probability: float | None) -> str:
-    """A probability to three decimals, also at its ends, where nobody knows more of them."""
-    if probability is None:
-        return "–"
-    if probability < IMPROBABLE:
-        return f"< {IMPROBABLE:g}"
-    return f"> {1 - IMPROBABLE:g}" if probability > 1 - IMPROBABLE else f"{probability:.3f}"
 
 
 def words(value: Any) -> str:

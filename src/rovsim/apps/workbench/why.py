@@ -10,7 +10,6 @@ from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.gallery import picture
 from rovsim.apps.workbench.on_your_data import show_lowered
 from rovsim.apps.workbench.parts import (
-    IMPROBABLE,
     Failure,
     bar,
     cell,
@@ -21,7 +20,6 @@ from rovsim.apps.workbench.parts import (
     png,
     section,
     table,
-    tell_probability,
     text,
     tile,
     while_idle,
@@ -30,8 +28,9 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
+from rovsim.reporting.wording import ERROR, IMPROBABLE, tell_probability
 from rovsim.reporting.words.verdict import Missing, explain, interval, percent
-from rovsim.results.diagnosis import Diagnosis, DiagnosisErrors, Disturbance
+from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.fitted import FittedEffect
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
@@ -50,9 +49,10 @@ async def show(bench: Workbench, place: Place) -> None:
         f"<p><strong>{escape(said.sentence)}</strong> <span>({escape(said.name)})</span></p>",
         sanitize=False,
     ).classes("verdict")
-    _errors(found.error)
-    if len(said.missing) > 1:
-        text("The share of the error that an effect removes is on top of those above it.", "soft")
+    _errors(found)
+    text(said.error)
+    if said.key:
+        text(said.key, "soft")
     seen = {missing.effect: _effect(missing) for missing in said.missing}
     await _left(bench, found)
     if found.selected:
@@ -82,15 +82,13 @@ def _ask(bench: Workbench) -> None:
     while_idle(bench, button.props("unelevated no-caps").classes("onward"))
 
 
-def _errors(error: DiagnosisErrors) -> None:
+def _errors(found: Diagnosis) -> None:
+    error = found.error
     with ui.row().classes("tiles"):
-        tile("Error of the model", error.nominal, "error/nominal", "test runs")
-        tile("With the effects", error.with_effects, "error/with_effects", "test runs")
+        tile(f"{ERROR} of the model", error.nominal, "error/nominal", "test runs")
+        if found.selected:
+            tile("With the effects", error.with_effects, "error/with_effects", "test runs")
         tile("Noise floor", error.noise_floor, "error/noise_floor", "of a perfect model, about")
-    text(
-        "Velocity error of the model, restarted from the measured state every 2 s, in units of the "
-        "measured velocity's standard deviation.", "soft",
-    )  # fmt: skip
 
 
 def _effect(missing: Missing) -> ui.column:
@@ -102,7 +100,7 @@ def _effect(missing: Missing) -> ui.column:
             with ui.row().classes("values"):
                 for value in missing.parameters:
                     ui.label(value).classes("value")
-            text(f"It {missing.worth}. ± is a 95 % interval.")
+            text(f"It {missing.worth}.")
             if missing.equation:
                 formula(missing.equation)
                 text(f"Usual cause: {missing.cause}")

@@ -26,6 +26,7 @@ SPEEDS = (
     "surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate"
 )  # fmt: skip
 THROUGHOUT, HEADING = "throughout", "heading"
+ACCELERATION = "acceleration"  # kind of those that are no condition of a search
 ANGLES = ("roll angle", "pitch angle", HEADING)
 UNITS = {"speed": ("m/s", "rad/s"), "thrust": ("N", "N m"), "change": ("N/s", "N m/s")}
 
@@ -94,6 +95,20 @@ def join_blocks(parts: Sequence[Blocks]) -> Blocks:
 
     axes = np.all([p.axes for p in parts], axis=0)
     return Blocks(join("error"), join("measured"), joined, join("time"), run, axes)
+
+
+def list_shown_conditions(blocks: Blocks) -> dict[Condition, Array]:
+    """Conditions (n,) that a picture may have: those of the blocks, and measured accelerations.
+
+    Accelerations are none for a search: their noise is in the error as well, and the two would seem
+    related. The same noise is in the errors of two models, so that these may be compared over them.
+    """
+    shown = dict(blocks.values)
+    for k in np.flatnonzero(blocks.axes).tolist():
+        unit = ("m/s²", "rad/s²")[int(k >= 3)]
+        condition = Condition(f"{AXES[k]} acceleration", unit, ACCELERATION, AXES[k])
+        shown[condition] = blocks.measured[:, k]
+    return shown
 
 
 def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Array]:

@@ -34,7 +34,7 @@ def _list_model(one: SearchedModel) -> ModelConditions:
         sentences=tuple(summarize(explanation)),
         findings=tuple(map(_finding, explanation.findings)),
         axes={
-            axis: {name: _table(t) for name, t in tables.items()}
+            axis: {name: tabulate(t) for name, t in tables.items()}
             for axis, tables in explanation.tables.items()
         },
     )
@@ -65,7 +65,7 @@ def _finding(found: Finding) -> ConditionFinding:
     )
 
 
-def _table(one: Table) -> ConditionTable:
+def tabulate(one: Table) -> ConditionTable:
     """One axis by one condition; a value for each bin."""
     at = one.binning
     return ConditionTable(

@@ -1,53 +1,109 @@
-"""Under which condition a change of the model lowers the error most."""
+"""What a change of the model does to its error, over the condition that shows such a change."""
 
 from dataclasses import dataclass
+from typing import Iterator, Sequence
 
 import numpy as np
 
-from rovsim.results.error_conditions import ConditionTable, ModelConditions
+from rovsim import AXES
+from rovsim.dynamics.effects.parameters import Signature
+from rovsim.evaluation.error_conditions.bins import Table, bin_errors, cut_bins, number_stretches
+from rovsim.evaluation.error_conditions.conditions import (
+    HEADING,
+    Blocks,
+    Condition,
+    list_shown_conditions,
+)
 
 NEARLY = 0.97  # of the most: a steady force is gone from the bins of any condition
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lowered:
     """Error of one axis over one condition, before a change and after it.
 
-    `removed`: mean square that is gone from the means of the bins, over that of the measured
-    acceleration of the axis.
+    `size`: the RMS of the bins tells, not their means. `removed`: mean square that is gone from
+    them, over that of the measured acceleration of the axis.
     """
 
     axis: str
-    condition: str
-    before: ConditionTable
-    after: ConditionTable
+    condition: Condition
+    before: Table
+    after: Table
+    size: bool
     removed: float
 
 
-def find_most_lowered(before: ModelConditions, after: ModelConditions) -> Lowered | None:
-    """Where the means of bins fell most; None where none fell.
+def find_most_lowered(before: Blocks, after: Blocks, shown: Signature | None) -> Lowered | None:
+    """Where the error fell most, of what an effect declares to show it; None where it fell nowhere.
 
-    Of conditions that show about as much, one of the axis' own motion.
+    Without a declaration, or where its condition was not measured, any condition will do. Of
+    conditions that show about as much, the declared one, or one of the axis' own motion.
+
+    Args:
+        before: blocks of the model that lacks the effect.
+        after: the same blocks of the model that has it.
+        shown: over what the effect shows.
     """
+    if len(before.time) < 2 or not np.array_equal(before.time, after.time):
+        return None
     found = [
-        Lowered(axis, name, table, after.axes[axis][name], removed)
-        for axis, tables in before.axes.items()
-        for name, table in tables.items()
-        if name in after.axes.get(axis, {})
-        and (removed := _removed(table, after.axes[axis][name], before.error[axis].measured_rms))
-        > 0.0
+        one
+        for axis, conditions in _list_choices(before, shown)
+        for one in _compare(before, after, axis, conditions, shown is not None and shown.size)
     ]
     most = max((one.removed for one in found), default=0.0)
     near = [one for one in found if one.removed >= NEARLY * most]
+    declared = shown.condition if shown else ""
     return max(
-        near, key=lambda one: (one.condition.startswith(one.axis), one.removed), default=None
-    )
+        near,
+        key=lambda one: (one.condition.name == declared, one.condition.axis == one.axis,
+                         one.removed),
+        default=None,
+    )  # fmt: skip
 
 
-def _removed(before: ConditionTable, after: ConditionTable, measured: float | None) -> float:
-    """As `Lowered.removed`, of bins judged in both; zero where there is one, or they differ."""
-    if not measured or before.edges != after.edges or len(before.mean) < 2:
+def _list_choices(
+    blocks: Blocks, shown: Signature | None
+) -> Iterator[tuple[str, Sequence[Condition]]]:
+    """Axes that were measured, and over which conditions each may be shown."""
+    known = [*list_shown_conditions(blocks)]
+    declared = next((c for c in known if shown and c.name == shown.condition), None)
+    for k in np.flatnonzero(blocks.axes).tolist():
+        if shown is None or declared is None:
+            yield AXES[k], [*blocks.values]
+        else:
+            yield AXES[k], [c for c in known if _is_alike(c, AXES[k], declared, shown.axis)]
+
+
+def _is_alike(condition: Condition, axis: str, declared: Condition, shown_axis: str) -> bool:
+    """Whether a condition is to an axis what the declared one is to the declared axis."""
+    if declared.axis == "" or declared.name == HEADING:
+        return condition == declared
+    own = declared.axis == shown_axis
+    return condition.kind == declared.kind and (condition.axis == axis) == own
+
+
+def _compare(
+    before: Blocks, after: Blocks, axis: str, conditions: Sequence[Condition], size: bool
+) -> Iterator[Lowered]:
+    """Conditions over which the error of an axis fell."""
+    k = AXES.index(axis)
+    old, new, measured = before.error[:, k], after.error[:, k], before.measured[:, k]
+    stretch = number_stretches(before, old)
+    values = list_shown_conditions(before)
+    for condition in conditions:
+        cut = cut_bins(condition, values[condition], stretch)
+        tables = bin_errors(cut, old, stretch), bin_errors(cut, new, stretch)
+        removed = _removed(*tables, size) / float(np.mean(measured**2) or np.inf)
+        if removed > 0.0:
+            yield Lowered(axis, condition, *tables, size, removed)
+
+
+def _removed(before: Table, after: Table, size: bool) -> float:
+    """Mean square that is gone from the bins that were judged; zero where there is only one."""
+    count = before.binning.count * before.binning.judged
+    if len(count) < 2:
         return 0.0
-    count = np.array(before.blocks) * (np.array(before.judged) & np.array(after.judged))
-    gone = np.square(before.mean) - np.square(after.mean)
-    return float(count @ gone / (max(count.sum(), 1) * measured**2))
+    old, new = (one.rms if size else one.mean for one in (before, after))
+    return float(count @ (old**2 - new**2) / max(count.sum(), 1))

@@ -14,13 +14,17 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import describe_effect
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
-from rovsim.evaluation.error_conditions.conditions import Blocks, Condition, average_blocks
+from rovsim.evaluation.error_conditions.conditions import (
+    Blocks,
+    Condition,
+    average_blocks,
+    list_shown_conditions,
+)
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.signature import Seen
-from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
@@ -89,16 +93,10 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
 def found(name: str, missing: Blocks) -> tuple[Condition, Array]:
     """The condition of this name and its values (n,).
 
-    The measured accelerations are conditions here too: with calm water and good cameras their noise
-    is small. In a real run it is in the error as well, and the two would seem related.
-
     Raises:
         BadInput: there is none.
     """
-    known = {c.name: (c, x) for c, x in missing.values.items()}
-    for axis, unit, measured in zip(AXES, ACCELERATION_UNITS, missing.measured.T, strict=True):
-        title = f"{axis} acceleration"
-        known[title] = Condition(title, unit, "acceleration", axis), measured
+    known = {c.name: (c, x) for c, x in list_shown_conditions(missing).items()}
     if name in known:
         return known[name]
     raise BadInput(

@@ -70,7 +70,7 @@ def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> s
     lines += ["", *fold(said.key)] if said.key else []
     lines += _ranking(found.ranking)
     following = [f"Next: {said.next}"] if said.next else []
-    for remark in (*said.remarks, *following):
+    for remark in (*said.sentences, *following):
         lines += ["", *fold(remark)]
     return "\n".join(lines)
 

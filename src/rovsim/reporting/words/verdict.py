@@ -18,6 +18,7 @@ from rovsim.reporting.wording import (
     listed,
     minus,
     significant,
+    tell_probability,
 )
 from rovsim.reporting.words.shown import shown_sentences
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
@@ -64,21 +65,27 @@ class Missing:
 class Verdict:
     """A diagnosis in words: a sentence, the missing effects, what else to know, what to record.
 
-    `key` says how to read the missing effects; empty where none is.
+    `key` says how to read the missing effects; empty where none is. `error`: that on the test runs,
+    and what it means.
     """
 
     name: str
     sentence: str
     missing: tuple[Missing, ...]
     key: str
+    error: str
     remarks: tuple[str, ...]
     next: str
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Error and remarks, as they are told one after the other."""
+        return (self.error, *self.remarks)
 
 
 def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
     """A diagnosis in words; the catalogue says what its effects are."""
     remarks = [
-        error_sentence(found),
         *apart_sentences(found),
         *scale_sentences(found.common_scale),
         *unexplained_sentences(found),
@@ -89,8 +96,8 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         for place, one in enumerate(found.selected)
     )
     return Verdict(
-        found.verdict, VERDICTS[found.verdict], missing, _key(len(missing)), tuple(remarks),
-        found.next_experiment,
+        found.verdict, VERDICTS[found.verdict], missing, _key(len(missing)), error_sentence(found),
+        tuple(remarks), found.next_experiment,
     )  # fmt: skip
 
 
@@ -168,8 +175,7 @@ def percent(share: float | None) -> str:
 def _sure(probability: float | None) -> str:
     if probability is None:
         return "no other name was tried"
-    p = probability
-    return "probability above 0.999" if p > 0.999 else f"probability {p:.3f}"
+    return f"probability {tell_probability(probability)}"
 
 
 def error_sentence(found: Diagnosis) -> str:
