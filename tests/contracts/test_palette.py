@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+from rovsim.benchmarks.speed import plots
+from rovsim.reporting.figures import budget
 from rovsim.reporting.figures.palette import FAMILIES, LEAST, contrast, looks
 
 MODELS = ("nominal", "refitted", "repaired", "new", "third", "fourth", "fifth", "knn_3dof",
@@ -52,6 +54,22 @@ def test_a_curve_can_be_seen_on_white_and_on_the_dark_page(name):
     color = looks(MODELS)[name].color
     assert contrast(color) >= LEAST
     assert contrast(DARK) / contrast(on_the_dark_page(color)) >= LEAST
+
+
+@pytest.mark.parametrize(
+    "color",
+    [*(one.color for one in (*budget.KNOWN.values(), *budget.ADDED)), *plots.COLORS.values(),
+     *(color for names in plots.SIZES.values() for color in names.values())],
+)  # fmt: skip
+def test_other_curves_can_be_seen_too(color):
+    assert contrast(color) >= LEAST
+
+
+def test_parts_and_libraries_of_one_panel_are_told_apart():
+    for drawn in (*plots.SIZES.values(), plots.COLORS):
+        assert len(set(drawn.values())) == len(drawn)
+    looks = [(one.color, one.dash) for one in (*budget.KNOWN.values(), *budget.ADDED)]
+    assert len(set(looks)) == len(looks)
 
 
 def test_members_of_a_family_differ_by_dashes_whatever_the_base():

@@ -74,6 +74,12 @@ def test_added_mass_is_shown_over_the_acceleration():
     assert (found.axis, found.condition.name) == ("surge", "surge acceleration")
 
 
+def test_an_effect_is_shown_on_an_axis_on_which_it_acts():
+    before = blocks(surge=0.1 * BY_NAME["surge speed"], sway=BY_NAME["sway speed"])
+    found = find_most_lowered(before, NONE, declared("quadratic_damping"), ["surge"])
+    assert (found.axis, found.condition.name) == ("surge", "surge speed")
+
+
 def test_where_its_condition_was_not_measured_any_other_shows_it():
     found = find_most_lowered(
         blocks(surge=0.3 * BY_NAME["surge speed"]), NONE, declared("wall_proximity")

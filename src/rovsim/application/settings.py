@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Sequence
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from rovsim.application.sections import SimulationSettings, TimingSettings, TrainingSettings
-from rovsim.core.errors import BadInput, RovsimError, nearest
+from rovsim.core.errors import BadInput, RovsimError, nearest, unlisted
 from rovsim.core.schema import PathText, S, Section, checked
 from rovsim.core.shipped import conf_folders, conf_names
 from rovsim.design.settings import DesignSettings
@@ -171,10 +171,7 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
         key, _, value = word.lstrip("+~").partition("=")
         options = conf_names(key) if key else []
         if options and value not in options:
-            return BadInput(
-                f"there is no {key} '{value}'", where=word,
-                expected=f"one of {', '.join(options)}", remedy=nearest(value, options),
-            )  # fmt: skip
+            return unlisted(value, options, found=f"there is no {key} '{value}'", where=word)
         if key and not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
             known = _keys()
             if key not in known and key in message:

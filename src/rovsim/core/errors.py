@@ -1,7 +1,7 @@
 """Errors a user can act on: what was found, where, what was expected, what to do."""
 
 from difflib import get_close_matches
-from typing import Iterable
+from typing import Iterable, Sequence
 
 LONGEST = 1000  # characters of what a message quotes
 MOST = 40  # names that a message lists
@@ -18,9 +18,7 @@ class BadInput(RovsimError):
         found, where = shortened(found), shortened(str(where))
         expected, remedy = shortened(expected), shortened(remedy)
         self.found, self.where, self.expected, self.remedy = found, where, expected, remedy
-        # names that are all listed already are not listed twice
-        advice = "" if remedy == f"Known: {expected.removeprefix('one of ')}." else f" {remedy}"
-        super().__init__(f"{where}: {found}. Expected {expected}.{advice}")
+        super().__init__(f"{where}: {found}. Expected {expected}. {remedy}".rstrip())
 
     def __reduce__(self):
         # keyword-only arguments would otherwise be lost between processes
@@ -42,11 +40,22 @@ def _rebuild(found: str, where: str, expected: str, remedy: str) -> BadInput:
     return BadInput(found, where=where, expected=expected, remedy=remedy)
 
 
+def unlisted(name: str, known: Iterable[str], *, found: str, where: object) -> BadInput:
+    """The error of a name that is none of a few: it lists them, and says which is the nearest."""
+    names = [str(k) for k in known]
+    return BadInput(
+        found, where=where, expected=f"one of {', '.join(names)}", remedy=_closest(name, names)
+    )
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return a remedy for an unknown name: the nearest known one, else all of them."""
     names = [str(k) for k in known]
-    close = get_close_matches(str(name), names, n=1, cutoff=0.5)
-    if close:
-        return f"Did you mean '{close[0]}'?"
     more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-    return f"Known: {', '.join(names[:MOST]) or 'none'}{more}."
+    return _closest(name, names) or f"Known: {', '.join(names[:MOST]) or 'none'}{more}."
+
+
+def _closest(name: str, names: Sequence[str]) -> str:
+    """The question whether the nearest name was meant; empty where none is near."""
+    close = get_close_matches(str(name), names, n=1, cutoff=0.5)
+    return f"Did you mean '{close[0]}'?" if close else ""

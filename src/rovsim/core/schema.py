@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, ValidationError
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, unlisted
 
 
 class Section(BaseModel):
@@ -66,12 +66,7 @@ def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadIn
     if first["type"] == "extra_forbidden":
         key = str(first["loc"][-1])
         known = _known_keys(kind, first["loc"][:-1])
-        return BadInput(
-            f"unknown key '{place}'",
-            where=where,
-            expected=f"one of {', '.join(known)}",
-            remedy=nearest(key, known),
-        )
+        return unlisted(key, known, found=f"unknown key '{place}'", where=where)
     if first["type"] == "missing":
         return BadInput(
             f"'{place}' is missing",

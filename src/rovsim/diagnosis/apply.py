@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Collection, Container, NamedTuple, Sequence
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.schema import checked
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
@@ -70,12 +70,7 @@ def _check_names(names: Sequence[str], fitted: Collection[str], source: Path) ->
     """Refuse a name that a diagnosis has no values for, and one that comes twice."""
     for k, name in enumerate(names):
         if name not in fitted:
-            raise BadInput(
-                f"has no values for '{name}'",
-                where=source,
-                expected=f"one of {', '.join(fitted)}",
-                remedy=nearest(name, fitted),
-            )
+            raise unlisted(name, fitted, found=f"has no values for '{name}'", where=source)
         if name in names[:k]:
             raise BadInput(
                 f"'{name}' is named twice",

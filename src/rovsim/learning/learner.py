@@ -11,7 +11,7 @@ from numpy import ndarray as Array
 
 import rovsim.learning
 from rovsim import AXES
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.extras import require
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.learned.checks import checked_rows, posterior
@@ -104,12 +104,7 @@ def learner(kind: str, where: object = "residual") -> Learner:
     known = learners()
     if kind in known:
         return known[kind]
-    raise BadInput(
-        f"unknown residual '{kind}'",
-        where=where,
-        expected=f"one of {', '.join(known)}",
-        remedy=nearest(kind, known),
-    )
+    raise unlisted(kind, known, found=f"unknown residual '{kind}'", where=where)
 
 
 def learner_settings(content: Any, where: Any = "residual") -> LearnerSettings:

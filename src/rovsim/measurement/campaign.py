@@ -10,7 +10,7 @@ from typing import Sequence
 import numpy as np
 
 from rovsim import AXES
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.rotations import axes_signs
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml
@@ -43,12 +43,7 @@ class Campaign:
         """
         runs = {run.id: run for run in self.runs}
         if run_id not in runs:
-            raise BadInput(
-                f"no run '{run_id}'",
-                where=self.file,
-                expected=f"one of {', '.join(runs)}",
-                remedy=nearest(run_id, runs),
-            )
+            raise unlisted(run_id, runs, found=f"no run '{run_id}'", where=self.file)
         return runs[run_id]
 
     @property

@@ -11,7 +11,7 @@ from rovsim import __version__
 from rovsim.apps.cli.complaint import complain
 from rovsim.core.collector import end_at_once
 from rovsim.core.columns import fold, fold_page
-from rovsim.core.errors import BadInput, RovsimError, nearest
+from rovsim.core.errors import BadInput, RovsimError, unlisted
 from rovsim.core.termination import CODE, Terminated, heeding_termination
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
@@ -57,12 +57,7 @@ def _main(words: list[str]) -> None:
         print(HELP if asks_for_help(rest) else complete(rest))
         return
     if command not in names:
-        raise BadInput(
-            f"unknown command '{command}'",
-            where="command line",
-            expected=f"one of {', '.join(names)}",
-            remedy=nearest(command, names),
-        )
+        raise unlisted(command, names, found=f"unknown command '{command}'", where="command line")
     if asks_for_help(rest):
         print(fold_page(_doc(command)))
         return
@@ -117,12 +112,7 @@ def override(word: str) -> str:
     """
     key, equals, value = word.partition("=")
     if not equals and word.startswith("-"):
-        raise BadInput(
-            f"unknown option '{word}'",
-            where="command line",
-            expected=f"one of {', '.join(OPTIONS)}",
-            remedy=nearest(word, OPTIONS),
-        )
+        raise unlisted(word, OPTIONS, found=f"unknown option '{word}'", where="command line")
     if not equals:
         raise BadInput(
             f"'{word}' has no '='",

@@ -1,18 +1,21 @@
 """An effect on the user's own data: the error over a condition, without it and with it."""
 
+from typing import Collection
+
 import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.parts import chart, computed
-from rovsim.apps.workbench.where import BLUE, ERRORS, WHISKER
+from rovsim.apps.workbench.where import ERRORS, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.evaluation.error_conditions.entries import tabulate
 from rovsim.evaluation.error_conditions.lowered import Lowered, find_most_lowered
 from rovsim.reporting.charts import chart_bins
+from rovsim.reporting.figures.palette import BLUE
 from rovsim.reporting.units import ACCELERATION_UNITS
 
 SEEN = 1e-4  # of the measured power: one per cent of the acceleration
@@ -30,7 +33,7 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
     blocks = before.explanation.blocks, after.explanation.blocks
     if blocks[0] is None or blocks[1] is None:
         return False
-    found = find_most_lowered(*blocks, known.signature if known else None)
+    found = find_most_lowered(*blocks, known.signature if known else None, _axes(bench, effect))
     if found is None or found.removed < SEEN:
         return False
     chart(
@@ -44,6 +47,12 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
         "other effects found."
     )
     return True
+
+
+def _axes(bench: Workbench, effect: str) -> Collection[str]:
+    """Axes on which an effect acts: those of its values, if they are of axes."""
+    fitted = bench.draft.fitted[effect].parameters if effect in bench.draft.fitted else ()
+    return [axis for axis in AXES if axis in fitted] or AXES
 
 
 def _name(found: Lowered) -> str:

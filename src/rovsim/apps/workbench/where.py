@@ -16,11 +16,12 @@ from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.reporting.charts import chart_bins
+from rovsim.reporting.figures.palette import BLUE
 from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.results.error_conditions import ConditionFinding, ConditionTable
 
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"
-BLUE, GREY = "#0072B2", "#bdbdbd"
+FAINT = "#bdbdbd"
 ERRORS = "from two standard errors below to above"
 FIRST = 4  # sentences that are not folded away
 
@@ -149,7 +150,7 @@ def _span(found: Table, k: int) -> str:
 def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> Options:
     """Means of the bins with two standard errors, from where.json; grey: seen too rarely."""
     curve = chart_bins(found)
-    colors = [BLUE if yes else GREY for yes in curve.judged]
+    colors = [BLUE if yes else FAINT for yes in curve.judged]
     centers = [f"{c:.2g}".replace("-", "−") for c in curve.center]
     low, high = curve.mean - curve.error, curve.mean + curve.error
     whiskers = [[k, *ends] for k, ends in enumerate(np.stack([low, high], axis=1).tolist())]
@@ -196,7 +197,7 @@ def samples_chart(time, error, inside, run: str, axis: str) -> Options:
                   "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
                   "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
         "series": [
-            {"type": "scatter", "name": "other", "symbolSize": 4, "itemStyle": {"color": GREY},
+            {"type": "scatter", "name": "other", "symbolSize": 4, "itemStyle": {"color": FAINT},
              "data": pairs[~inside].tolist()},
             {"type": "scatter", "name": "in the bin", "symbolSize": 9,
              "itemStyle": {"color": MARK, "borderColor": "#ffffff"},

@@ -5,22 +5,32 @@ from typing import Mapping, Sequence
 from matplotlib.figure import Figure
 
 from rovsim.reporting.figures.legends import legend, plain_log
+from rovsim.reporting.figures.palette import (
+    BLACK,
+    BLUE,
+    BROWN,
+    GREEN,
+    OLIVE,
+    PURPLE,
+    SKY,
+    VERMILION,
+)
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.results.timing import Accuracy, Bench, Latency
 
-# One colour for us, the Okabe-Ito colours for the libraries
+# One colour for us, others for the libraries
 SIZES = {
     "neighbours, k = 5": {
-        "knn": "#0072B2", "pykdtree_knn": "#009E73", "scipy_knn": "#E69F00",
-        "sklearn_knn": "#D55E00",
+        "knn": BLUE, "pykdtree_knn": GREEN, "scipy_knn": BROWN,
+        "sklearn_knn": VERMILION,
     },
     "Gaussian process, one kernel": {
-        "gp_mean": "#0072B2", "gp_faded": "#56B4E9", "gp_variance": "#000000",
-        "numpy_gp_mean": "#009E73", "sklearn_gp_mean": "#E69F00", "gpytorch_mean": "#CC79A7",
-        "gpytorch_love": "#F0E442", "gpytorch_variance": "#D55E00",
+        "gp_mean": BLUE, "gp_faded": SKY, "gp_variance": BLACK,
+        "numpy_gp_mean": GREEN, "sklearn_gp_mean": BROWN, "gpytorch_mean": PURPLE,
+        "gpytorch_love": OLIVE, "gpytorch_variance": VERMILION,
     },
 }  # fmt: skip
-COLORS = {"knn": "#D55E00", "gp": "#0072B2", "gp_six_kernels": "#009E73", "svgp": "#CC79A7"}
+COLORS = {"knn": VERMILION, "gp": BLUE, "gp_six_kernels": GREEN, "svgp": PURPLE}
 
 
 @styled()

@@ -26,7 +26,7 @@ from typing import Any, ClassVar, Literal, Mapping, Protocol
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.rotations import Rigid
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.body import Body
@@ -74,11 +74,8 @@ class Effect(ABC):
         known = [p.name for p in self.parameters]
         for name in values:
             if name not in known:
-                raise BadInput(
-                    f"unknown parameter '{name}'",
-                    where=f"effect {self.id}",
-                    expected=f"one of {', '.join(known)}",
-                    remedy=nearest(name, known),
+                raise unlisted(
+                    name, known, found=f"unknown parameter '{name}'", where=f"effect {self.id}"
                 )
         numbers = [
             self._checked(p, values[p.name]) if p.name in values else p.default

@@ -1,7 +1,7 @@
 """What a change of the model does to its error, over the condition that shows such a change."""
 
 from dataclasses import dataclass
-from typing import Iterator, Sequence
+from typing import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -34,7 +34,9 @@ class Lowered:
     removed: float
 
 
-def find_most_lowered(before: Blocks, after: Blocks, shown: Signature | None) -> Lowered | None:
+def find_most_lowered(
+    before: Blocks, after: Blocks, shown: Signature | None, axes: Collection[str] = AXES
+) -> Lowered | None:
     """Where the error fell most, of what an effect declares to show it; None where it fell nowhere.
 
     Without a declaration, or where its condition was not measured, any condition will do. Of
@@ -44,12 +46,14 @@ def find_most_lowered(before: Blocks, after: Blocks, shown: Signature | None) ->
         before: blocks of the model that lacks the effect.
         after: the same blocks of the model that has it.
         shown: over what the effect shows.
+        axes: those on which it acts.
     """
     if len(before.time) < 2 or not np.array_equal(before.time, after.time):
         return None
     found = [
         one
         for axis, conditions in _list_choices(before, shown)
+        if axis in axes
         for one in _compare(before, after, axis, conditions, shown is not None and shown.size)
     ]
     most = max((one.removed for one in found), default=0.0)

@@ -9,7 +9,7 @@ from typing import Callable, Mapping, Sequence, TypeVar
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, nearest, unlisted
 from rovsim.core.rotations import normalized
 from rovsim.core.run import CommandKind, Logged
 from rovsim.measurement.campaign_file import CommandLog, Mocap
@@ -131,12 +131,7 @@ def reader_of(name: str, readers: dict[str, R], where: object) -> R:
     """
     if name in readers:
         return readers[name]
-    raise BadInput(
-        f"the format '{name}' is not known",
-        where=where,
-        expected=f"one of {', '.join(sorted(readers))}",
-        remedy=nearest(name, readers),
-    )
+    raise unlisted(name, sorted(readers), found=f"the format '{name}' is not known", where=where)
 
 
 def finite_rows(*arrays: Array) -> Array:

@@ -6,7 +6,7 @@ from pathlib import Path
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import unlisted
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
@@ -99,9 +99,6 @@ def found(name: str, missing: Blocks) -> tuple[Condition, Array]:
     known = {c.name: (c, x) for c, x in list_shown_conditions(missing).items()}
     if name in known:
         return known[name]
-    raise BadInput(
-        f"unknown condition '{name}'",
-        where="the signature of an effect",
-        expected=f"one of {', '.join(known)}",
-        remedy=nearest(name, known),
+    raise unlisted(
+        name, known, found=f"unknown condition '{name}'", where="the signature of an effect"
     )

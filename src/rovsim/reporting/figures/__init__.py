@@ -20,7 +20,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import unlisted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,12 +61,7 @@ def kind(name: str) -> Kind:
     """
     known = kinds()
     if name not in known:
-        raise BadInput(
-            f"there is no figure '{name}'",
-            where="figures",
-            expected=f"one of {', '.join(known)}",
-            remedy=nearest(name, known),
-        )
+        raise unlisted(name, known, found=f"there is no figure '{name}'", where="figures")
     return known[name]
 
 

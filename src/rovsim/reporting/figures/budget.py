@@ -8,7 +8,17 @@ from numpy import ndarray as Array
 
 from rovsim.evaluation.budget import Budget
 from rovsim.reporting.figures.legends import legend, lines, note
-from rovsim.reporting.figures.palette import Look
+from rovsim.reporting.figures.palette import (
+    BLACK,
+    BLUE,
+    BROWN,
+    GREEN,
+    GREY,
+    PURPLE,
+    SKY,
+    VERMILION,
+    Look,
+)
 from rovsim.reporting.figures.panels import SHARED, plot_all, share_scales, six_panels
 from rovsim.reporting.figures.series import excerpt
 from rovsim.reporting.figures.style import styled
@@ -25,14 +35,14 @@ SHOWN = 7  # parts drawn
 LENGTH = 20.0  # s: forces change faster than velocities
 SMOOTH = 0.5  # s: the missing force is twice differentiated noise before
 KNOWN = {
-    "thrusters": Look("#0072B2", "-"),
-    "quadratic damping": Look("#D55E00", (0, (4, 1.5))),
-    "linear damping": Look("#E69F00", (0, (2, 0.8))),
-    "weight and buoyancy": Look("#009E73", (0, (6, 1, 1, 1))),
-    "Coriolis": Look("#999999", (0, (1, 1.2))),
-    "added-mass Coriolis": Look("#999999", (0, (5, 2))),
+    "thrusters": Look(BLUE, "-"),
+    "quadratic damping": Look(VERMILION, (0, (4, 1.5))),
+    "linear damping": Look(BROWN, (0, (2, 0.8))),
+    "weight and buoyancy": Look(GREEN, (0, (6, 1, 1, 1))),
+    "Coriolis": Look(GREY, (0, (1, 1.2))),
+    "added-mass Coriolis": Look(GREY, (0, (5, 2))),
 }
-ADDED = (Look("#CC79A7", "-"), Look("#56B4E9", "-"), Look("#CC79A7", (0, (4, 1.5))))
+ADDED = (Look(PURPLE, "-"), Look(SKY, "-"), Look(PURPLE, (0, (4, 1.5))))
 
 
 @styled()
@@ -44,7 +54,7 @@ def draw(*, budget: Budget) -> Figure:
     curves = {"missing": _smoothed(time, missing), **{n: parts[n] for n in names}}
     curves = {n: np.where(known[:, None], v, np.nan) for n, v in curves.items()}
     at = excerpt(time, np.where(known[:, None], parts.get("thrusters", missing), np.nan), LENGTH)
-    style = {"missing": Look("#000000", "-", width=1.5), **_looks(names)}
+    style = {"missing": Look(BLACK, "-", width=1.5), **_looks(names)}
     figure, axes = six_panels(FORCE, FORCE_UNITS)
     drawn = {n: v[at] for n, v in curves.items()}
     remarks = plot_all(axes, time[at], _common(drawn), style)

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 
 from rovsim import AXES
 from rovsim.reporting.figures.legends import legend, note, nothing
-from rovsim.reporting.figures.palette import Style
+from rovsim.reporting.figures.palette import VERMILION, Style
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short, significant
 from rovsim.results.quality import Excitation, Quality
@@ -20,7 +20,7 @@ CAPTION = (
     "cannot be judged), and the stretches in which the motion capture lost the vehicle."
 )
 MOST = 40  # runs: what fits on a page
-EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", "#D55E00"
+EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", VERMILION
 
 
 @styled()

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rovsim.reporting.figures.legends import legend, nothing, plain_log
+from rovsim.reporting.figures.palette import BLUE, VERMILION
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import title
 from rovsim.results.timing import RATES, BothWays, Latency, Timing
@@ -16,7 +17,7 @@ CAPTION = (
     "Time of one prediction, one call at a time after warm-up: median, 99th and 99.9th percentile "
     "of the library's own call and of the exported predictor, against the periods of control loops."
 )
-WAYS = {"library": ("#D55E00", 0.17), "exported": ("#0072B2", -0.17)}
+WAYS = {"library": (VERMILION, 0.17), "exported": (BLUE, -0.17)}
 MARKERS = {"median_us": ("o", "median"), "p99_us": ("|", "p99"), "p999_us": (">", "p99.9")}
 
 

@@ -1,8 +1,8 @@
-"""What each model looks like in every figure: one colour and one line style per family.
+"""Colours of every figure, and what each model looks like: one colour and line style per family.
 
-Colours: Okabe and Ito, "Color Universal Design" (2008), told apart by colour-blind readers. That of
-effects is their orange made darker: as it is, it has 2.3:1 on white, and a little darker it looks
-like their vermilion to many.
+Colours: Okabe and Ito, "Color Universal Design" (2008), told apart by colour-blind readers. Brown,
+sky and olive are their orange, sky blue and yellow made darker: as they are, they have 2.3:1, 2.3:1
+and 1.3:1 on white, and an orange that is only a little darker looks like their vermilion to many.
 """
 
 import re
@@ -15,6 +15,9 @@ Style = dict[str, Any]  # keyword arguments of a Matplotlib artist
 
 SHADE = 0.25  # of an area: what lies behind it can still be read
 LEAST = 3.0  # contrast on white of all that is drawn (WCAG 2.1, criterion 1.4.11)
+BLACK, GREY = "#000000", "#949494"
+BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
+BROWN, SKY, OLIVE = "#7A2E00", "#3A93CE", "#8C7A00"
 STEP = 0.05  # of lightness, until a colour has that
 
 
@@ -42,13 +45,13 @@ class Look:
 
 
 FAMILIES = {
-    "measured": Look("#000000", "-", width=1.4),
-    "nominal": Look("#D55E00", (0, (4, 1.5))),
-    "knn": Look("#0072B2", (0, (6, 1, 1, 1))),
-    "gp": Look("#009E73", (0, (2, 0.8))),
-    "svgp": Look("#CC79A7", (0, (3, 1, 1, 1, 1, 1))),
-    "effects": Look("#7A2E00", "-"),
-    "zero_acceleration": Look("#949494", (0, (1, 1.2))),
+    "measured": Look(BLACK, "-", width=1.4),
+    "nominal": Look(VERMILION, (0, (4, 1.5))),
+    "knn": Look(BLUE, (0, (6, 1, 1, 1))),
+    "gp": Look(GREEN, (0, (2, 0.8))),
+    "svgp": Look(PURPLE, (0, (3, 1, 1, 1, 1, 1))),
+    "effects": Look(BROWN, "-"),
+    "zero_acceleration": Look(GREY, (0, (1, 1.2))),
     "commanded": Look("#666666", "-"),
     "noise_floor": Look("#555555", (0, (8, 3))),
 }

@@ -10,9 +10,10 @@ from matplotlib.patches import Rectangle
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import HALF_TURN_X
+from rovsim.reporting.figures.palette import GREY, VERMILION
 from rovsim.reporting.figures.style import sheet, styled
 
-PATH, CHANCE = "#D55E00", "#999999"
+PATH, CHANCE = VERMILION, GREY
 ROOM = 0.3  # m shown around the paths where no wall is known
 
 

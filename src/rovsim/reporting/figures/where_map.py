@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 
 from rovsim.reporting.charts import chart_conditions
 from rovsim.reporting.figures.legends import note, nothing
+from rovsim.reporting.figures.palette import VERMILION
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import title
 from rovsim.results.error_conditions import ErrorConditions
@@ -48,5 +49,5 @@ def _cell(axes, x: int, y: int, share: float, found: bool) -> None:
     color = "white" if share > 0.6 else "#222222"
     axes.text(x, y, text, ha="center", va="center", fontsize=7.5, color=color)
     if found:
-        frame = {"facecolor": "none", "edgecolor": "#D55E00", "linewidth": 1.6}
+        frame = {"facecolor": "none", "edgecolor": VERMILION, "linewidth": 1.6}
         axes.bar(x, 0.86, 0.95, y - 0.43, **frame)

@@ -18,7 +18,7 @@ from typing import Callable, Sequence
 
 from rovsim.application.export.equation import Equation
 from rovsim.application.export.holding import Hold, Left
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import unlisted
 from rovsim.dynamics.model import Model
 
 
@@ -57,9 +57,4 @@ def target(name: str) -> Target:
     known = targets()
     if name in known:
         return known[name]
-    raise BadInput(
-        f"unknown simulator '{name}'",
-        where="to",
-        expected=f"one of {', '.join(known)}",
-        remedy=nearest(name, known),
-    )
+    raise unlisted(name, known, found=f"unknown simulator '{name}'", where="to")
