@@ -1,12 +1,14 @@
 """What the ladder and the conditions of error show: decided here, drawn on paper and on screen."""
 
 from dataclasses import dataclass
+from typing import Mapping
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.reporting.figures.palette import Look, looks
+from rovsim.evaluation.error_conditions.conditions import THROUGHOUT
+from rovsim.reporting.figures.palette import FAMILIES, Look, family
 from rovsim.reporting.wording import title
 from rovsim.results.base import or_nan
 from rovsim.results.error_conditions import ConditionTable, ModelConditions
@@ -17,7 +19,7 @@ NAME = 28  # letters of a step's name
 
 @dataclass(frozen=True)
 class LadderBar:
-    """One step: its name as shown, its `windows_2s` (NaN if unknown), what it looks like."""
+    """One step: its name as shown, its `windows_2s` (NaN if unknown), the look of its kind."""
 
     model: str
     label: str
@@ -35,9 +37,8 @@ class LadderChart:
 
 def chart_ladder(ladder: Ladder) -> LadderChart:
     """The bars of a ladder."""
-    style = looks(step.model for step in ladder.models)
     bars = tuple(
-        LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), style[s.model])
+        LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), FAMILIES[family(s.model)])
         for s in ladder.models
     )
     return LadderChart(bars, or_nan(ladder.noise_floor))
@@ -47,7 +48,8 @@ def chart_ladder(ladder: Ladder) -> LadderChart:
 class ConditionMap:
     """Share (c, a) of the squared error of each of a axes that varies with each of c conditions.
 
-    Conditions that explain most come first; `found` pairs of axis and condition beyond chance.
+    What is constant is the share of `throughout` alone. Conditions that explain most come first;
+    `found` pairs of axis and condition beyond chance.
     """
 
     axes: tuple[str, ...]
@@ -59,14 +61,27 @@ class ConditionMap:
 def chart_conditions(model: ModelConditions, most: int | None = None) -> ConditionMap:
     """The map of one model; `most` conditions, or all."""
     axes = tuple(axis for axis in AXES if model.axes.get(axis))
+    known = {axis: find_varying_shares(model.axes[axis]) for axis in axes}
     best = {
-        name: max(model.axes[axis][name].share_of_error for axis in axes)
-        for name in (model.axes[axes[0]] if axes else ())
+        name: max(known[axis][name] for axis in axes) for name in (known[axes[0]] if axes else ())
     }
     conditions = tuple(sorted(best, key=lambda name: -best[name])[:most])
-    share = [[model.axes[axis][name].share_of_error for axis in axes] for name in conditions]
+    share = [[known[axis][name] for axis in axes] for name in conditions]
     found = frozenset((one.axis, one.condition) for one in model.findings)
     return ConditionMap(axes, conditions, np.reshape(share, (len(conditions), len(axes))), found)
+
+
+def find_varying_shares(tables: Mapping[str, ConditionTable]) -> dict[str, float]:
+    """Share of one axis' squared error that varies with each condition, without what is constant.
+
+    The mean square of bins holds that of a constant error, whatever the condition: a vehicle that
+    is too light errs at every speed and depth. `throughout` has it alone.
+    """
+    constant = tables[THROUGHOUT].share_of_error if THROUGHOUT in tables else 0.0
+    return {
+        name: one.share_of_error if name == THROUGHOUT else max(one.share_of_error - constant, 0.0)
+        for name, one in tables.items()
+    }
 
 
 @dataclass(frozen=True, eq=False)

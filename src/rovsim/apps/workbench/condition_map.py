@@ -32,8 +32,8 @@ class FieldMap:
         if not self.shown.axes:
             return
         text(
-            "Darker: more of that axis' squared error. Click a field to see its bins; or use the "
-            "arrow keys, and Enter.", "soft",
+            "Darker: more of that axis' squared error. A constant error is in the row throughout "
+            "alone. Click a field to see its bins; or use the arrow keys, and Enter.", "soft",
         )  # fmt: skip
         self.at = (0, 0)
         self.chart = chart(

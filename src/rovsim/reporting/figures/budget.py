@@ -29,7 +29,7 @@ SECTION = "where"
 CAPTION = (
     "Forces and moments of the model's parts at the measured states, and the force that is missing "
     "(M a_res, black). Where a part looks like the missing force, turned over or not, the model "
-    "has too much or too little of it. Smaller parts are left out."
+    "has too much or too little of it."
 )
 SHOWN = 7  # parts drawn
 LENGTH = 20.0  # s: forces change faster than velocities

@@ -102,7 +102,7 @@ def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Dist
     strong = _list_strong(run, force)
     axes.plot(
         [p.place_m[0] for p in strong], [p.place_m[1] for p in strong], "o", fillstyle="none",
-        color=FAMILIES["nominal"].color, markersize=8, zorder=3,
+        color=FAMILIES["nominal"].color, markersize=8, zorder=3, clip_on=False,
     )  # fmt: skip
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x (m)")
@@ -121,7 +121,7 @@ def _draw_time(axes: Any, run: ForceOfRun, i: int, most: float, force: Disturban
     strong = [p for p in _list_strong(run, force) if p.axis == AXES[i]]
     axes.plot(
         [p.time_s for p in strong], [p.force for p in strong], "o", fillstyle="none",
-        color=FAMILIES["nominal"].color, markersize=8,
+        color=FAMILIES["nominal"].color, markersize=8, clip_on=False,
     )  # fmt: skip
     axes.set_ylim(-1.1 * most, 1.1 * most)
     axes.set_ylabel(f"{AXES[i]} ({FORCE_UNITS[i]})")

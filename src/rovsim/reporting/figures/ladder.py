@@ -15,7 +15,10 @@ from rovsim.reporting.wording import ERROR, LADDER, STEP, significant, title
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 
 SECTION = "ladder"
-CAPTION = "The 2 s error of each model on runs none of them was fitted to. Lower is better."
+CAPTION = (
+    "The 2 s error of each model on runs none of them was fitted to. Lower is better. Colours are "
+    "those of kinds of models: nominal, effects, each kind of residual."
+)
 ROOM = 1.14  # for the values behind the bars
 BASELINE = "zero_acceleration"
 FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the models can be told apart

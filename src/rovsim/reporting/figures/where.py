@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rovsim import AXES
-from rovsim.reporting.charts import BinCurve, chart_bins
+from rovsim.reporting.charts import BinCurve, chart_bins, find_varying_shares
 from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import Look, looks
 from rovsim.reporting.figures.style import sheet, styled
@@ -39,8 +39,11 @@ def draw(*, where: ErrorConditions) -> Figure:
         known = {f.condition for m in models.values() for f in m.findings if f.axis == axis}
         for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
             _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
-            title = _title(name, [t[name] for t in tables.values() if name in t]) if name else ""
-            panel.set_title(title, fontsize=7.5, weight="bold" if name in known else "normal")
+            panel.set_title(
+                _title(name, list(tables.values())),
+                fontsize=7.5,
+                weight="bold" if name in known else "normal",
+            )
         panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[AXES.index(axis)]})")
         panels[0].locator_params(axis="y", nbins=4)
     figure.align_ylabels(list(rows[:, 0]))
@@ -53,16 +56,20 @@ def strongest(models: Sequence[Mapping[str, ConditionTable]]) -> list[str]:
     """Names of the conditions with more than one bin that explain most, the best first."""
     known: dict[str, float] = {}
     for tables in models:
-        for name, table in tables.items():
-            if len(table.mean) > 1:
-                known[name] = max(known.get(name, 0.0), table.share_of_error)
+        for name, share in find_varying_shares(tables).items():
+            if len(tables[name].mean) > 1:
+                known[name] = max(known.get(name, 0.0), share)
     return sorted(known, key=lambda name: -known[name])[:COLUMNS]
 
 
-def _title(name: str, tables: Sequence[ConditionTable]) -> str:
-    shares = ", ".join(f"{100 * t.share_of_error:.0f}" for t in tables)
-    name = name.replace("distance to the nearest", "distance to")
-    return f"{name} ({chart_bins(tables[0]).unit}): {shares} %"
+def _title(name: str, models: Sequence[Mapping[str, ConditionTable]]) -> str:
+    """Name and unit of a condition, and the shares that it explains, model by model."""
+    known = [tables for tables in models if name in tables]
+    if not known:
+        return ""
+    shares = ", ".join(f"{100 * find_varying_shares(tables)[name]:.0f}" for tables in known)
+    shown = name.replace("distance to the nearest", "distance to")
+    return f"{shown} ({chart_bins(known[0][name]).unit}): {shares} %"
 
 
 def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str, Look]) -> None:
@@ -111,5 +118,5 @@ def _remarks(models: Mapping[str, ModelConditions]) -> Sequence[str]:
     return [
         f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(told)}.",
         "Percent: share of the squared error that varies with the condition, model "
-        "by model; bold: beyond chance.",
+        "by model, a constant error taken out; bold: beyond chance.",
     ]

@@ -14,7 +14,8 @@ SECTION = "where"
 CAPTION = (
     "Share of the squared acceleration error, in percent, that each condition explains on each "
     "axis, for the last model. Framed: the conditions that were found to explain it; what varied "
-    "together with them is high as well."
+    'together with them is high as well. An error that is constant is in the row "throughout" and '
+    "taken out of the others."
 )
 BLUES = LinearSegmentedColormap.from_list("shares", ["#ffffff", "#0072B2"])
 

@@ -65,6 +65,7 @@ def render(report: Report) -> str:
         .get_template("report.html")
         .render(
             campaign=report.campaign,
+            subtitle=_subtitle(data),
             made=report.made,
             verdict=explain(data.diagnosis, report.catalogue) if data.diagnosis else None,
             summary=summarize(data),
@@ -83,6 +84,15 @@ def render(report: Report) -> str:
             provenance=list_rows(report.provenance),
         )
     )
+
+
+def _subtitle(data: ReportData) -> str:
+    """What the report is about: that of `compare`, of `diagnose`, or of a study."""
+    if data.diagnosis is None:
+        return "How far the models are from the measurement, and where"
+    if data.comparison is None:
+        return "Which physics the simulator lacks, and how sure that is"
+    return "How far the simulator is from the measurement, and what brings it closer"
 
 
 def _environment() -> Environment:

@@ -1,4 +1,4 @@
-"""Open the workbench: the four questions in the browser.
+"""Open the workbench in the browser: how far apart, where, why, and is the new model better?
 
 rovsim ui [campaign=DIR] [model=[nominal,FILE,…]] [diagnosis=OUT/diagnosis.json] [port=8501]
           [open=true]
