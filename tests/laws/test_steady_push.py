@@ -6,7 +6,7 @@ import pytest
 from flown import observed
 from rovsim.design.doubts import doubt
 from rovsim.design.flight import draw_chances
-from rovsim.design.knowledge import learn
+from rovsim.design.from_train_runs import learn
 from rovsim.design.settings import Question
 from rovsim.design.steady_push import SteadyPush
 from rovsim.diagnosis.observer.noise import Noise

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.design.doubts import require_news
-from rovsim.design.knowledge import Knowledge, Known, _check_fitted, widen
+from rovsim.design.from_train_runs import _check_fitted, widen
+from rovsim.design.knowledge import Knowledge, Known
 from rovsim.design.worth import NOTHING, Worth, _told, surprise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.damping import LinearDamping

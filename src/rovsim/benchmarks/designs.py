@@ -20,7 +20,8 @@ from rovsim.application.settings import Settings, compose
 from rovsim.benchmarks.blind.case import Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
 from rovsim.core.files import read_json, write_json, write_text
-from rovsim.design.knowledge import Knowledge, learn
+from rovsim.design.from_train_runs import learn
+from rovsim.design.knowledge import Knowledge
 from rovsim.design.plan import Plan, plan
 from rovsim.design.report import describe_start, report
 from rovsim.design.search import Tried

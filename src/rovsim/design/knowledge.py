@@ -1,29 +1,18 @@
-"""What the train runs already tell: one hypothesis, or two rivals, fitted to them."""
+"""What the train runs already tell: one hypothesis, or two rivals, as they leave them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.errors import BadInput, nearest
-from rovsim.design.settings import Question
 from rovsim.design.steady_push import SteadyPush, measure_push
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.kalman import AxisMotion
-from rovsim.diagnosis.observer.least_squares import inner_products, solve
-from rovsim.diagnosis.observer.noise import FIRST_NOISE, Noise
+from rovsim.diagnosis.observer.least_squares import solve
+from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.candidates import Candidate, list_candidates
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit, polish
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
-from rovsim.diagnosis.settings import SearchSettings
-from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Effect
+from rovsim.diagnosis.selection.gauss_newton import REACH
 from rovsim.dynamics.model import Model
 
 RULED_OUT = 1000.0  # to one: a rival with longer odds against it need not be told apart
@@ -126,180 +115,3 @@ class Knowledge:
         """Which rivals (r,) the train runs leave possible; without rivals the one hypothesis."""
         found = np.array([rival.likelihood for rival in self.rivals])
         return found > np.max(found) - 2.0 * np.log(RULED_OUT)
-
-
-def learn(
-    model: Model, runs: Sequence[ObservedRun], question: Question, catalogue: Catalogue
-) -> Knowledge:
-    """Fit what is asked about, and what the model file says was fitted, to the train runs.
-
-    Args:
-        model: what is known so far.
-        runs: the train runs, with something to observe.
-        question: two rivals, and parameters to be known.
-        catalogue: all effects.
-
-    Raises:
-        BadInput: an effect or parameter that is unknown, or that these recordings cannot show.
-    """
-    known = catalogue.on(model.vehicle)
-    asked = {name.partition(".")[0] for name in question.know}
-    candidates = list_candidates(runs, catalogue, model.vehicle)
-    for name in (*question.between, *sorted(asked)):
-        _check_shown(known.find(name).id, candidates)
-    start = separate(model)
-    for name in question.know:
-        start = _free(start, name, runs, candidates)
-    if not question.between and not len(start.x):
-        raise _nothing_asked(model)
-    if not question.between:
-        found, bank = _fit(start, runs)
-        wanted = [n for n in start.parameter_names if not question.know or n in question.know]
-        one = _know(found, bank, wanted)
-        return Knowledge(tuple(runs), (), (one,), found.noise, bank.motions)
-    return _learn_rivals(start, runs, question, candidates)
-
-
-def _nothing_asked(model: Model) -> BadInput:
-    return BadInput(
-        f"nothing is asked, and {model.name} has no fitted value that could be made surer",
-        where="rovsim design",
-        expected="between=[a,b] or know=[effect.parameter], or a model of `rovsim add`",
-        remedy="Name two effects that could not be told apart, or a value to be known better.",
-    )
-
-
-def _check_shown(name: str, candidates: Sequence[Candidate]) -> None:
-    if any(one.effect.id == name for one in candidates):
-        return
-    raise BadInput(
-        f"{name} cannot show in recordings like these",
-        where="rovsim design",
-        expected="an effect through which this vehicle acts, seen by channels that are recorded",
-        remedy=f"Ask about one of {', '.join(dict.fromkeys(c.effect.id for c in candidates))}.",
-    )
-
-
-def _check_fitted(name: str, effect: type[Effect]) -> None:
-    """Whether a parameter, `effect.parameter`, can have a standard deviation at all."""
-    parameter = name.partition(".")[2]
-    names = [p.name for p in effect.parameters if not p.tried]
-    able = f"{effect.id}. and one of {', '.join(names)}" if names else "a value that can be fitted"
-    if parameter in names:
-        return
-    tried = any(p.name == parameter for p in effect.parameters)
-    raise BadInput(
-        f"{parameter} is tried, not fitted" if tried else f"unknown parameter '{parameter}'",
-        where=f"know, effect {effect.id}",
-        expected=able,
-        remedy=f"Ask between=[{effect.id},…]." if tried else nearest(parameter, names),
-    )
-
-
-def separate(model: Model) -> Hypothesis:
-    """A model as a hypothesis in which all is free that its file says was fitted."""
-    fitted = [one for one in model.added if one.std]
-    kept = tuple(one for one in model.effects if one not in fitted)
-    return Hypothesis(model.with_effects(kept), tuple(Term(one, tuple(one.std)) for one in fitted))
-
-
-def _free(
-    h: Hypothesis, name: str, runs: Sequence[ObservedRun], candidates: Sequence[Candidate]
-) -> Hypothesis:
-    """With that parameter free as well, at the likeliest of the effect's starts."""
-    effect, _, parameter = name.partition(".")
-    _check_fitted(name, next(c for c in candidates if c.effect.id == effect).effect)
-    own = next((t for t in h.terms if t.id == effect), None)
-    if own is not None:
-        free = own.free if parameter in own.free else (*own.free, parameter)
-        terms = tuple(replace(t, free=free) if t is own else t for t in h.terms)
-        return replace(h, terms=terms)
-    given = next((e for e in h.base.added if e.id == effect), None)
-    if given is not None:
-        return _without(h, effect).with_term(Term(given, (parameter,)))
-    starts = [c.start for c in candidates if c.effect.id == effect]
-    tried = [h.with_term(Term(start, (parameter,))) for start in starts]
-    if len(tried) == 1:
-        return tried[0]
-    fits = [_fit(one, runs)[0] for one in tried]
-    return max(fits, key=lambda one: one.likelihood).hypothesis
-
-
-def _without(h: Hypothesis, *names: str) -> Hypothesis:
-    """Without what was added of these effects, fitted or not."""
-    nominal = h.base.vehicle.effects()
-    kept = [e for e in h.base.effects[len(nominal) :] if e.id not in names]
-    base = h.base.with_effects((*h.base.effects[: len(nominal)], *kept))
-    return Hypothesis(base, tuple(t for t in h.terms if t.id not in names))
-
-
-def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
-    bank = FilterBank.design(runs, h.model, FIRST_NOISE)
-    noise, _ = bank.fit_noise(bank.innovations(h.model), FIRST_NOISE)
-    found = fit(h, bank.redesign(h.model, noise), noise, REACH)
-    if not np.isfinite(found.likelihood):
-        raise BadInput(
-            "the train runs drive the model away from all numbers",
-            where=f"model {h.base.name}",
-            expected="a model that can follow the recordings",
-            remedy="Diagnose the campaign first, and design with the model of `rovsim add`.",
-        )
-    return polish(found, runs, REACH)
-
-
-def _know(
-    found: Fit, bank: FilterBank, wanted: Sequence[str], price: float = 0.0,
-    widest: Hypothesis | None = None,
-) -> Known:  # fmt: skip
-    names = found.hypothesis.parameter_names
-    chosen = np.array([names.index(name) for name in wanted], int)
-    paid = price * sum(term.choices for term in found.hypothesis.terms)
-    likelihood, taking_up = found.likelihood - paid, found.hypothesis
-    information = held = inner_products(bank.flatten(found.seen.J, found.noise))
-    if widest is not None:
-        seen = bank.linearise(widest)
-        if seen.finite:  # else it cannot move with what nobody needs free
-            taking_up, held = widest, inner_products(bank.flatten(seen.J, found.noise))
-    return Known(found.hypothesis, information, chosen, likelihood, taking_up, held)
-
-
-def _learn_rivals(
-    start: Hypothesis, runs: Sequence[ObservedRun], question: Question,
-    candidates: Sequence[Candidate],
-) -> Knowledge:  # fmt: skip
-    """Each rival fitted in the other's absence, beside all else."""
-    rest, fits, price = _without(start, *question.between), [], 0.0
-    for name in question.between:
-        given = next((t for t in start.terms if t.id == name), None)
-        own = [c for c in candidates if c.effect.id == name]
-        term, price = (given, price) if given else _propose(rest, runs, own)
-        fits.append(_fit(rest.with_term(term), runs))
-    price = max(price, 2.0 * float(np.log(len(candidates))))
-    rivals = []
-    for name, (found, bank) in zip(question.between, fits, strict=True):
-        names = found.hypothesis.parameter_names
-        wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
-        rivals.append(_know(found, bank, wanted, price, widen(found.hypothesis, name)))
-    best, bank = max(fits, key=lambda one: one[0].likelihood)
-    asked = tuple(question.between)
-    return Knowledge(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
-
-
-def widen(h: Hypothesis, effect: str) -> Hypothesis:
-    """With all free that an effect can change from where it is: the train runs chose of these."""
-
-    def widened(term: Term) -> Term:
-        able = term.effect.free_at(term.effect.given())
-        return replace(term, free=tuple(dict.fromkeys((*term.free, *able))))
-
-    return replace(h, terms=tuple(widened(t) if t.id == effect else t for t in h.terms))
-
-
-def _propose(
-    h: Hypothesis, runs: Sequence[ObservedRun], own: Sequence[Candidate]
-) -> tuple[Term, float]:
-    """The start and the free parameters of an effect that promise most, and their price."""
-    found, bank = _fit(h, runs)
-    seen = linearise_candidates(bank, found.hypothesis, own)
-    workspace = SearchWorkspace(WhiteColumns(bank, seen, found.noise), SearchSettings())
-    return workspace.propose(found)[0].term, workspace.price

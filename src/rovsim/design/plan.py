@@ -12,7 +12,8 @@ from rovsim.core.run import Site
 from rovsim.design.authority import Authority
 from rovsim.design.doubts import doubt, no_flight, require_news, warn_of_walls
 from rovsim.design.flight import Chances, Envelope, draw_chances, predict
-from rovsim.design.knowledge import Knowledge, learn
+from rovsim.design.from_train_runs import learn
+from rovsim.design.knowledge import Knowledge
 from rovsim.design.pilot import ModelPilot
 from rovsim.design.search import Range, Tried, search, try_usual
 from rovsim.design.settings import Question

@@ -5,8 +5,10 @@ rovsim init FILE… out=DIR [force=true]
 FILE: exports of QTM or Motive, C3D, ROS 2 bags, ArduPilot logs, csv files, logs of commands, or
 folders of them. DIR (default: the folder of the files) gets campaign.yaml; the recordings stay
 where they are. What cannot be found out is marked ANSWER, with the possible answers above it; what
-was guessed (`control: 3dof` or `6dof`, which runs are test runs) is marked CHECK. An existing
-campaign.yaml is replaced only with force=true. Then: rovsim ui campaign=DIR
+is a guess (such as `control`: 3dof where nothing turned, else 6dof) says so; CHECK at the top says
+what looks wrong. An existing campaign.yaml is replaced only with force=true.
+
+Then: rovsim ui campaign=DIR
 """
 
 import os
