@@ -349,3 +349,10 @@ def _quality(run: str, split: str, rng: Any) -> dict[str, Any]:
         "noise": {"position_m": 0.0012, "attitude_rad": 0.004}, "unusable": None,
         "remarks": ["The longest gap is 2.50 s; motion across it is not rebuilt."],
     }  # fmt: skip
+
+
+def a_lag():
+    """A diagnosis that selects a lag with a fitted value."""
+    lag = {"effect": "thruster_lag", "parameters": {"time_constant": {"value": 0.18, "std": 0.01}}}
+    content = diagnosis({"steps": []}) | {"selected": [lag], "ranking": []}
+    return Diagnosis.model_validate(content)

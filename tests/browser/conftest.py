@@ -94,7 +94,10 @@ def flight() -> Designed:
         instructions=("Put the vehicle where it starts.", "Send experiment.csv."),
     )  # fmt: skip
     time = np.linspace(0.0, 20.0, 101)
-    path = np.stack([5.0 + np.sin(time), -2.0 + 0.0 * time, -1.0 + 0.0 * time], axis=1)
+    turn = 0.2 * np.pi * time
+    path = np.stack(
+        [5.0 + 3.0 * np.sin(turn), -2.5 + 1.2 * np.sin(2.0 * turn), -1.5 + 0.5 * np.cos(turn)], 1
+    )
     tank = np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]])
     values = 1500.0 + 100.0 * np.sin(time)[:, None]
     picture = PlannedFlight(np.stack([path, path + 0.1]), tank, time, values, ("t1",), "µs")

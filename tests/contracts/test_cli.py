@@ -17,6 +17,7 @@ from rovsim.application.settings import compose
 from rovsim.apps.cli import main as cli
 from rovsim.apps.cli.main import listed, main, override, quoted
 from rovsim.core import extras
+from rovsim.core.errors import unlisted
 from rovsim.core.files import write_text
 from rovsim.core.shipped import conf_names, shipped
 from rovsim.core.yaml_files import read_yaml
@@ -234,6 +235,19 @@ def test_a_figure_that_another_process_drew_is_read_without_what_drew_it(tmp_pat
         "print(sorted({'matplotlib','jinja2','scipy','mlflow'} & set(sys.modules)))"
     )
     assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "[]"
+
+
+def test_names_that_are_listed_are_not_listed_again_as_a_remedy():
+    told = [str(unlisted(n, ["gz", "mss"], found=f"no '{n}'", where="to")) for n in ("?", "mas")]
+    assert told[0] == "to: no '?'. Expected one of gz, mss."
+    assert told[1] == "to: no 'mas'. Expected one of gz, mss. Did you mean 'mss'?"
+
+
+def test_a_base_that_is_called_as_what_is_trained_is_refused(campaign, tmp_path, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["train", f"campaign={campaign}", f"model={tmp_path / 'model.yaml'}", "residual=knn"])
+    assert ended.value.code == 2
+    assert "the base is called 'model'" in unfolded(capsys.readouterr().err)
 
 
 @pytest.mark.parametrize("words", [["--help"], ["diagnose", "--help"]])

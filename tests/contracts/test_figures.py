@@ -11,7 +11,9 @@ import pytest
 from matplotlib.patches import Rectangle
 
 from rovsim.core.errors import BadInput
+from rovsim.reporting.charts import chart_conditions, chart_ladder, find_varying_shares
 from rovsim.reporting.figures import SECTIONS, kind, kinds
+from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.series import averaged
 from rovsim.reporting.figures.style import save, styled
 from rovsim.reporting.report_data import ReportData, RunData, list_run_figures, list_study_figures
@@ -188,6 +190,39 @@ def test_curves_of_the_error_by_condition_are_the_bin_means():
     judged = np.array(table.judged)
     curve = max(panel.lines, key=lambda line: len(line.get_ydata()))
     assert list(curve.get_ydata()) == pytest.approx(np.array(table.mean)[judged].tolist())
+
+
+def test_a_model_alone_is_not_divided_by_itself():
+    comparison = study()["comparison"]
+    alone = comparison.model_copy(update={"models": {"nominal": comparison.models["nominal"]}})
+    labels = [
+        [axes.get_ylabel() for axes in kind("error_by_axis").draw(comparison=one).axes]
+        for one in (alone, comparison)
+    ]
+    assert [len(one) for one in labels] == [4, 8]
+    assert "error / nominal (–)" not in labels[0]
+
+
+def test_a_constant_error_is_in_its_own_row_and_varies_with_nothing():
+    """As a vehicle that is too light: it errs at every speed and depth."""
+    one = study()["where"].models["nominal"]
+    table = next(iter(one.axes["surge"].values()))
+    shares = {"throughout": 0.6, "surge speed": 0.62, "depth below the surface": 0.58}
+    tables = {n: table.model_copy(update={"share_of_error": v}) for n, v in shares.items()}
+    found = find_varying_shares(tables)
+    assert found == pytest.approx(
+        {"throughout": 0.6, "surge speed": 0.02, "depth below the surface": 0.0}
+    )
+    chart = chart_conditions(one.model_copy(update={"axes": {"heave": tables}}))
+    assert chart.conditions[0] == "throughout"
+    assert chart.share[:, 0].tolist() == pytest.approx([0.6, 0.02, 0.0])
+
+
+def test_bars_of_a_ladder_have_the_colour_of_their_kind_and_no_hatch():
+    bars = chart_ladder(study()["ladder"]).bars
+    assert {bar.look for bar in bars} <= set(FAMILIES.values())
+    looks = {bar.model: bar.look for bar in bars}
+    assert len({look for model, look in looks.items() if model.startswith("+")}) == 1
 
 
 def test_the_map_frames_the_findings():

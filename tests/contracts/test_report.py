@@ -57,6 +57,13 @@ def rendered(**results):
     return report.render(report.Report("x", ReportData(**results)))
 
 
+def test_a_report_says_what_it_is_about(content):
+    asked = ("comparison",), ("diagnosis",), ("comparison", "diagnosis")
+    pages = [rendered(**{name: content[name] for name in names}) for names in asked]
+    told = [re.search(r'class="subtitle">(.*?)<', page)[1] for page in pages]
+    assert len(set(told)) == 3
+
+
 def _rude(found):
     """A diagnosis whose texts would be markup, were they not escaped."""
     unexplained = found.unexplained.model_copy(update={"hint": "<script>alert(1)</script>"})

@@ -24,14 +24,15 @@ from rovsim.results.comparison import HORIZON, Comparison
 
 SECTION = "compare"
 CAPTION = (
-    "Velocity and acceleration error per axis and model: in physical units above, "
-    "divided by the nominal model's error below (1 = as good as nominal, lower is better). "
-    "Thin lines reach from the lowest to the highest run."
+    "Velocity and acceleration error per axis and model, in physical units; where there are "
+    "several models also, below, divided by the nominal model's error (1 = as good as nominal, "
+    "lower is better). Thin lines reach from the lowest to the highest run."
 )
 QUANTITIES = (
     ("velocity_rmse", "velocity RMSE", VELOCITY_UNITS),
     ("acceleration_rmse", "acceleration RMSE", ACCELERATION_UNITS),
 )
+HALVES = (slice(0, 3), slice(3, 6))
 TALLEST = 2.5  # times nominal; a higher bar is cut there and its value written above it
 
 
@@ -39,17 +40,19 @@ TALLEST = 2.5  # times nominal; a higher bar is cut there and its value written 
 def draw(*, comparison: Comparison, horizon: str = HORIZON, split: str = "test") -> Figure:
     """Draw `comparison.json` for one horizon ("2", "open_loop") and one split."""
     style = looks(comparison.models)
-    figure = sheet(205)
-    rows = figure.subplots(4, 2, height_ratios=[1, 1, 1, 1])
+    several = len(comparison.models) > 1  # one alone is always as good as itself
+    step = 2 if several else 1
+    figure = sheet(105 * step)
+    rows = figure.subplots(2 * step, 2)
     remarks = []
     for k, (quantity, label, units) in enumerate(QUANTITIES):
         errors = pool(comparison, quantity, horizon, split)
         ratios, ends = relate(errors), between_runs(comparison, quantity, horizon, split)
-        for half, axes in zip((slice(0, 3), slice(3, 6)), rows[2 * k], strict=True):
+        for half, axes in zip(HALVES, rows[step * k], strict=True):
             _bars(axes, errors[list(AXES[half])], style)
             _whiskers(axes, *(end[list(AXES[half])] for end in ends))
             axes.set_ylabel(f"{label} ({units[half][0]})")
-        for half, axes in zip((slice(0, 3), slice(3, 6)), rows[2 * k + 1], strict=True):
+        for half, axes in zip(HALVES, rows[step * k + 1], strict=True) if several else ():
             _bars(axes, ratios[list(AXES[half])], style)
             _against_nominal(axes, ratios[list(AXES[half])])
         remarks.append(name_gaps(errors))

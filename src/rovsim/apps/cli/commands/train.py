@@ -8,7 +8,8 @@ control=3dof,6dof; each combination has a folder of its own, in OUT if that is g
 extras rovsim[learn,tracking].
 """
 
-from typing import Mapping
+from pathlib import Path
+from typing import Mapping, Sequence
 
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
@@ -19,6 +20,7 @@ from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, TrackingSettings
 from rovsim.application.tracking import ranking, track
 from rovsim.apps.cli.output import choose_folder, say
+from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
@@ -30,6 +32,8 @@ from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
 from rovsim.results.quality import Quality
+
+FILE = Path("model.yaml")  # in the folder that is written
 
 
 class Settings(TrainingSettings, CampaignSettings):
@@ -45,11 +49,12 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     require("learn", "tracking", by="rovsim train")
     kind = settings.learner.kind
     name = f"{kind}_{settings.control}"
+    _check_name(settings.model)
     campaign = open_campaign(settings.campaign)
     out = choose_folder(settings, f"results/{campaign.name}/trained/{name}")
     data = measure(campaign, settings.signals)
     base = load_one_model(settings.model, data.vehicle, catalogue)
-    file, story = out / "model.yaml", provenance(settings, catalogue, data.campaign)
+    file, story = out / FILE, provenance(settings, catalogue, data.campaign)
     corrected = train(data.motions.values(), base, settings, catalogue, file, story)
     scored = score_models([base, corrected], data.motions, settings)
     found = scored.comparison
@@ -64,7 +69,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             name=settings.tracking.name or name,
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
-            scores=found.models["model"].runs,
+            scores=found.models[FILE.stem].runs,
             files=[
                 file,
                 out / ARRAYS,
@@ -76,6 +81,18 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     told = {said[model]: error for model, error in errors.items()}
     text = tell_comparison(told, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
     say(settings, f"{text}\n\n{file}", {"model": str(file), "errors": errors})
+
+
+def _check_name(given: str | Sequence[str]) -> None:
+    """Refuse a base that is called as what is trained will be: one would stand for the other."""
+    for one in [given] if isinstance(given, str) else given:
+        if Path(one).stem == FILE.stem:
+            raise BadInput(
+                f"the base is called '{FILE.stem}', as the model that is trained will be",
+                where=f"model={one}",
+                expected="another name (a model is called by its file's stem)",
+                remedy="Copy the file, for example to base.yaml, and give that.",
+            )
 
 
 def _name(base: str, learned: str) -> str:
