@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 from socket import gethostname
-from typing import Any, Iterator, Mapping
+from typing import Any, Iterator, Mapping, TextIO
 
 import numpy as np
 
@@ -139,6 +139,13 @@ def _unwritable(path: Path, error: OSError) -> BadInput:
         expected="a place where a file can be written",
         remedy="Name another place, or make room there and let files be written.",
     )
+
+
+@contextmanager
+def text_appearing(path: Path) -> Iterator[TextIO]:
+    """Yield a UTF-8 text file to write to; on success it is there in one step."""
+    with appearing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        yield file
 
 
 def write_bytes(path: Path, content: bytes) -> None:

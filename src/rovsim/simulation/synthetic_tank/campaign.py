@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Callable, Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, RovsimError
-from rovsim.core.files import copy_file, folder_beside, write_text
+from rovsim.core.files import copy_file, folder_beside, text_appearing
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
@@ -26,8 +27,17 @@ from rovsim.simulation.synthetic_tank.description import (
     own_vehicle,
     seal,
 )
-from rovsim.simulation.synthetic_tank.exports import export_commands, export_poses
-from rovsim.simulation.synthetic_tank.sensors import export_channels
+from rovsim.simulation.synthetic_tank.exports import (
+    choose_frames,
+    export_commands,
+    export_poses,
+)
+from rovsim.simulation.synthetic_tank.sensors import (
+    Reading,
+    draw_readings,
+    export_channels,
+    needed_steps,
+)
 from rovsim.simulation.synthetic_tank.sent_log import SentLog, read_sent_log
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 from rovsim.simulation.synthetic_tank.true_run import fly_run
@@ -147,18 +157,25 @@ def _record_all(
 def _record(
     model: Model, settings: TankSettings, run: TankRun, folder: Path, random: np.random.Generator
 ) -> None:
-    tank = settings.tank.ned
+    tank, readings = settings.tank.ned, list[Reading]()
+
+    def choose(total: int, step: float) -> Array:
+        if not settings.sensors:
+            return choose_frames(settings.camera, total, step)
+        readings.extend(draw_readings(settings.sensors, total, step, random))
+        return needed_steps(readings, total)
+
     sent = _read_sent(settings, run) if run.fly else None
-    truth = fly_run(model, settings, run.control, tank, random, run.release, sent)
-    if settings.sensors:
-        gravity = model.vehicle.fluid.gravity
-        seen = export_channels(truth, settings.sensors, float(tank[2, 0]), gravity, random)
-    else:
-        seen = export_poses(truth, settings.camera, model.mocap_view, random)
-    write_text(folder / motion_file(settings, run), seen)
+    truth = fly_run(model, settings, run.control, tank, random, run.release, sent, choose)
+    with text_appearing(folder / motion_file(settings, run)) as file:
+        if settings.sensors:
+            gravity = model.vehicle.fluid.gravity
+            export_channels(truth, readings, float(tank[2, 0]), gravity, file)
+        else:
+            export_poses(truth, settings.camera, model.mocap_view, random, file)
     if not run.release:
-        commands = export_commands(truth, settings.log, model.vehicle, random)
-        write_text(folder / commands_file(run), commands)
+        with text_appearing(folder / commands_file(run)) as file:
+            export_commands(truth, settings.log, model.vehicle, random, file)
 
 
 def _read_sent(settings: TankSettings, run: TankRun) -> SentLog:

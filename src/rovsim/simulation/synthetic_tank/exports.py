@@ -1,6 +1,6 @@
 """Raw exports of a true run, as the laboratory's own software would write them."""
 
-import io
+from typing import TextIO
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,7 +10,6 @@ from rovsim.core.pwm import to_pulses
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import MocapView
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.synthetic_tank.description import BODY
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
@@ -21,21 +20,26 @@ COLUMNS = (
 )
 
 
+def choose_frames(camera: Camera, total: int, step: float) -> Array:
+    """Steps (n,) of `step` s, of `total`, after which the cameras look."""
+    return np.arange(0, total, round(1.0 / (camera.rate * step)))
+
+
 def export_poses(
-    truth: TrueRun, camera: Camera, view: MocapView, random: np.random.Generator
-) -> str:
-    """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras."""
-    stride = round(1.0 / (camera.rate * time_step(truth.time)))
-    time, state = truth.time[:-1:stride], truth.state[:-1:stride]
-    position, attitude = _measure(state[:, :7], camera, view, random)
+    truth: TrueRun, camera: Camera, view: MocapView, random: np.random.Generator, file: TextIO
+) -> None:
+    """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras.
+
+    The run holds one state a frame.
+    """
+    frames = len(truth.state)
+    position, attitude = _measure(truth.state[:, :7], camera, view, random)
     rows = _format_rows(position, attitude, random)
-    rows[_lose_frames(len(time), camera, random)] = [0.0] * 6 + [-1.0] + [0.0] * 9
-    text = io.StringIO()
-    text.write(_header(len(time), camera.rate))
-    table = np.column_stack([np.arange(1, len(time) + 1), time, rows])
+    rows[_lose_frames(frames, camera, random)] = [0.0] * 6 + [-1.0] + [0.0] * 9
+    file.write(_header(frames, camera.rate))
+    table = np.column_stack([np.arange(1, frames + 1), truth.time, rows])
     shape = ["%d", "%.5f", *["%.3f"] * 7, *["%.6f"] * 9]
-    np.savetxt(text, table, fmt="\t".join(shape))
-    return text.getvalue()
+    np.savetxt(file, table, fmt="\t".join(shape))
 
 
 def _measure(
@@ -102,7 +106,9 @@ def _header(frames: int, rate: float) -> str:
     return "".join(f"{key}\t{value}\n" for key, value in lines.items()) + column_line + "\n"
 
 
-def export_commands(truth: TrueRun, log: Log, vehicle: Vehicle, random: np.random.Generator) -> str:
+def export_commands(
+    truth: TrueRun, log: Log, vehicle: Vehicle, random: np.random.Generator, file: TextIO
+) -> None:
     """Thruster PWM in us, angles in rad, or demands per axis, one line a tick; some are lost."""
     commands = truth.commands
     time = commands.time + log.jitter * random.normal(size=len(commands.time))
@@ -114,8 +120,6 @@ def export_commands(truth: TrueRun, log: Log, vehicle: Vehicle, random: np.rando
         value = np.where(vehicle.angles, value, to_pulses(value))
         names = list(vehicle.command_columns)
         shapes = ["%.4f" if angle else "%d" for angle in vehicle.angles]
-    text = io.StringIO()
-    text.write(",".join(["time_s", *names]) + "\n")
+    file.write(",".join(["time_s", *names]) + "\n")
     table = np.column_stack([time, value])[kept]
-    np.savetxt(text, table, fmt=",".join(["%.4f", *shapes]))
-    return text.getvalue()
+    np.savetxt(file, table, fmt=",".join(["%.4f", *shapes]))

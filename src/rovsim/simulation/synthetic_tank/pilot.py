@@ -1,5 +1,7 @@
 """Pilots who look at the vehicle and move the sticks, late; the autopilot keeps it upright."""
 
+from collections import deque
+
 import numpy as np
 from numpy import ndarray as Array
 
@@ -48,7 +50,7 @@ class Pilot:
         count = int(ticks * dt / SET_POINT_TIME) + 2
         self.set_points = self.middle + half * random.uniform(-1, 1, (count, 3))
         self.wander = draw_wander(ticks, dt, random) * WANDER[control]
-        self.seen: list[Array] = []
+        self.seen: deque[Array] = deque(maxlen=self.delay + 1)
         self.drift = np.zeros(3)
 
     def choose_start(self, random: np.random.Generator) -> Array:
@@ -60,7 +62,7 @@ class Pilot:
     def steer(self, tick: int, state: Array) -> Array:
         """Demand (6,) per axis after seeing this state (13,)."""
         self.seen.append(state.copy())
-        seen = self.seen[max(0, tick - self.delay)]
+        seen = self.seen[0]
         goal = self.set_points[int(tick * self.dt / SET_POINT_TIME)]
         drift = self.drift + INTEGRAL_GAIN * self.dt * (goal - seen[:3])
         self.drift = np.minimum(np.maximum(drift, -0.3), 0.3)  # np.clip takes longer
@@ -103,7 +105,7 @@ class Helmsman(Pilot):
     def steer(self, tick: int, state: Array) -> Array:
         """Demand (6,) per axis after seeing this state (13,)."""
         self.seen.append(state.copy())
-        seen = self.seen[max(0, tick - self.delay)]
+        seen = self.seen[0]
         way = self.set_points[int(tick * self.dt / COURSE_TIME)] - seen[:3]
         _, pitch, yaw = to_euler(seen[3:7])
         off = short_way(np.arctan2(way[1], way[0]) - yaw)

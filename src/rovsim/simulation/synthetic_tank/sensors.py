@@ -1,13 +1,12 @@
 """What sensors on board or ashore report of a true run, each at its own rate, without cameras."""
 
-import io
-from typing import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Mapping, Sequence, TextIO
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import exp, multiply, rotate, to_euler, unrotate
-from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.synthetic_tank.settings import Sensor, SensorKind
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
 
@@ -21,66 +20,91 @@ COLUMNS: Mapping[SensorKind, Sequence[str]] = {
 }
 
 
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """After which `steps` (m,) of a run a sensor measures, and its white `noise` (m, c)."""
+
+    kind: SensorKind
+    sensor: Sensor
+    steps: Array
+    noise: Array
+
+
+def draw_readings(
+    sensors: Mapping[SensorKind, Sensor], total: int, step: float, random: np.random.Generator
+) -> list[Reading]:
+    """When the sensors measure in a run of `total` steps of `step` s, and what is noise in it."""
+    found = []
+    for kind, sensor in sensors.items():
+        steps = _draw_steps(sensor, total, step, random)
+        shape = (len(steps), len(COLUMNS[kind]))
+        found.append(Reading(kind, sensor, steps, sensor.noise * random.normal(size=shape)))
+    return found
+
+
+def _draw_steps(sensor: Sensor, total: int, step: float, random: np.random.Generator) -> Array:
+    """After which it measures, the first anywhere in its first period."""
+    stride = 1.0 / (sensor.rate * step)
+    steps = np.round(np.arange(random.uniform(0.0, stride), total, stride))
+    return np.unique(steps.astype(int))
+
+
+def needed_steps(readings: Sequence[Reading], total: int) -> Array:
+    """Steps (n,), rising, whose states the readings tell of; an acceleration is of three."""
+    each = [reading.steps + k for reading in readings for k in (-1, 0, 1)]
+    return np.unique(np.clip(np.concatenate(each), 0, total))
+
+
 def export_channels(
-    truth: TrueRun, sensors: Mapping[SensorKind, Sensor], surface: float, gravity: float,
-    random: np.random.Generator,
-) -> str:  # fmt: skip
+    truth: TrueRun, readings: Sequence[Reading], surface: float, gravity: float, file: TextIO
+) -> None:
     """A csv in NED and FRD: one line for each time at which a sensor measured.
 
     Args:
-        truth: the run.
-        sensors: by kind of channel.
+        truth: the run; it holds the needed steps.
+        readings: of every sensor.
         surface: coordinate z of the surface, m NED.
         gravity: m/s2.
-        random: generator of this run.
+        file: what is written to.
     """
-    names = [name for kind in sensors for name in COLUMNS[kind]]
-    lines: list[tuple[float, int, list[str]]] = []
-    for kind, sensor in sensors.items():
-        rows = _choose_rows(truth, sensor, random)
-        values = _measure(kind, sensor, truth, rows, surface, gravity, random)
-        place = names.index(COLUMNS[kind][0])
-        for time, value in zip(truth.time[rows] + sensor.delay, values, strict=True):
-            lines.append((float(time), place, [f"{x:.6f}" for x in value]))
-    text = io.StringIO()
-    text.write(",".join(["time_s", *names]) + "\n")
-    for time, place, cells in sorted(lines):
-        after = len(names) - place - len(cells)
-        text.write(",".join([f"{time:.4f}", *[""] * place, *cells, *[""] * after]) + "\n")
-    return text.getvalue()
+    names = [name for reading in readings for name in COLUMNS[reading.kind]]
+    places = [names.index(COLUMNS[reading.kind][0]) for reading in readings]
+    values = [_measure(reading, truth, surface, gravity) for reading in readings]
+    time = [reading.steps * truth.step + reading.sensor.delay for reading in readings]
+    which = np.repeat(np.arange(len(readings)), [len(one) for one in time])
+    row = np.concatenate([np.arange(len(one)) for one in time])
+    file.write(",".join(["time_s", *names]) + "\n")
+    for k in np.lexsort([which, np.concatenate(time)]):
+        sensor, line = which[k], row[k]
+        cells = [f"{x:.6f}" for x in values[sensor][line]]
+        after = len(names) - places[sensor] - len(cells)
+        filled = [*[""] * places[sensor], *cells, *[""] * after]
+        file.write(",".join([f"{time[sensor][line]:.4f}", *filled]) + "\n")
 
 
-def _choose_rows(truth: TrueRun, sensor: Sensor, random: np.random.Generator) -> Array:
-    """Samples at which it measures, the first anywhere in its first period."""
-    stride = 1.0 / (sensor.rate * time_step(truth.time))
-    rows = np.round(np.arange(random.uniform(0.0, stride), len(truth.time) - 1, stride))
-    return np.unique(rows.astype(int))
-
-
-def _measure(
-    kind: SensorKind, sensor: Sensor, truth: TrueRun, rows: Array, surface: float, gravity: float,
-    random: np.random.Generator,
-) -> Array:  # fmt: skip
-    """What it reports (m, c) at these samples, its white noise on it."""
-    state, place = truth.state[rows], np.array(sensor.at)
+def _measure(reading: Reading, truth: TrueRun, surface: float, gravity: float) -> Array:
+    """What it reports (m, c), its noise on it."""
+    state, place = truth.at(reading.steps), np.array(reading.sensor.at)
     q, nu = state[:, 3:7], state[:, 7:]
-    if kind == "attitude":
-        return to_euler(multiply(q, exp(sensor.noise * random.normal(size=(len(rows), 3)))))
+    if reading.kind == "attitude":
+        return to_euler(multiply(q, exp(reading.noise)))
     value = {
         "position": lambda: state[:, :3],
         "depth": lambda: state[:, 2:3] + rotate(q, place)[:, 2:] - surface,
         "velocity": lambda: nu[:, :3] + np.cross(nu[:, 3:], place),
         "rates": lambda: nu[:, 3:],
-        "specific_force": lambda: _specific_force(truth, place, gravity)[rows],
-    }[kind]()
-    return np.asarray(value + sensor.noise * random.normal(size=value.shape))
+        "specific_force": lambda: _specific_force(truth, reading.steps, place, gravity),
+    }[reading.kind]()
+    return np.asarray(value + reading.noise)
 
 
-def _specific_force(truth: TrueRun, place: Array, gravity: float) -> Array:
-    """Acceleration less gravity (n, 3) of a place in the body, along FRD."""
-    nu, step = truth.state[:, 7:], time_step(truth.time)
-    nu_dot = np.gradient(nu, step, axis=0)
+def _specific_force(truth: TrueRun, steps: Array, place: Array, gravity: float) -> Array:
+    """Acceleration less gravity (m, 3) of a place in the body, along FRD."""
+    state = truth.at(steps)
+    before, after = np.maximum(steps - 1, 0), np.minimum(steps + 1, truth.total)
+    seconds = (after - before)[:, None] * truth.step
+    nu, nu_dot = state[:, 7:], (truth.at(after) - truth.at(before))[:, 7:] / seconds
     spin, down = nu[:, 3:], np.array([0.0, 0.0, gravity])
     moved = nu_dot[:, :3] + np.cross(spin, nu[:, :3])
     turned = np.cross(nu_dot[:, 3:], place) + np.cross(spin, np.cross(spin, place))
-    return np.asarray(moved + turned - unrotate(truth.state[:, 3:7], down))
+    return np.asarray(moved + turned - unrotate(state[:, 3:7], down))

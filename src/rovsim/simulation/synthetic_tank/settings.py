@@ -118,7 +118,7 @@ class TankSettings(Section):
     name: str = "tank"
     seed: Annotated[int, Field(ge=0)] = 0
     vehicle: str = Field(default_factory=default_vehicle)
-    # s a run; two hours of states take some 3 GB
+    # s a run, whose frames are held at once
     duration: Annotated[float, Field(gt=0.0, le=7200.0)] = 60.0
     runs: Annotated[tuple[TankRun, ...], Field(min_length=1)] = (
         TankRun(id="3dof-1", control="3dof", split="train"),

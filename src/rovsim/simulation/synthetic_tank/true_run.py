@@ -5,6 +5,7 @@ is not made by what will be compared with it.
 """
 
 from dataclasses import dataclass, replace
+from typing import Callable
 
 import numpy as np
 from numpy import ndarray as Array
@@ -23,21 +24,45 @@ from rovsim.simulation.synthetic_tank.sent_log import SentLog
 from rovsim.simulation.synthetic_tank.settings import Release, TankSettings
 from rovsim.simulation.synthetic_tank.turbulence import draw_currents, draw_turbulence
 
+PUSHED = 500  # ticks for which pushes are drawn at once
 FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact to a nanosecond
 
 
 @dataclass(frozen=True, eq=False)
 class TrueRun:
-    """What happened: `time` (n,) s, `state` (n, 13) in NED, `commands` as the pilot sent them."""
+    """What happened: states (n, 13) in NED after so many `steps` (n,), rising, of `step` s each.
 
-    time: Array
+    `state` holds the steps that were asked for alone; `commands` are as the pilot sent them, and
+    `total` is how many steps the run has.
+    """
+
+    steps: Array
     state: Array
     commands: Commands
+    step: float
+    total: int
+
+    @property
+    def time(self) -> Array:
+        """Times (n,) s of the states."""
+        return self.steps * self.step
+
+    def at(self, steps: Array) -> Array:
+        """States (m, 13) after these steps (m,), which were asked for."""
+        return np.asarray(self.state[np.searchsorted(self.steps, steps)])
+
+
+Choose = Callable[[int, float], Array]
+
+
+def every_step(total: int, step: float) -> Array:
+    """Choose the state after each step."""
+    return np.arange(total + 1)
 
 
 def fly_run(
     model: Model, settings: TankSettings, control: str, tank: Array, random: np.random.Generator,
-    release: Release | None = None, sent: SentLog | None = None,
+    release: Release | None = None, sent: SentLog | None = None, choose: Choose = every_step,
 ) -> TrueRun:  # fmt: skip
     """Fly one run.
 
@@ -49,6 +74,8 @@ def fly_run(
         random: generator of this run.
         release: how it is let go, in place of a pilot.
         sent: commands that are sent in place of a pilot's.
+        choose: told how many steps there are and their length, s, says after which of them (n,),
+            rising, states are kept; called once all is drawn from `random` that the flight needs.
 
     Raises:
         LeftTank: the hidden effects are stronger than the pilot.
@@ -56,31 +83,51 @@ def fly_run(
     h, tick = 1.0 / settings.steps_per_second, 1.0 / settings.log.rate
     duration = sent.seconds if sent else settings.duration
     ticks, per_tick = round(duration / tick), round(tick / h)
+    total = ticks * per_tick
     vehicle = _TrueVehicle(model, tank, settings, tick, duration)
     pilot = vehicle.pilot(control, tank, ticks, tick, random)
-    pushes = draw_turbulence(settings.turbulence, ticks * per_tick, h, random)
-    pushes = np.ascontiguousarray(pushes @ model.constants.M_inv[0].T)
+    turbulence = draw_turbulence(settings.turbulence, total, h, random, PUSHED * per_tick)
     currents = draw_currents(model, ticks, tick, random)
-    states = np.empty((ticks * per_tick + 1, 13))
-    begin = sent.start(tank, random) if sent else pilot.choose_start(random)
-    states[0] = begin * vehicle.free
+    state = (sent.start(tank, random) if sent else pilot.choose_start(random)) * vehicle.free
     if model.vehicle.floats:
-        states[0, 2] = vehicle.site.level
+        state[2] = vehicle.site.level
         tank = tank - [[0.0, 0.0], [0.0, 0.0], [np.inf, 0.0]]  # its middle is at the surface
     if release is not None:
-        states[0] = _let_go(states[0], release) * vehicle.free
+        state = _let_go(state, release) * vehicle.free
+    steps = choose(total, h)
+    kept = _Kept(steps, state)
     for k in range(ticks):
-        first = k * per_tick
+        if k % PUSHED == 0:
+            pushes = np.ascontiguousarray(next(turbulence) @ model.constants.M_inv[0].T)
         if sent:
             command = sent.at(k * tick)
         else:
-            command = vehicle.log(np.zeros(6) if release else pilot.steer(k, states[first]))
-        rows = slice(first, first + per_tick)
+            command = vehicle.log(np.zeros(6) if release else pilot.steer(k, state))
+        rows = slice(k % PUSHED * per_tick, (k % PUSHED + 1) * per_tick)
         vehicle.carry(currents[k])
-        states[first + 1 :][:per_tick] = vehicle.advance(k, command, states[first], pushes[rows])
-        _stay_inside(states[first + per_tick], tank, (k + 1) * tick)
-    time = np.arange(len(states)) * h
-    return TrueRun(time, states, Commands(vehicle.times, vehicle.commands, vehicle.kind))
+        passed = vehicle.advance(k, command, state, pushes[rows])
+        kept.take(passed)
+        state = passed[-1]
+        _stay_inside(state, tank, (k + 1) * tick)
+    commands = Commands(vehicle.times, vehicle.commands, vehicle.kind)
+    return TrueRun(steps, kept.state, commands, h, total)
+
+
+class _Kept:
+    """States (n, 13) after those steps (n,) that are asked for, as they pass."""
+
+    def __init__(self, steps: Array, begin: Array) -> None:
+        self.steps, self.state = steps, np.empty((len(steps), 13))
+        self.passed, self.taken = -1, 0
+        self.take(begin[None])
+
+    def take(self, states: Array) -> None:
+        """The next states (m, 13), one a step."""
+        first, self.passed = self.passed + 1, self.passed + len(states)
+        stop = int(np.searchsorted(self.steps, self.passed, side="right"))
+        rows = slice(self.taken, stop)
+        self.state[rows] = states[self.steps[rows] - first]
+        self.taken = stop
 
 
 def _let_go(rest: Array, release: Release) -> Array:
@@ -107,6 +154,7 @@ class _TrueVehicle:
         columns = model.thrust_path.columns(self.kind)
         ticks = round(duration / tick)
         self.times, self.commands = np.empty(ticks), np.empty((ticks, columns))
+        self.begin = 0  # the first line of the log that may still act
         self.lag: list | None = None
         self.memory = np.zeros(6)
         self.site, self.batch = site, Batch([model], site)
@@ -139,8 +187,10 @@ class _TrueVehicle:
         self.times[k], self.commands[k] = self._stamp(k * self.tick), command
         path, t = self.model.thrust_path, k * self.tick
         middle = t + self.h * (0.5 + np.arange(len(pushes)))
-        arrival = path.arrival(self.times[: k + 1])
-        held = self.commands[np.maximum(np.searchsorted(arrival, middle, "right") - 1, 0)]
+        arrival = path.arrival(self.times[self.begin : k + 1])
+        acting = np.maximum(np.searchsorted(arrival, middle, "right") - 1, 0)
+        held = self.commands[self.begin + acting]
+        self.begin += int(acting[0])
         static = path.at(Commands(middle, held, self.kind), 0.0, self.duration)
         force, self.lag = path.respond(static.force, self.h, self.lag)
         drive = Drive.by(self.model, replace(static, force=force), self.duration)
