@@ -1,12 +1,15 @@
 """Long recordings and many runs: taken in piece by piece, they say the same."""
 
+import weakref
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from flown import observed
+from rovsim.application.pipeline.replays import score_run
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.remade import ReadAgain, Recent, Remade, size
 from rovsim.diagnosis.observer.train_runs import prepare_train
@@ -14,10 +17,12 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.clocks import ClockDrift
 from rovsim.dynamics.effects.thrusters import VoltageSag
 from rovsim.evaluation.ladder import score_step
+from rovsim.evaluation.scored import Scored, score
 from rovsim.evaluation.scores import Moments, Sums, subtract, summarize
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Poses
+from rovsim.simulation import replay as replaying
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.replay import replay
 from rovsim.simulation.settings import ReplaySettings
@@ -92,6 +97,26 @@ def test_a_step_of_two_runs_is_that_of_all_their_samples(flown):
     spread = np.concatenate([m.nu[m.usable] for m in halves]).std(axis=0)
     assert step.windows_2s == pytest.approx(np.mean(rmse / spread), rel=1e-12)
     assert summarize(errors[0]) == Sums.of(errors[0]).metrics()
+
+
+def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, monkeypatch):
+    motion = replace(flown.motion, run=replace(flown.motion.run, split="test"))
+    how = SimpleNamespace(signals=SignalSettings(), replay=ReplaySettings())
+    whole = replay(model(), motion, how.signals, how.replay)
+    made, held, predict = [], [], replaying.predict
+
+    def watched(*given):
+        held.append(sum(one() is not None for one in made))
+        found = predict(*given)
+        made.append(weakref.ref(found))
+        return found
+
+    monkeypatch.setattr(replaying, "predict", watched)
+    scored = Scored(["nominal"])
+    kept = score_run(scored, model(), motion, how, "2")
+    assert held == [0, 0, 0, 1]  # when the open loop, 0.5, 2 and 5 s are made
+    np.testing.assert_array_equal(kept.horizons["2"].nu, whole.horizons["2"].nu)
+    assert scored.comparison.models["nominal"].runs["a"] == score(motion, whole)
 
 
 @pytest.mark.parametrize(

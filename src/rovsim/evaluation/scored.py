@@ -6,10 +6,17 @@ from rovsim.evaluation.growth import LONG, GrowthScore
 from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison, ModelErrors, RunErrors
+from rovsim.results.comparison import (
+    HORIZON,
+    OPEN_LOOP,
+    Comparison,
+    Metrics,
+    ModelErrors,
+    RunErrors,
+)
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Step
-from rovsim.simulation.prediction import Replay
+from rovsim.simulation.prediction import Prediction, Replay
 
 
 class Scored:
@@ -29,7 +36,11 @@ class Scored:
 
     def add(self, motion: Motion, replay: Replay) -> None:
         """Take in the replay of a run by one of the models."""
-        self._models[replay.model].add(motion, replay)
+        self.take(motion, replay.model, replay.horizons.items())
+
+    def take(self, motion: Motion, model: str, horizons: Iterable[tuple[str, Prediction]]) -> None:
+        """Take in what a model predicts of a run; of a long one each horizon is large."""
+        self._models[model].add(motion, horizons)
 
     @property
     def comparison(self) -> Comparison:
@@ -51,7 +62,7 @@ class Scored:
 def score(motion: Motion, replay: Replay) -> RunErrors:
     """All metrics of one model on one run."""
     one = _Score(replay.model)
-    one.add(motion, replay)
+    one.add(motion, replay.horizons.items())
     return one.runs[motion.run.id]
 
 
@@ -60,16 +71,20 @@ class _Score:
         self.runs: dict[str, RunErrors] = {}
         self.growth, self.step = GrowthScore(), StepScore(model)
 
-    def add(self, motion: Motion, replay: Replay) -> None:
+    def add(self, motion: Motion, horizons: Iterable[tuple[str, Prediction]]) -> None:
         found = {}
-        for name, prediction in replay.horizons.items():
-            errors = subtract(motion, prediction)
-            found[name] = summarize(errors)
-            if name == HORIZON:
-                self.step.add(motion, errors)
-            if name == LONG:
-                self.growth.add(motion, prediction)
+        for name, prediction in horizons:
+            found[name] = self._summarize(motion, name, prediction)
+            del prediction  # while the next one is made
         run = motion.run
         self.runs[run.id] = RunErrors(
             split=run.split, control=run.control, open_loop=found.pop(OPEN_LOOP), windows=found
         )
+
+    def _summarize(self, motion: Motion, horizon: str, prediction: Prediction) -> Metrics:
+        errors = subtract(motion, prediction)
+        if horizon == HORIZON:
+            self.step.add(motion, errors)
+        if horizon == LONG:
+            self.growth.add(motion, prediction)
+        return summarize(errors)

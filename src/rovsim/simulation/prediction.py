@@ -1,6 +1,6 @@
 """What a replay returns: arrays aligned with the measurement, by horizon."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -43,11 +43,6 @@ class Replay:
     run: RunInfo
     time: Array
     horizons: dict[str, Prediction]
-
-    def only(self, *horizons: str) -> "Replay":
-        """The same without other horizons."""
-        kept = {name: p for name, p in self.horizons.items() if name in horizons}
-        return replace(self, horizons=kept)
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""

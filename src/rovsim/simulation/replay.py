@@ -5,7 +5,7 @@ back is aligned with the measurement and went through the same filter.
 """
 
 from itertools import islice
-from typing import Iterable, NamedTuple, Sequence
+from typing import Iterable, Iterator, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -45,11 +45,21 @@ def replay(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    horizons = {
-        name: predict(model, motion, spans, signals, settings)
-        for name, spans in find_spans(motion, settings, open_loop).items()
-    }
+    horizons = dict(by_horizon(model, motion, signals, settings, open_loop))
     return Replay(model.name, motion.run, motion.time, horizons)
+
+
+def by_horizon(
+    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings,
+    open_loop: bool = True,
+) -> Iterator[tuple[str, Prediction]]:  # fmt: skip
+    """The predictions of a replay, one after the other, with the names of their horizons.
+
+    Raises:
+        BadInput: the run lacks what an effect of the model needs.
+    """
+    for name, spans in find_spans(motion, settings, open_loop).items():
+        yield name, predict(model, motion, spans, signals, settings)
 
 
 def find_spans(

@@ -7,7 +7,7 @@ import numpy as np
 from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
 from rovsim.application.pipeline.forces import balance_run
 from rovsim.application.pipeline.recordings import Measured
-from rovsim.application.pipeline.replays import replay_when_asked
+from rovsim.application.pipeline.replays import replay_when_asked, score_run
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.core.remade import Remade
@@ -18,7 +18,6 @@ from rovsim.evaluation.scored import Scored
 from rovsim.reporting.report_data import ReportData
 from rovsim.results.budget import BudgetTotals
 from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
-from rovsim.simulation.replay import replay
 
 DRAWN = 12  # runs: a report of fifty figures can still be read
 
@@ -36,9 +35,8 @@ def compare(data: Measured, models: Sequence[Model], settings: SimulationSetting
     for run in counted(list(data.motions), "comparing"):
         motion = data.motions[run]
         for model in models:
-            found = replay(model, motion, settings.signals, settings.replay)
-            scored.add(motion, found)
-            shown[model.name].keep(run, found.only(HORIZON, OPEN_LOOP))
+            found = score_run(scored, model, motion, settings, HORIZON, OPEN_LOOP)
+            shown[model.name].keep(run, found)
         for search in searches:
             search.add(motion)
         forces[run] = budgets[run].totals

@@ -1,6 +1,6 @@
 """Models beside the measurement: replayed with the logged commands, and scored."""
 
-from typing import Mapping, Sequence
+from typing import Iterator, Mapping, Sequence
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
@@ -9,8 +9,8 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import WINDOW
-from rovsim.simulation.prediction import Replay
-from rovsim.simulation.replay import replay
+from rovsim.simulation.prediction import Prediction, Replay
+from rovsim.simulation.replay import by_horizon, replay
 
 Replays = Mapping[str, Mapping[str, Replay]]  # by model and run
 
@@ -41,5 +41,22 @@ def score_models(
     scored = Scored(model.name for model in models)
     for run in counted(list(motions), "replaying"):
         for model in models:
-            scored.add(motions[run], replay(model, motions[run], settings.signals, settings.replay))
+            score_run(scored, model, motions[run], settings)
     return scored
+
+
+def score_run(
+    scored: Scored, model: Model, motion: Motion, settings: SimulationSettings, *kept: str
+) -> Replay:
+    """Replay a run and take it in, horizon by horizon; what comes back are those to be `kept`."""
+    found = Replay(model.name, motion.run, motion.time, {})
+
+    def horizons() -> Iterator[tuple[str, Prediction]]:
+        for name, prediction in by_horizon(model, motion, settings.signals, settings.replay):
+            if name in kept:
+                found.horizons[name] = prediction
+            yield name, prediction
+            del prediction  # while the next one is made
+
+    scored.take(motion, model.name, horizons())
+    return found
