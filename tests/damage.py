@@ -15,7 +15,7 @@ from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings
 
 COUNT = int(os.environ.get("ROVSIM_MUTATIONS", "60"))  # files of each format
-LONGEST = 10.0  # s
+LONGEST = 10.0  # s of the processor
 WORDS = [b"nan", b"1e400", b"-", b",,", b"\n", b"\t", b"\xff"]
 # what may happen to `n` bytes at `a` of a file
 FAULTS = (
@@ -54,7 +54,7 @@ def check_sound(recording) -> None:
 
 def read_or_refuse(folder: Path) -> bool:
     """Whether the damaged run could be read; anything but that or one message fails."""
-    start = time.monotonic()
+    start = time.process_time()
     try:
         recording, anomalies = read_run(load_campaign(folder), "one")
         report_quality(recording, anomalies, SignalSettings().outliers)
@@ -63,7 +63,7 @@ def read_or_refuse(folder: Path) -> bool:
     else:
         said = ""
         check_sound(recording)
-    assert time.monotonic() - start < LONGEST
+    assert time.process_time() - start < LONGEST
     assert "\n" not in said
     assert len(said) < 5000
     return not said
