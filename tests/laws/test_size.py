@@ -62,6 +62,21 @@ def test_one_value_stays_however_large_and_none_where_none_is_wanted():
         assert len(made) == again
 
 
+def test_values_of_two_kinds_share_what_is_kept():
+    made = []
+
+    def makes(kind):
+        return lambda name: made.append(kind + name) or np.full(100, len(made), float)
+
+    recent = Recent(2 * 800)
+    one, two = (Remade("abc", makes(kind), recent=recent) for kind in "12")
+    assert [one["a"][0], two["a"][0], one["a"][0]] == [1, 2, 1]  # no name stands for both
+    two["b"]
+    assert made == ["1a", "2a", "2b"]
+    assert [two["a"][0], two["b"][0]] == [4, 3]  # one's last value had to make room
+    assert one["a"][0] == 5
+
+
 def test_a_size_counts_all_arrays(flown):
     motion = flown.motion
     arrays = (motion.time, motion.eta, motion.nu, motion.nu_dot, motion.state_nu, motion.usable)

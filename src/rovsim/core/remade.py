@@ -62,16 +62,24 @@ class Remade(Mapping[str, T]):
         names: of the values, in order.
         make: a value from its name; every time the same.
         most: bytes to keep.
+        recent: what keeps them, where other values share its bytes.
     """
 
-    def __init__(self, names: Iterable[str], make: Callable[[str], T], most: int = MOST) -> None:
+    def __init__(
+        self,
+        names: Iterable[str],
+        make: Callable[[str], T],
+        most: int = MOST,
+        recent: Recent[T] | None = None,
+    ) -> None:
         self._names, self._make = dict.fromkeys(names), make
-        self._recent: Recent[T] = Recent(most)
+        self._recent: Recent[T] = recent or Recent(most)
+        self._own = object()  # tells these values from others of their names
 
     def __getitem__(self, name: str) -> T:
         if name not in self._names:
             raise KeyError(name)
-        return self._recent.get(name, lambda: self._make(name))
+        return self._recent.get((self._own, name), lambda: self._make(name))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -85,7 +93,7 @@ class Remade(Mapping[str, T]):
     def keep(self, name: str, value: T) -> None:
         """Take in a value that is there already."""
         self._names[name] = None
-        self._recent.keep(name, value)
+        self._recent.keep((self._own, name), value)
 
 
 class ReadAgain(Sequence[T]):

@@ -6,7 +6,7 @@ from typing import Mapping, Sequence
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
-from rovsim.core.remade import MOST, Remade
+from rovsim.core.remade import Recent, Remade
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.motion import Motion
@@ -22,8 +22,9 @@ def bands_when_asked(
 ) -> dict[str, Remade[Band | None]]:
     """Bands of the replays that figures show, of the models whose uncertainty is known.
 
-    Made when they are asked for.
+    Made when they are asked for; all models share what is kept of them.
     """
+    recent = Recent[Band | None]()
     sure = [model for model in models if model.uncertainty is not None]
     how = settings.replay.only(WINDOW)
 
@@ -31,7 +32,7 @@ def bands_when_asked(
         spans = find_spans(motions[run], how, open_loop=False)[HORIZON]
         return foresee(model, motions[run], spans, settings.signals, how)
 
-    return {m.name: Remade(motions, partial(of, m), MOST // len(sure)) for m in sure}
+    return {m.name: Remade(motions, partial(of, m), recent=recent) for m in sure}
 
 
 def cover_test_runs(

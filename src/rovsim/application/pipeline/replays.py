@@ -4,7 +4,7 @@ from typing import Iterator, Mapping, Sequence
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
-from rovsim.core.remade import MOST, Remade
+from rovsim.core.remade import Recent, Remade
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion
@@ -20,15 +20,15 @@ def replay_when_asked(
 ) -> dict[str, Remade[Replay]]:
     """Replays of every run by every model, in windows of 2 s and open loop, as figures show them.
 
-    Made when they are asked for.
+    Made when they are asked for; all models share what is kept of them.
     """
-    how = settings.replay.only(WINDOW)
+    how, recent = settings.replay.only(WINDOW), Recent[Replay]()
 
     def by(model: Model) -> Remade[Replay]:
         return Remade(
             motions,
             lambda run: replay(model, motions[run], settings.signals, how),
-            MOST // len(models),
+            recent=recent,
         )
 
     return {model.name: by(model) for model in models}
