@@ -267,6 +267,9 @@ BAD = {
     "buoyancy": (
         {"rigid_body": {k: v for k, v in PLAIN["rigid_body"].items() if "buoy" not in k}},
         "what floats has a 'waterplane'"),
+    "centre": (
+        {"rigid_body": {k: v for k, v in PLAIN["rigid_body"].items() if "gravity" not in k}},
+        r"'rigid_body\.center_of_gravity' is missing.*docs/vehicles\.md"),
     "both": ({"cross_flow": {"Yuv": 1.0},
               "hydrodynamics": PLAIN["hydrodynamics"] | {"cross_flow": {"Yuv": 1.0}}}, "stands in"),
 }  # fmt: skip

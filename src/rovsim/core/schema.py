@@ -3,7 +3,7 @@
 import os
 import reprlib
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, ValidationError
 
@@ -11,7 +11,12 @@ from rovsim.core.errors import BadInput, unlisted
 
 
 class Section(BaseModel):
-    """A section of a file or of the configuration: typed, immutable, no unknown keys."""
+    """A section of a file or of the configuration: typed, immutable, no unknown keys.
+
+    `described`: the page that shows one.
+    """
+
+    described: ClassVar[str] = "docs/formats.md"
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -43,7 +48,7 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
             f"holds {type(content).__name__} instead of keys and values",
             where=where,
             expected=f"the keys {', '.join(_names(kind))}",
-            remedy="See docs/formats.md for an example.",
+            remedy=f"See {kind.described} for an example.",
         )
     try:
         return kind.model_validate(content)
@@ -72,7 +77,7 @@ def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadIn
             f"'{place}' is missing",
             where=where,
             expected=f"a value for '{place}'",
-            remedy="Add it; docs/formats.md has an example.",
+            remedy=f"Add it; {kind.described} has an example.",
         )
     return BadInput(
         f"'{place}' is {reprlib.repr(first.get('input'))}",

@@ -1,6 +1,6 @@
 """A vehicle file: what stands in it, and the nominal effects it stands for."""
 
-from typing import get_args
+from typing import ClassVar, get_args
 
 import numpy as np
 from numpy import ndarray as Array
@@ -72,6 +72,8 @@ class Waterplane(Section):
 
 class Vehicle(Section):
     """A vehicle file, as in conf/vehicle/."""
+
+    described: ClassVar[str] = "docs/vehicles.md"
 
     name: Name
     fluid: Fluid
