@@ -17,7 +17,7 @@ from rovsim.diagnosis.observer.random_walk import Rate
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
-from rovsim.diagnosis.selection.ranking import Named, Selected, doubt_lead, name_drift
+from rovsim.diagnosis.selection.ranking import Named, Selected, doubt_idle, doubt_lead, name_drift
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.law import Law
@@ -128,6 +128,14 @@ def test_what_was_not_measured_is_what_to_record():
     assert "Record a heading (yaw_rad)" in advice
     assert "Nothing is needed" not in advice
     assert "depth" not in advice
+
+
+def test_what_a_law_makes_unnecessary_is_not_sure():
+    """A jet in one corner was a current at a probability of one; beside the jet there is none."""
+    found = fit(alike())
+    drag, thrust = (Named(term, {}, 1.0) for term in found.hypothesis.terms[:2])
+    kept, idle = doubt_idle([drag, thrust], [drag])
+    assert (kept.probability, idle.probability) == (1.0, None)
 
 
 @pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])

@@ -46,6 +46,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
     Named,
+    doubt_idle,
     doubt_lead,
     name_drift,
     name_smoothing,
@@ -122,6 +123,8 @@ def _diagnose(
     rivals = found.selection.named_rivals
     terms = name_terms(wider, rivals)
     named = [*camera, *(doubt_lead(terms) if camera else terms)]
+    if proposed:
+        named = doubt_idle(named, proposed.beside)
     if found.fit.noise.drift:
         drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
         if drift.sure:

@@ -145,8 +145,8 @@ class LawSearch:
             starts = [add_term(fit.hypothesis, terms, k, columns, middle, around) for k in kinds]
             forms = [Products((*terms, k)) for k in kinds]
             tried = self.race(dict(zip(kinds, zip(forms, starts, strict=True), strict=True)), fit)
-            more = next(iter(tried))
-            if not self.is_worth(tried[more], fit, score):
+            more = next((k for k, one in tried.items() if self.is_worth(one, fit, score)), None)
+            if more is None:
                 break
             best = tried.pop(more).beats(tried.values())
             terms, fit, score = (*terms, more), best.fit, best.score

@@ -86,6 +86,12 @@ def doubt_lead(named: Sequence[Named]) -> list[Named]:
     return [replace(one, probability=None) if leads(one) else one for one in named]
 
 
+def doubt_idle(named: Sequence[Named], beside: Sequence[Named]) -> list[Named]:
+    """The same, no name sure that a proposed law makes unnecessary: it acts not `beside` that."""
+    acting = {one.term.id for one in beside}
+    return [one if one.term.id in acting else replace(one, probability=None) for one in named]
+
+
 def name_drift(drift: DriftFit, lasting: bool) -> Named:
     """A current that wanders, as an effect; forces that wander were tried in its place.
 
