@@ -19,7 +19,7 @@ help:
 	@echo "make kills   commands killed at random moments: KILLS=20 each"
 	@echo "make crowd   two studies, two sweeps and a workbench at once on one database"
 	@echo "make soak    a long day at the workbench: 1,000 replays, 20 campaigns"
-	@echo "make test-slurm   the study and a sweep through a real Slurm on this machine (root, slurm-wlm)"
+	@echo "make test-slurm   study, folds, thesis, blind cases and a sweep through a real Slurm on this machine (root, slurm-wlm)"
 	@echo "make commands   every command of README and docs, in a fresh shell"
 	@echo "make walk    a newcomer with a watch: fresh clone to a fallen error, own csv files to a verdict"
 	@echo "make check   formatting, lint, types, layers, workflow"

@@ -1,4 +1,4 @@
-"""Study, folds, blind benchmark and a sweep through a real Slurm: controller and node are here.
+"""Study, folds, thesis, blind benchmark and a sweep through a real Slurm, all on this machine.
 
 `make test-slurm` runs it, as root: Slurm's own job steps read nothing but /etc/slurm/slurm.conf.
 """
@@ -15,7 +15,9 @@ import pytest
 
 from rovsim.application.settings import compose
 from rovsim.benchmarks.blind.run import Benchmark, file_name
+from rovsim.core.yaml_files import read_yaml, write_yaml
 from small_study import ROOT, SMALL, copy_of
+from worlds import SHARED, needed
 
 CONF = Path("/etc/slurm/slurm.conf")
 DAEMONS = ("munged", "slurmctld", "slurmd")
@@ -46,7 +48,10 @@ AccountingStorageType=accounting_storage/none
 JobCompType=jobcomp/filetxt
 JobCompLoc={folder}/completed.txt
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} RealMemory=6000
-PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP
+PreemptType=preempt/partition_prio
+PreemptMode=REQUEUE
+PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP PriorityTier=1
+PartitionName=urgent Nodes={host} MaxTime=INFINITE State=UP PriorityTier=2
 """
 
 pytestmark = [
@@ -76,7 +81,7 @@ def slurm():
         )
     ]  # fmt: skip
     try:
-        _wait(lambda: "idle" in subprocess.run(["sinfo"], capture_output=True, text=True).stdout)
+        _wait(_idle, 300)  # on a machine that may be busy
         yield folder / "completed.txt"
     finally:
         for daemon in reversed(daemons):
@@ -96,6 +101,10 @@ def _munge(folder: Path) -> list[str]:
     return ["munged", "--foreground", "--force", *(f"--{k}={v}" for k, v in names.items())]
 
 
+def _idle() -> bool:
+    return "idle" in subprocess.run(["sinfo"], capture_output=True, text=True).stdout
+
+
 def _wait(ready, seconds: float = 60.0) -> None:
     end = time.monotonic() + seconds
     while not ready():
@@ -104,7 +113,8 @@ def _wait(ready, seconds: float = 60.0) -> None:
 
 
 def call(folder: Path, *command: str) -> subprocess.Popen:
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
+    paths = {"PYTHONPATH": str(ROOT / "src"), "ROVSIM_DATA": str(SHARED / "data")}
+    environment = os.environ | paths
     with (folder / "log.txt").open("ab") as log:
         return subprocess.Popen(command, cwd=folder, stdout=log, stderr=log, env=environment)
 
@@ -119,12 +129,19 @@ def cancelled(completed: Path) -> bool:
     return jobs(completed, "CANCELLED") > 0
 
 
+def preempted(completed: Path) -> bool:
+    """Let an urgent job take the node of what runs; whether anything did."""
+    urgent = ["sbatch", "--wait", "--partition=urgent", "--exclusive", "--output=/dev/null"]
+    subprocess.run([*urgent, "--wrap=true"], check=True)
+    return jobs(completed, "PREEMPTED") > 0
+
+
 def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.Popen:
     """A workflow over the cluster, which is asked more often than a large one would be."""
     return call(
         folder, sys.executable, "-m", "snakemake", "--profile", "workflow/profiles/slurm",
         "--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "3",
-        "--seconds-between-status-checks", "3", "--default-resources", "mem_mb=1500", "runtime=20",
+        "--seconds-between-status-checks", "3", "--default-resources", "mem_mb=1500", "runtime=60",
         *words, "--config", f"overrides={overrides}",
     )  # fmt: skip
 
@@ -133,7 +150,8 @@ def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.Popen:
 def clone(tmp_path_factory) -> Path:
     """A working copy, whose results the tests add to."""
     folder = copy_of(ROOT, tmp_path_factory.mktemp("clone"))
-    shutil.copytree(ROOT / "profiles", folder / "profiles")
+    for name in ("profiles", "campaigns"):
+        shutil.copytree(ROOT / name, folder / name)
     return folder
 
 
@@ -168,6 +186,36 @@ def test_every_run_is_held_out_once(slurm, clone):
         assert all(list(model["runs"]) == [run] for model in models.values())
         assert {"nominal", "effects", "knn_all"} <= set(models)
     assert jobs(slurm, "COMPLETED") >= before + len(runs)
+
+
+# All its rules, two of its runs, each held out once; a minute is looked at, for one effect.
+RUNS = ("114603", "120945")
+CHAPTER = (
+    "+experiment=kth_tank_2025 search.most_seconds=60 search.most_effects=1 search.trials=1 "
+    "folds.residuals=[knn] folds.controls=[all] study.residuals=[knn] study.controls=[6dof] "
+    "study.on_effects=[] timing.calls=50"
+)
+
+
+def test_the_thesis_chapter_runs_and_a_preempted_job_is_queued_again(slurm, clone):
+    needed(SHARED / "data" / "kth_tank_2025")
+    file = clone / "campaigns" / "kth_tank_2025" / "campaign.yaml"
+    content = read_yaml(file)
+    content["runs"] = [run for run in content["runs"] if run["id"] in RUNS]
+    write_yaml(file, content)
+    before = jobs(slurm, "COMPLETED")
+    chapter = snakemake(clone, CHAPTER)
+    _wait(lambda: jobs(slurm, "COMPLETED") > before + 3 or chapter.poll() is not None, 600)
+    _wait(lambda: preempted(slurm) or chapter.poll() is not None)
+    ended_well(chapter, clone)
+    results = clone / "results" / "kth_tank_2025"
+    cells = json.loads((results / "published_errors.json").read_text())["cells"]
+    assert {cell["run"] for cell in cells} == set(RUNS)
+    assert (results / "pitfalls.json").is_file()
+    for rule in ("diagnose", "add", "refit", "fold", "split", "train/knn_all"):
+        assert len(list(results.glob(f"folds/*/logs/{rule}.log"))) == len(RUNS), rule
+    assert jobs(slurm, "PREEMPTED") >= 1
+    assert jobs(slurm, "COMPLETED") > before + 40
 
 
 def test_cases_of_the_blind_benchmark_are_jobs(slurm, clone):
