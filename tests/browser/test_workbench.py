@@ -96,7 +96,7 @@ def test_a_hidden_lag_is_found_added_and_saved_and_the_error_falls(tab, workbenc
     for one in diagnosis["ranking"]:
         if (name := f"ranking/{one['effect']}/probability") in shown:
             assert shown[name] == one["probability"]
-    here = re.compile("On your data: mean .* error over .*, without thruster_lag and with it")
+    here = re.compile("On your data: .*error over .*, without thruster_lag and with it")
     tab.page.get_by_role("img", name=here).wait_for()
     tab.picture("why")
 

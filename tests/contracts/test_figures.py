@@ -219,10 +219,11 @@ def test_a_constant_error_is_in_its_own_row_and_varies_with_nothing():
 
 
 def test_bars_of_a_ladder_have_the_colour_of_their_kind_and_no_hatch():
-    bars = chart_ladder(study()["ladder"]).bars
-    assert {bar.look for bar in bars} <= set(FAMILIES.values())
-    looks = {bar.model: bar.look for bar in bars}
-    assert len({look for model, look in looks.items() if model.startswith("+")}) == 1
+    models = ("nominal", "+thruster_lag", "+current", "+current + knn_6dof")
+    looks = {bar.model: bar.look for bar in chart_ladder(study(models=models)["ladder"]).bars}
+    assert set(looks.values()) <= set(FAMILIES.values())
+    assert looks["+thruster_lag"] == looks["+current"] == FAMILIES["effects"]
+    assert looks["+current + knn_6dof"] == FAMILIES["knn"]
 
 
 def test_the_map_frames_the_findings():

@@ -7,7 +7,8 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from rovsim.apps.workbench.charts import MARK, styles
-from rovsim.apps.workbench.where import BLUE, GREY
+from rovsim.apps.workbench.where import FAINT
+from rovsim.reporting.figures.palette import BLUE
 
 TOGETHER = ["measured", "nominal", "repaired", "knn_6dof", "gp_6dof", "zero_acceleration"]
 # Machado, Oliveira and Fernandes 2009, table 1, severity 1.0; for linear RGB.
@@ -44,4 +45,4 @@ def test_curves_shown_together_are_told_apart(who):
 @pytest.mark.parametrize("who", SEEN)
 @pytest.mark.parametrize("marked", [BLUE, MARK])
 def test_what_is_marked_stands_out_from_the_rest(who, marked):
-    assert np.linalg.norm(lab(marked, SEEN[who]) - lab(GREY, SEEN[who])) > 10 * NOTICED
+    assert np.linalg.norm(lab(marked, SEEN[who]) - lab(FAINT, SEEN[who])) > 10 * NOTICED

@@ -2,7 +2,7 @@
 
 from typing import Iterator
 
-from rovsim.measurement.signals.chain import HIGHEST
+from rovsim.measurement.signals.measured import HIGHEST
 from rovsim.results.quality import Quality
 
 # Above these a recording is worth a second look; they change nothing else.

@@ -25,14 +25,12 @@ from rovsim.measurement.signals.filter import (
     filter_eta,
     filter_poses,
 )
-from rovsim.measurement.signals.measured import blank
+from rovsim.measurement.signals.measured import HIGHEST, blank
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.measurement.signals.outliers import OutlierSettings
 from rovsim.measurement.signals.resample import Linear, Resampling, resample
 from rovsim.measurement.signals.track import track_channels
 
-# Of the sampling rate: a low-pass that cuts off nearer to its half hardly filters.
-HIGHEST = 0.4
 # What a stage hands on: poses, or a binned recording that passes unchanged.
 Stage: TypeAlias = Poses | Recording
 

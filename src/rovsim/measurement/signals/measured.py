@@ -7,6 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 SHARE = 0.25  # of the rate of the slowest channel: half of its Nyquist frequency
+HIGHEST = 0.4  # of the sampling rate: a low-pass that cuts off nearer to its half hardly filters
 NAMES = ("coordinates", "heading", "axes", "summed", "when", "cutoff")
 
 
