@@ -105,10 +105,12 @@ class MovingWater:
             return DriftFit(found, found.gain)
         forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
         others = [self._walk(pushes).fit_rate(z, tunings).gain for pushes in forces]
-        # about still water; about its own path what wanders is always likelier than a steady flow
-        flows = (_lines,) if self.paths else (_lines, _eddies)
-        by_place = (self._gain_by_place(z, tunings, flow(self.runs)) for flow in flows)
-        return DriftFit(found, found.gain - max(0.0, *by_place, *others))
+        by_place = self._gain_by_place(z, tunings, _lines(self.runs))
+        if not self.paths:  # about its own path what wanders is always likelier than a steady flow
+            flow = self._gain_by_place(z, tunings, _eddies(self.runs))
+            if flow - found.gain > SURE:
+                return DriftFit(found, found.gain - flow)
+        return DriftFit(found, found.gain - max(0.0, by_place, *others))
 
     def varies_with_place(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> bool:
         """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
