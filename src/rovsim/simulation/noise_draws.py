@@ -64,7 +64,7 @@ class NoiseDraws:
         """A motion as other measurements of it would have reported it, after the same chain."""
         if motion.binned:
             return [self._read_bins_again(motion) for _ in range(draws)]
-        period = time_step(motion.time)
+        period, signals = time_step(motion.time), signals.suited(motion)
         at_once = max(1, AT_ONCE // len(motion.time))
         found = []
         for first in range(0, draws, at_once):
