@@ -142,9 +142,9 @@ class LawSearch:
             if len(columns.terms) < TERMS:
                 break
             kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]
-            starts = [add_term(fit.hypothesis, terms, k, columns, middle, around) for k in kinds]
-            forms = [Products((*terms, k)) for k in kinds]
-            tried = self.race(dict(zip(kinds, zip(forms, starts, strict=True), strict=True)), fit)
+            h = fit.hypothesis
+            starts = {k: add_term(h, terms, k, columns, middle, around) for k in kinds}
+            tried = self.race({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
             more = next((k for k, one in tried.items() if self.is_worth(one, fit, score)), None)
             if more is None:
                 break
