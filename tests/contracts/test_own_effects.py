@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from pages import fenced
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
@@ -22,7 +23,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(enc
 
 def blocks(kind):
     """Fenced blocks of the page of one kind."""
-    return re.findall(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL)
+    return fenced(PAGE, kind)
 
 
 @pytest.fixture(autouse=True)

@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from commands import PAGES, ROOT, commands
+from pages import fenced
 from rovsim import __version__
 from rovsim.application.settings import select
 from rovsim.apps.cli import dispatch
@@ -60,7 +61,7 @@ def test_no_shell_takes_a_bracket_for_a_pattern(page):
 
 
 def test_no_command_of_the_readme_writes_over_another_ones_report():
-    blocks = re.findall(r"```sh\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    blocks = fenced(README.read_text(encoding="utf-8"), "sh")
     folders = re.findall(r"\bout=(\w+)", "\n".join(blocks))
     assert len(folders) == len(set(folders)) > 2
 

@@ -1,6 +1,5 @@
 """Every vehicle of conf/vehicle against what was published of it, written here once more."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.signal import find_peaks
 
+from pages import fenced
 from rovsim.core.rotations import from_euler
 from rovsim.core.run import Commands, Site
 from rovsim.core.shipped import conf_names
@@ -261,7 +261,7 @@ def test_t200_tables_meet_the_data_sheet_at_every_voltage(volts, ahead, astern):
 def test_the_page_about_vehicles_shows_a_file_that_works():
     page = Path(__file__).parents[2].joinpath("docs", "vehicles.md").read_text(encoding="utf-8")
     content = {}
-    for block in re.findall(r"```yaml\n(.*?)```", page, re.DOTALL):
+    for block in fenced(page, "yaml"):
         content |= yaml.safe_load(block)
     found = build_vehicle(content, "docs/vehicles.md")
     assert found.command_columns == ("t1", "pod", "pod_angle", "rudder", "stern")

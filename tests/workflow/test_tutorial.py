@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from pages import fenced
 from rovsim.apps.cli.main import main
 from rovsim.core.files import read_json
 from rovsim.core.yaml_files import read_yaml
@@ -22,7 +23,7 @@ ELSEWHERE = ("cat", "rovsim ui")  # the workbench is tested in tests/browser
 
 def commands() -> list[str]:
     """Lines of the shell blocks."""
-    blocks = re.findall(r"```sh\n(.*?)```", TUTORIAL.read_text(encoding="utf-8"), re.DOTALL)
+    blocks = fenced(TUTORIAL.read_text(encoding="utf-8"), "sh")
     return [line for block in blocks for line in block.splitlines()]
 
 

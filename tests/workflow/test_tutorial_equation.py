@@ -1,12 +1,12 @@
 """The tutorial of the equation, as it is written: unexplained, a law, an effect with a name."""
 
-import re
 import shlex
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from pages import fenced
 from rovsim.apps.cli.main import main
 from rovsim.core.files import read_json
 from rovsim.core.yaml_files import read_yaml
@@ -17,7 +17,7 @@ TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorial_equation.md"
 
 def blocks(kind: str) -> list[str]:
     """Fenced blocks of the page of one kind."""
-    return re.findall(rf"```{kind}\n(.*?)```", TUTORIAL.read_text(encoding="utf-8"), re.DOTALL)
+    return fenced(TUTORIAL.read_text(encoding="utf-8"), kind)
 
 
 pytestmark = pytest.mark.slow

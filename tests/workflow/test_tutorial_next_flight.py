@@ -1,13 +1,13 @@
 """The tutorial of the next flight: two rivals, one flight, one name; and what a flight promises."""
 
 import json
-import re
 import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pages import fenced
 from rovsim.application.pipeline.design import design
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import compose
@@ -51,7 +51,7 @@ def keep(data, model, question, catalogue):
 
 def commands() -> list[str]:
     """Lines of the shell blocks."""
-    blocks = re.findall(r"```sh\n(.*?)```", TUTORIAL.read_text(encoding="utf-8"), re.DOTALL)
+    blocks = fenced(TUTORIAL.read_text(encoding="utf-8"), "sh")
     return [line for block in blocks for line in block.splitlines()]
 
 
