@@ -4,9 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from rovsim.core.rotations import from_euler, matrix
-from rovsim.diagnosis.checks.regressors import tabulate
+from rovsim.diagnosis.checks.regressors import _spread, tabulate
 
 COUNT, PERIOD = 400, 0.05
 
@@ -37,3 +38,26 @@ def test_what_varies_with_place_in_the_tank_is_among_them_on_the_axes_of_the_bod
         push = matrix(state[:, 3:7])[:, on, axis] * place
         left = push - functions.T @ np.linalg.lstsq(functions.T, push, rcond=None)[0]
         assert np.abs(left).max() < 1e-9
+
+
+def shares(kept, seed, lasting):
+    """How often chance seems to explain more of a slow column than 3.84 (1 in 20)."""
+    random = np.random.default_rng(seed)
+    blocks, found = np.repeat(np.arange(30), 40), []
+    for _ in range(300):
+        column, target = (lfilter([1.0], [1.0, -k], random.normal(size=1200)) for k in kept)
+        target = target / target.std()
+        power = column @ column
+        factor = column @ target / power
+        spread = _spread(column * (target - factor * column), power, blocks) if lasting else 1.0
+        found.append(factor**2 * power / spread > 3.84)
+    return np.mean(found)
+
+
+def test_what_errs_for_long_does_not_seem_to_vary_with_what_changes_slowly():
+    assert shares((0.9, 0.9), 1, lasting=False) > 0.3
+    assert shares((0.9, 0.9), 1, lasting=True) < 0.1
+
+
+def test_white_noise_is_judged_as_before():
+    assert shares((0.9, 0.0), 2, lasting=True) == pytest.approx(0.05, abs=0.03)

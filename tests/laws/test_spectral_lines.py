@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.signal import lombscargle
+from scipy.signal import lfilter, lombscargle
 from scipy.stats import chi2, kstest
 
-from rovsim.diagnosis.checks.spectral_lines import FINE, fit_lines
+from rovsim.diagnosis.checks.spectral_lines import FINE, Periodogram, fit_lines
 
 
 def bins(random, count=300):
@@ -63,3 +63,36 @@ def test_a_line_keeps_its_place_and_size_on_an_uneven_clock(hertz):
     found = fit_lines(line, np.ones(len(time)), time, count)
     assert np.argmax(found) == k
     assert found[k] / len(time) == pytest.approx(np.mean(line**2), rel=1e-9)
+
+
+def periodogram(rows):
+    """Of rows (r, n) of readings, one a run, at 10 Hz."""
+    time = 0.1 * np.arange(rows.shape[1])
+    count, frequency = clock(time)
+    power = np.stack([fit_lines(row, np.ones(len(time)), time, count) for row in rows])
+    usable = np.flatnonzero((frequency > 1.0 / time[-1]) & (frequency < 4.0))
+    return Periodogram(power, frequency, usable, float(rows.size))
+
+
+def wander(random, shape, memory):
+    """Noise of unit variance with a memory (readings)."""
+    keep = np.exp(-1.0 / memory)
+    noise = np.sqrt(1.0 - keep**2) * random.normal(size=shape)
+    return lfilter([1.0], [1.0, -keep], noise)
+
+
+def test_noise_that_lasts_has_no_lines():
+    random = np.random.default_rng(4)
+    found = periodogram(random.normal(size=(3, 900)) + wander(random, (3, 900), 30.0))
+    limit = chi2.isf(0.01 / len(found.usable), 6)
+    assert found.total[found.usable].max() > 2.0 * limit
+    assert found.beyond_noise[found.usable].max() < limit
+
+
+def test_a_line_stands_out_of_noise_that_lasts():
+    random = np.random.default_rng(5)
+    line = 0.5 * np.sin(2.0 * np.pi * 1.0 * 0.1 * np.arange(900))
+    found = periodogram(random.normal(size=(3, 900)) + wander(random, (3, 900), 30.0) + line)
+    best = found.usable[np.argmax(found.beyond_noise[found.usable])]
+    assert found.frequency[best] == pytest.approx(1.0, abs=0.01)
+    assert found.beyond_noise[best] > 0.5 * found.total[best]

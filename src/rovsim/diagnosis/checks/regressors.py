@@ -10,7 +10,7 @@ from scipy.stats import chi2
 from rovsim import AXES
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.observed_run import ObservedRun, number_blocks
 from rovsim.dynamics.effects.law import SMOOTH
 from rovsim.dynamics.low_pass import LowPass
 
@@ -61,6 +61,7 @@ def find_dependence(
     target, fitted = np.concatenate(residual.white), residual.fitted
     basis = np.linalg.qr(fitted.T)[0] if len(fitted) else np.empty((len(target), 0))
     limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
+    blocks = number_blocks(residual.runs)
     for name in tables[0]:
         pushes = [table[name] for table in tables]
         size = np.sqrt(np.mean(np.concatenate(pushes) ** 2))
@@ -72,7 +73,24 @@ def find_dependence(
         factor = float(own @ target) / power
         # only the part counts that no fitted parameter could have taken
         part = abs(factor) * size * np.sqrt(power / whole)
-        yield from residual.weigh(name, size=part, statistic=factor**2 * power, limit=limit)
+        statistic = factor**2 * power
+        if statistic > limit * _spread(own * (target - factor * own), power, blocks):
+            yield from residual.weigh(name, size=part, statistic=statistic, limit=limit)
+
+
+def _spread(products: Array, power: float, blocks: Array) -> float:
+    """How much more a factor is spread than where innovations are white (Liang & Zeger 1986).
+
+    Where a camera's errors last longer than the noise model has it, all readings of some time err
+    alike, and what agrees with them there agrees by chance.
+
+    Args:
+        products: of the column and what it leaves (n,).
+        power: the square of the column: their variance where innovations are white.
+        blocks: the block of time that each lies in (n,).
+    """
+    sums = np.bincount(blocks, products)
+    return max(1.0, float(sums @ sums) / power * len(sums) / max(1, len(sums) - 1))
 
 
 def _lag(v: Array, run: ObservedRun, memory: float) -> Array:

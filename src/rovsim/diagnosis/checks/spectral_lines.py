@@ -13,6 +13,7 @@ from typing import Callable, Iterator, Sequence
 import numpy as np
 from numpy import ndarray as Array
 from scipy.fft import next_fast_len
+from scipy.ndimage import median_filter
 from scipy.stats import chi2
 
 from rovsim import AXES
@@ -23,6 +24,9 @@ HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 # s: the steps between which bins begin, and of frames at 100 Hz. Where readings lie between them
 # a line of 5 Hz loses 0.8 % of its power: sinc(5 * 0.01)^2 (uniform rounding).
 FINE = 0.01
+# Steps of frequency, two for each that the longest run tells apart: a line is looked at beside the
+# 32 such nearest to it, of which it and its leakage fill a few.
+NEIGHBOURS = 65
 SINGULAR = 1e-6  # of the largest: sine and cosine are one column there
 COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 
@@ -46,6 +50,19 @@ class Periodogram:
         """Chi-square (f,) of all runs together."""
         return np.asarray(np.sum(self.power, axis=0))
 
+    @cached_property
+    def beyond_noise(self) -> Array:
+        """The same (f,) where the noise is not quite white: by what frequencies nearby have.
+
+        Noise that lasts longer than its model has it raises all slow frequencies alike, and is no
+        line. A level below that of white noise is chance.
+        """
+        first = self.usable[0] if len(self.usable) else 0
+        level = np.ones_like(self.total)
+        white = chi2.median(2 * len(self.power))
+        level[first:] = median_filter(self.total[first:], NEIGHBOURS) / white
+        return np.asarray(self.total / np.maximum(1.0, level))
+
 
 def find_lines(residual: AxisResidual) -> Iterator[Structure]:
     """One frequency for all runs, with or without overtones; perhaps growing with speed squared."""
@@ -60,16 +77,19 @@ def _judge_comb(
 ) -> Iterator[Structure]:
     """The strongest fundamental with these overtones."""
     within = spectrum.usable[spectrum.usable * comb[-1] < len(spectrum.frequency)]
-    statistic = sum(spectrum.total[m * within] for m in comb)
-    best = int(np.argmax(statistic))
+    beyond_noise = sum(spectrum.beyond_noise[m * within] for m in comb)
+    best = int(np.argmax(beyond_noise))
     k = within[best]
     looks = len(spectrum.usable) * len(COMBS) * len(ENVELOPES) * len(AXES)
     limit = chi2.isf(FALSE_ALARM / looks, 2 * len(comb) * len(residual.runs))
-    size = _push_power(spectrum, [m * k for m in comb], residual)
+    if beyond_noise[best] <= limit:
+        return
+    lines = [m * k for m in comb]
     overtones = ", with overtones" if len(comb) > 1 else ""
     yield from residual.weigh(
         f"a period of {1.0 / spectrum.frequency[k]:.3g} s{overtones}{growth}",
-        size=np.sqrt(size), statistic=statistic[best], limit=limit,
+        size=np.sqrt(_push_power(spectrum, lines, residual)),
+        statistic=float(np.sum(spectrum.total[lines])), limit=limit,
     )  # fmt: skip
 
 

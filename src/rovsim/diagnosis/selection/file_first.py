@@ -5,6 +5,7 @@ from rovsim.diagnosis.selection import loose_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
+from rovsim.diagnosis.selection.rivals import SURE
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 
@@ -28,6 +29,35 @@ def _is_as_good(workspace: SearchWorkspace, fewer: Fit, current: Fit, term: Term
         return workspace.score(fewer) > workspace.score(current) - loose_file.FILE_ODDS
     costs = [loose_file.measure_cost(workspace, one) for one in (fewer, current)]
     return costs[0] - costs[1] <= loose_file.find_limit(workspace, term)
+
+
+def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """From where to search on, if the file is likelier to be off everywhere than right.
+
+    Where each number of a file is a little off, none may be worth its price beside a special effect
+    that takes what several of them would explain together. So the file as a whole competes with all
+    special effects that it explains.
+    """
+    if is_off(current.hypothesis):
+        return current
+    rest = current
+    while explained := _find_explained(workspace, rest):
+        rest = workspace.fit(workspace.drop(rest, [(explained,)])[0])
+    doubt = loose_file.measure_doubt(workspace, rest)
+    if workspace.score(rest) + doubt < workspace.score(current) + SURE:
+        return current
+    loose = add_file(workspace, rest)
+    return loose if is_off(loose.hypothesis) else current
+
+
+def _find_explained(workspace: SearchWorkspace, found: Fit) -> Term | None:
+    """The special effect that a loose file needs least, if it explains one."""
+    special = [term for term in found.hypothesis.terms if term.id not in STATED]
+    beyond = [
+        loose_file.measure_loss(workspace, found, term) - loose_file.find_limit(workspace, term)
+        for term in special
+    ]
+    return special[beyond.index(min(beyond))] if beyond and min(beyond) <= 0.0 else None
 
 
 def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:

@@ -9,7 +9,12 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection import loose_file
-from rovsim.diagnosis.selection.file_first import add_file, hold_gain, prefer_file
+from rovsim.diagnosis.selection.file_first import (
+    add_file,
+    hold_gain,
+    prefer_file,
+    suspect_file,
+)
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.proposals import Proposal
@@ -150,9 +155,21 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
 
     The workspace's noise and filters follow what is found.
     """
-    settings = workspace.settings
-    workspace, current = prefer_steady(workspace, base)
-    while len(current.hypothesis.terms) < settings.most_effects:
+    workspace, current = _grow(*prefer_steady(workspace, base), seed)
+    loose = suspect_file(workspace, current)
+    if loose is not current:
+        workspace, current = _grow(workspace, loose, seed)
+    workspace = workspace.look_again(current)
+    current, _ = contest(workspace, current, 1)
+    current = change_mode(workspace, current)
+    current = hold_gain(workspace, prefer_file(workspace, current))
+    current, rivals = contest(workspace, current, workspace.settings.trials)
+    return Selection(workspace, current, tuple(rivals))
+
+
+def _grow(workspace: SearchWorkspace, current: Fit, seed: int) -> tuple[SearchWorkspace, Fit]:
+    """Add and swap until nothing more beats chance."""
+    while len(current.hypothesis.terms) < workspace.settings.most_effects:
         found = add_best(workspace, current, workspace.chance_limit(current, seed))
         if found is None:
             break
@@ -161,12 +178,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
         workspace, again = prefer_steady(workspace, workspace.fit(found.hypothesis))
         swap = max(SWAP, SLIGHT * gained)
         current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
-    workspace = workspace.look_again(current)
-    current, _ = contest(workspace, current, 1)
-    current = change_mode(workspace, current)
-    current = hold_gain(workspace, prefer_file(workspace, current))
-    current, rivals = contest(workspace, current, settings.trials)
-    return Selection(workspace, current, tuple(rivals))
+    return workspace, current
 
 
 def search_unnoticed(selection: Selection, seed: int) -> Selection:

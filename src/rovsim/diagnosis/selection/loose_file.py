@@ -71,6 +71,20 @@ def measure_cost(workspace: SearchWorkspace, found: Fit) -> float:
     return cost_beside(list_numbers(workspace), workspace.columns.products(found.seen))
 
 
+def measure_doubt(workspace: SearchWorkspace, found: Fit) -> float:
+    """How much likelier a file is that is off everywhere than one that is right beside a fit.
+
+    In twice a log likelihood: Bayes' factor, to first order, of all numbers of the file as free as
+    such files are off. Each number that nothing asks for counts against it.
+    """
+    numbers, products = list_numbers(workspace), workspace.columns.products(found.seen)
+    own = [number.row for number in numbers]
+    spread = np.array([number.spread for number in numbers])
+    told = spread[:, None] * products[np.ix_(own, own)] * spread
+    needless = float(np.linalg.slogdet(np.eye(len(own)) + told)[1])
+    return float(products[0, 0]) - cost_beside(numbers, products) - needless
+
+
 def measure_loss(workspace: SearchWorkspace, found: Fit, term: Term) -> float:
     """How much more is left beside a loose file without one term of a fit."""
     numbers, rest = list_numbers(workspace), workspace.products_without(found, term)
