@@ -4,10 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info
 
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import checked
-from rovsim.design.search import AT_ONCE, search
+from rovsim.design.plan import plan
+from rovsim.design.search import AT_ONCE, Range, Tried, search
 from rovsim.design.settings import LONGEST, SHORTEST, DesignSettings, Question
 
 
@@ -36,6 +38,52 @@ def test_a_search_flies_in_parts_and_keeps_numbers_alone():
     assert 0.7 < surge[0] <= 0.8
     assert (np.diff(surge) <= 0.0).all()
     assert all(isinstance(numbers, np.ndarray) for numbers in found)
+
+
+class Pilot:
+    """Flies anything, to no effect, and counts how often it took off."""
+
+    full, flown = np.ones(6), 0
+
+    def fly(self, sticks, headings):
+        """As many demands."""
+        self.flown += 1
+        return np.zeros((len(sticks), 1, 6))
+
+    def starts(self, headings):
+        """At rest."""
+        return np.zeros((len(headings), 13))
+
+
+def test_flights_fly_side_by_side_and_are_judged_when_asked_for(monkeypatch):
+    judged = []
+
+    def judge(self, sticks, *rest):
+        judged.append(sticks)
+        return Tried(sticks, 0.0, None, 0.0, None)
+
+    monkeypatch.setattr(Range, "_try", judge)
+    envelope, around = SimpleNamespace(longest=0.0), SimpleNamespace(seconds=1.0)
+    where = Range(Pilot(), envelope, None, None, around)
+    tried = where.try_numbers(list(np.random.default_rng(0).random((5, 31))))
+    next(tried)
+    assert (where.pilot.flown, len(judged)) == (1, 1)
+    assert len(list(tried)) == 4
+    assert where.pilot.flown == 1
+
+
+def test_a_plan_has_no_threads_for_small_matrices():
+    """On a busy machine they wait for one another: half of the time was theirs."""
+
+    class Seen(Exception):
+        pass
+
+    def look(stage):
+        raise Seen([one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"])
+
+    with pytest.raises(Seen) as found:
+        plan(None, None, None, None, None, look)
+    assert set(found.value.args[0]) == {1}
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from rovsim.design.flight import draw_chances
 from rovsim.design.from_train_runs import learn
 from rovsim.design.settings import Question
 from rovsim.design.steady_push import SteadyPush
+from rovsim.design.surroundings import surround
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
@@ -55,8 +56,8 @@ def test_a_force_that_the_model_lacks_pushes_all_that_could_happen(flown):
     found = learn(model, runs, QUESTION, built_in())
     missing = -FORCE / model.M[HEAVE, HEAVE]
     assert found.steady[0].mean[HEAVE] == pytest.approx(missing, rel=0.3)
-    edges, random = 0.05 * np.arange(201), np.random.default_rng(0)
-    chances = draw_chances([[model] * 20], found, edges, random)
+    around = surround(runs, 10.0, None, QUESTION.replay, built_in())
+    chances = draw_chances([[model] * 20], found, around, np.random.default_rng(0))
     assert chances.pushes[0, :, HEAVE] == pytest.approx(found.steady[0].mean[HEAVE])
     assert chances.pushes[..., HEAVE].mean() == pytest.approx(missing, rel=0.4)
     (told,) = doubt(found, QUESTION)

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.design.flight import Envelope, predict
+from rovsim.design.flight import Envelope
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.search import Range
 from rovsim.design.settings import Question
@@ -90,9 +90,10 @@ def no_flight(where: Range, question: Question) -> BadInput:
     """Why no flight stays within the limits, as the error to be raised."""
     resting = np.zeros((len(ticks(question.seconds)), len(AXES)))
     heading = where.envelope.longest
-    still = where.try_all([resting], [heading])[0]
+    still = next(where.try_all([resting], [heading]))
     start = where.pilot.starts(np.array([heading]))[0]
-    why = where.envelope.tell(predict(still.commands, start, where.chances, where.around))
+    paths = where.chances.predict(where.around.drives(still.commands), start)
+    why = where.envelope.tell(paths)
     told = f"a vehicle told to stay where it is already {why}" if why else NARROW
     doubts = doubt(where.known, question)
     found = f"no flight of {question.seconds:g} s stays within the limits: {told}"

@@ -1,6 +1,7 @@
 """Commands to predicted paths over all that is not yet known, and the limits they keep to."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Sequence
 
 import numpy as np
@@ -8,7 +9,6 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import exp, multiply, to_euler
-from rovsim.core.run import Commands
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.settings import FlightLimits
 from rovsim.design.surroundings import Surroundings
@@ -34,43 +34,74 @@ class Chances:
     pushes: Array
     shift: Array
     turn: Array
+    around: Surroundings
 
     def split(self, count: int) -> tuple["Chances", "Chances"]:
         """The first ones, and all others."""
         parts = (slice(0, count), slice(count, None))
         first, rest = (
-            Chances(self.models[p], self.pushes[p], self.shift[p], self.turn[p]) for p in parts
+            Chances(self.models[p], self.pushes[p], self.shift[p], self.turn[p], self.around)
+            for p in parts
         )
         return first, rest
 
+    def predict(self, drives: Drives, start: Array) -> Array:
+        """Paths (s, k+1, 13) under one log, from near a state (13,)."""
+        models, edges = self.models, self.around.edges
+        each = zip(drives.of(models), self._wrenches, strict=True)
+        pushed = [drive.pushed(push) for drive, push in each]
+        states = np.tile(start, (len(models), 1, 1))
+        afloat = models[0].vehicle.floats
+        states[:, 0, :3] += self.shift * np.where(np.arange(3) == 2, not afloat, 1)
+        states[:, 0, 3:7] = multiply(self._turns, states[:, 0, 3:7])
+        steps = np.array([len(edges) - 1])
+        starts = Starts(states, np.zeros(1, np.int64), steps, np.zeros((len(models), 1, 6)))
+        return np.array([own[0] for own in self._batch.trajectories(pushed, starts, edges)])
+
+    @cached_property
+    def _batch(self) -> Batch:
+        around = self.around
+        return Batch(self.models, around.site, candidates=around.wrenches, learned=False)
+
+    @cached_property
+    def _wrenches(self) -> list[Array]:
+        """Pushes of each model as wrenches (k, 6) N, N m."""
+        return [push @ model.M.T for push, model in zip(self.pushes, self.models, strict=True)]
+
+    @cached_property
+    def _turns(self) -> Array:
+        return exp(self.turn[:, None] * np.array([0.0, 0.0, 1.0]))
+
 
 def draw_chances(
-    each: Sequence[Sequence[Model]], known: Knowledge, edges: Array, random: np.random.Generator
-) -> Chances:
+    each: Sequence[Sequence[Model]], known: Knowledge, around: Surroundings,
+    random: np.random.Generator,
+) -> Chances:  # fmt: skip
     """Disturbances as the recordings show them, of models that could be true.
 
     Args:
         each: models of each rival, the likeliest first.
         known: of the train runs: the noise, and what pushes for long.
-        edges: ends (k+1,) s of the steps of a path, all as long.
+        around: the steps of a path.
         random: generator.
     """
-    chances = [_draw_of(own, known, k, edges, random) for k, own in enumerate(each)]
+    chances = [_draw_of(own, known, k, around, random) for k, own in enumerate(each)]
     parts = [one.split(1) for one in chances]
     ordered = [first for first, _ in parts] + [rest for _, rest in parts]
-    return Chances(
-        [model for one in ordered for model in one.models],
-        *(np.concatenate([getattr(one, name) for one in ordered])
-          for name in ("pushes", "shift", "turn")),
-    )  # fmt: skip
+    pushes, shift, turn = (
+        np.concatenate([getattr(one, name) for one in ordered])
+        for name in ("pushes", "shift", "turn")
+    )
+    models = [model for one in ordered for model in one.models]
+    return Chances(models, pushes, shift, turn, around)
 
 
 def _draw_of(
-    models: Sequence[Model], known: Knowledge, rival: int, edges: Array,
+    models: Sequence[Model], known: Knowledge, rival: int, around: Surroundings,
     random: np.random.Generator,
 ) -> Chances:  # fmt: skip
     """Of the models of one rival: what passes by, and what lasts and it does not know of."""
-    count, steps, h = len(models), len(edges) - 1, float(edges[1] - edges[0])
+    count, steps, h = len(models), len(around.edges) - 1, around.step
     noise, lasting = known.noise, known.steady[rival]
     level = noise.level * models[0].body.free
     memory = float(np.median(noise.memory))
@@ -82,25 +113,7 @@ def _draw_of(
     )
     shift, turn = PLACED * random.normal(size=(count, 3)), TURNED * random.normal(size=count)
     pushes[0], shift[0], turn[0] = lasting.mean, 0.0, 0.0
-    return Chances(models, pushes, shift, turn)
-
-
-def predict(commands: Commands, start: Array, chances: Chances, around: Surroundings) -> Array:
-    """Paths (s, k+1, 13) of the chances under one log, from near a state (13,)."""
-    models = list(chances.models)
-    drives = Drives(commands, around.edges, around.replay.commands).of(models)
-    pushed = [
-        drive.pushed(push @ model.M.T)
-        for drive, push, model in zip(drives, chances.pushes, models, strict=True)
-    ]
-    states = np.tile(start, (len(models), 1, 1))
-    states[:, 0, :3] += chances.shift * np.where(np.arange(3) == 2, not models[0].vehicle.floats, 1)
-    turns = exp(chances.turn[:, None] * np.array([0.0, 0.0, 1.0]))
-    states[:, 0, 3:7] = multiply(turns, states[:, 0, 3:7])
-    batch = Batch(models, around.site, candidates=around.wrenches, learned=False)
-    steps = len(around.edges) - 1
-    starts = Starts(states, np.zeros(1, np.int64), np.array([steps]), np.zeros((len(models), 1, 6)))
-    return np.array([own[0] for own in batch.trajectories(pushed, starts, around.edges)])
+    return Chances(models, pushes, shift, turn, around)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,16 +6,17 @@ from typing import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
+from threadpoolctl import threadpool_limits
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.design.authority import Authority
 from rovsim.design.doubts import doubt, no_flight, require_news, warn_of_walls
-from rovsim.design.flight import Chances, Envelope, draw_chances, predict
+from rovsim.design.flight import Chances, Envelope, draw_chances
 from rovsim.design.from_train_runs import learn
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.pilot import ModelPilot
-from rovsim.design.search import Range, Tried, search, try_usual
+from rovsim.design.search import Range, Tried, in_parts, search, try_usual
 from rovsim.design.settings import Question
 from rovsim.design.surroundings import Surroundings, surround
 from rovsim.design.worth import Worth, value
@@ -56,6 +57,7 @@ class Plan:
     doubts: tuple[str, ...]
 
 
+@threadpool_limits.wrap(limits=1, user_api="blas")  # matrices are too small for more to help
 def plan(
     model: Model, runs: Runs, question: Question, columns: Sequence[int] | None,
     catalogue: Catalogue, stage: Stage,
@@ -129,7 +131,7 @@ def _draw(
 ) -> Chances:
     """What could happen: the likeliest of each rival first, then others."""
     each = [rival.draw(max(2, count // len(known.rivals)), random) for rival in known.rivals]
-    return draw_chances(each, known, around.edges, random)
+    return draw_chances(each, known, around, random)
 
 
 def _choose(
@@ -144,9 +146,9 @@ def _choose(
     some = [rival.draw(TAKEN_OVER, random) for rival in where.known.rivals]
     best = {name: _first_safe(where, own, many) for name, own in usual.items()}
     rated = {name: (one, _average(where, one, some)) for name, one in best.items() if one}
-    again = (where.try_numbers(numbers[None])[0] for numbers in found)
-    able = (one for one in again if one.worth and _paths(where, one, many) is not None)
-    safe = list(islice(able, FINALISTS))
+    again = (one for some in in_parts(found) for one in where.try_numbers(some))
+    able = (one for one in again if one.worth)
+    safe = list(islice((one for one in able if _paths(where, one, many) is not None), FINALISTS))
     tried = [(one, _average(where, one, some)) for one in safe]
     everything = [*tried, *rated.values()]
     if not everything:
@@ -155,10 +157,9 @@ def _choose(
     require_news(worth, where.known)
     paths = _paths(where, flight, many)
     assert paths is not None
-    step = float(where.around.edges[1] - where.around.edges[0])
     return Plan(
-        flight, worth, {name: rated.get(name) for name in usual}, where.known, paths, step,
-        where.envelope, where.pilot.start, where.axes, where.around.site,
+        flight, worth, {name: rated.get(name) for name in usual}, where.known, paths,
+        where.around.step, where.envelope, where.pilot.start, where.axes, where.around.site,
         (*doubt(where.known, question), *warn_of_walls(paths, where.pilot.start, where.envelope)),
     )  # fmt: skip
 
@@ -172,19 +173,20 @@ def _first_safe(where: Range, tried: Sequence[Tried], many: Chances) -> Tried | 
 def _paths(where: Range, one: Tried, many: Chances) -> Array | None:
     """What could happen (s, k+1, 13); None where it leaves the limits."""
     start = where.pilot.starts(np.array([one.heading]))[0]
-    paths = predict(one.commands, start, many, where.around)
+    paths = many.predict(where.around.drives(one.commands), start)
     return paths if where.envelope.holds(paths) else None
 
 
 def _average(where: Range, one: Tried, some: Sequence[Sequence[Model]]) -> Worth:
     """The worth over models that could be true: the middle of each number."""
     start, found = where.pilot.starts(np.array([one.heading]))[0], []
+    drives = where.around.drives(one.commands)
     for models in zip(*some, strict=True):
         still = Chances(
             models, np.zeros((len(models), len(where.around.edges) - 1, 6)),
-            np.zeros((len(models), 3)), np.zeros(len(models)),
+            np.zeros((len(models), 3)), np.zeros(len(models)), where.around,
         )  # fmt: skip
-        paths = predict(one.commands, start, still, where.around)
+        paths = still.predict(drives, start)
         found.append(value(paths, one.commands, where.known, where.around, exact=True))
     return Worth(
         tuple(np.median([w.surer[k] for w in found], axis=0) for k in range(len(some))),

@@ -20,7 +20,7 @@ INFO = RunInfo("designed", "6dof", "train")
 def record(path: Array, commands: Commands, model: Model, around: Surroundings) -> ObservedRun:
     """The run that a true path (k+1, 13) of a model would be."""
     every, edges = around.parts, around.edges
-    seen = model.mocap_view.report(path, float(edges[1] - edges[0]))
+    seen = model.mocap_view.report(path, around.step)
     eta = np.hstack([seen[:, :3], continuous(seen[:, 3:7])])[::every]
     nu, time = seen[::every, 7:], edges[::every]
     make = _bins if around.like.motion.binned else _samples

@@ -6,15 +6,16 @@ than any within them, and the worse the farther beyond (Deb 2000).
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import product
-from typing import Any, NamedTuple, Sequence, cast
+from typing import Any, Iterator, NamedTuple, Sequence, cast
 
 import numpy as np
 import scipy
 from numpy import ndarray as Array
 
 from rovsim.core.run import Commands
-from rovsim.design.flight import Chances, Envelope, predict
+from rovsim.design.flight import Chances, Envelope
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.pilot import ModelPilot
 from rovsim.design.settings import DesignSettings
@@ -69,32 +70,37 @@ class Range:
         """Axes (j,) that a stick moves."""
         return np.flatnonzero(self.pilot.full)
 
-    def try_all(self, sticks: Sequence[Array], headings: Sequence[float]) -> list[Tried]:
-        """Each of the flights, side by side."""
+    def try_all(self, sticks: Sequence[Array], headings: Sequence[float]) -> Iterator[Tried]:
+        """Each of the flights: flown side by side, judged one after the other when asked for."""
         demands = self.pilot.fly(np.array(sticks), np.array(headings))
         starts = self.pilot.starts(np.array(headings))
         each = zip(sticks, headings, demands, starts, strict=True)
-        return [self._try(*one) for one in each]
+        return (self._try(*one) for one in each)
 
     def _try(self, sticks: Array, heading: float, demand: Array, start: Array) -> Tried:
         time = ticks(self.around.seconds)
         commands = self.pilot.authority.commands(time, demand, self.around.lines)
-        likeliest, rest = self.chances.split(len(self.known.rivals))
-        paths = predict(commands, start, likeliest, self.around)
+        drives, (likeliest, rest) = self.around.drives(commands), self._parts
+        paths = likeliest.predict(drives, start)
         excess, worth = self.envelope.excess(paths, still=True), None
         if excess == 0.0:
-            paths = np.concatenate([paths, predict(commands, start, rest, self.around)])
+            paths = np.concatenate([paths, rest.predict(drives, start)])
             excess = self.envelope.excess(paths)
         if excess == 0.0:
             worth = value(paths[: len(self.known.rivals)], commands, self.known, self.around)
         return Tried(sticks, heading, commands, excess, worth)
 
-    def try_numbers(self, x: Array) -> list[Tried]:
-        """Flights of numbers (m, 1 + 5 j) in [0, 1]: a heading, then five an axis."""
+    @cached_property
+    def _parts(self) -> tuple[Chances, Chances]:
+        """The likeliest of each rival, and all others."""
+        return self.chances.split(len(self.known.rivals))
+
+    def try_numbers(self, x: Sequence[Array]) -> Iterator[Tried]:
+        """Flights of numbers (1 + 5 j,) in [0, 1]: a heading, then five an axis; see `try_all`."""
         seconds = self.around.seconds
         sticks = [move_sticks(own[1:], self.axes, seconds) for own in x]
         tried = self.try_all(sticks, [self.envelope.longest + np.pi * own[0] for own in x])
-        return [replace(one, numbers=own) for one, own in zip(tried, x, strict=True)]
+        return (replace(one, numbers=own) for one, own in zip(tried, x, strict=True))
 
 
 def try_usual(where: Range, seed: int) -> dict[str, list[Tried]]:
@@ -129,7 +135,7 @@ def search(where: Range, settings: DesignSettings, seed: int) -> list[Array]:
 
     def rate(x: Array) -> Array:
         found = []
-        for some in _in_parts(np.clip(x.T, 0.0, 1.0)):
+        for some in in_parts(np.clip(x.T, 0.0, 1.0)):
             found += [Rated(one.numbers, _ranked(one)) for one in where.try_numbers(some)]
         archive.extend(found)
         return np.array([-one.rank for one in found])
@@ -147,8 +153,8 @@ def search(where: Range, settings: DesignSettings, seed: int) -> list[Array]:
     return [one.numbers for one in sorted(able, key=lambda one: -one.rank)]
 
 
-def _in_parts(x: Array) -> list[Array]:
-    """Flights (m, k) in parts of which memory holds the paths and logs."""
+def in_parts(x: Sequence[Array]) -> list[Sequence[Array]]:
+    """Flights, as numbers (k,) each, in parts of which memory holds the logs."""
     return [x[first : first + AT_ONCE] for first in range(0, len(x), AT_ONCE)]
 
 

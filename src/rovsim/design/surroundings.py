@@ -8,11 +8,12 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import CommandKind, Site
+from rovsim.core.run import CommandKind, Commands, Site
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.measurement.signals.measured import Measured
+from rovsim.simulation.drive import Drives
 from rovsim.simulation.settings import ReplaySettings
 
 FINE = 0.05  # s, the longest step of a predicted path: one step of the observer (observed_run.py)
@@ -71,6 +72,15 @@ class Surroundings:
         """Ends (k+1,) s of the steps; readings are `parts` of them apart."""
         count = int(self.seconds / self.like.period)
         return self.like.period / self.parts * np.arange(count * self.parts + 1)
+
+    @property
+    def step(self) -> float:
+        """Length in s of the steps of a predicted path."""
+        return float(self.edges[1] - self.edges[0])
+
+    def drives(self, commands: Commands) -> Drives:
+        """What a log does to models over these steps."""
+        return Drives(commands, self.edges, self.replay.commands)
 
     @cached_property
     def measured(self) -> Measured | None:

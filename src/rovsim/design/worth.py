@@ -142,8 +142,9 @@ def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, ex
         return np.inf
     beside = [a - b for a, b in zip(seen.e, true.e, strict=True)]
     beside = [*(0.0 * one for one in beside[:-1]), beside[-1]]  # what is known is judged already
-    e = bank.flatten([one[None] for one in beside], known.noise)[0]
-    J = bank.flatten(seen.J, known.noise)
+    rows = [np.concatenate([e[None], J]) for e, J in zip(beside, seen.J, strict=True)]
+    e, J = np.split(bank.flatten(rows, known.noise), [1])
+    e = e[0]
     near = np.eye(len(J)) / REACH**2 + (0.0 if exact else held)
     x = -solve(inner_products(J) + near, J @ e)
     left = (e + x @ J).reshape(6, -1)

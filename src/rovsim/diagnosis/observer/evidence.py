@@ -10,8 +10,6 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.model import Model
 
-STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
-
 Errors = Callable[[Sequence[Model]], list[Array]]
 
 
@@ -56,14 +54,12 @@ def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -
     `known`: derivatives of another hypothesis, which stand for those to the same parameters. Those
     of a law are its own: its terms move up as others go.
     """
-    x = at.x
+    count = len(at.x)
     taken = {} if known is None else _take(at, known)
-    new = [i for i in range(len(x)) if i not in taken]
-    steps = [_step_inward(at, x, i) for i in new]
-    moved = [at.at(x + step).model for step in steps]
-    sizes = np.array([step.sum() for step in steps])[:, None, None]
-    found = errors([at.model, *moved])
-    J = [np.empty((len(x), *f.shape[1:])) for f in found]
+    new = [i for i in range(count) if i not in taken]
+    sizes = at.steps[new][:, None, None]
+    found = errors([at.model, *(at.beside[i].model for i in new)])
+    J = [np.empty((count, *f.shape[1:])) for f in found]
     for k, f in enumerate(found):
         J[k][new] = (f[1:] - f[0]) / sizes
         for i, of_runs in taken.items():
@@ -79,17 +75,9 @@ def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
     return {i: [J[rows[name]] for J in known.J] for i, name in each if name in rows}
 
 
-def _step_inward(at: Hypothesis, x: Array, i: int) -> Array:
-    """A step of one parameter that stays inside its range."""
-    step = np.zeros(len(x))
-    parameter = [p for term in at.terms for p in term.parameters][i]
-    step[i] = max(STEP, parameter.grain / parameter.scale)
-    return -step if (x[i] + step[i]) * parameter.scale > parameter.high else step
-
-
 def step_back(at: Hypothesis, i: int) -> Hypothesis | None:
     """The other way from `linearise`'s step of one parameter; None where its range ends there."""
-    to = at.at(at.x - _step_inward(at, at.x, i))
+    to = at.at(at.x - np.where(np.arange(len(at.x)) == i, at.steps, 0.0))
     return to if to.x[i] != at.x[i] else None
 
 

@@ -10,6 +10,8 @@ from numpy import ndarray as Array
 from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.model import Model
 
+STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
+
 
 class Bounds(NamedTuple):
     """Least and greatest value that a fit may give a parameter, in its unit."""
@@ -121,6 +123,21 @@ class Hypothesis:
     def absence(self) -> Array:
         """Their values (k,), scaled, at which they change nothing."""
         return np.array([p.default / p.scale for term in self.terms for p in term.parameters])
+
+    @cached_property
+    def steps(self) -> Array:
+        """A step of each scaled parameter (k,) that stays inside its range, to see what changes."""
+        parameters = [p for term in self.terms for p in term.parameters]
+        sizes = [max(STEP, p.grain / p.scale) for p in parameters]
+        return np.array([
+            -step if (x + step) * p.scale > p.high else step
+            for x, step, p in zip(self.x, sizes, parameters, strict=True)
+        ], float)  # fmt: skip
+
+    @cached_property
+    def beside(self) -> list["Hypothesis"]:
+        """Hypotheses (k,) that are one of these steps away each; made once, as their models are."""
+        return [self.at(self.x + step) for step in np.diag(self.steps)]
 
     @property
     def columns(self) -> list[list[int]]:

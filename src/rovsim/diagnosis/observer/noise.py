@@ -157,5 +157,7 @@ def whiten_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Arr
 
 def _stack(polynomials: Sequence[Array]) -> Array:
     """Of the six axes, in powers of the delay: those of lower order end in zeros."""
-    length = max(len(own) for own in polynomials)
-    return np.array([np.pad(own, (0, length - len(own))) for own in polynomials])
+    found = np.zeros((len(polynomials), max(len(own) for own in polynomials)))
+    for row, own in zip(found, polynomials, strict=True):
+        row[: len(own)] = own
+    return found
