@@ -82,7 +82,7 @@ soak: setup chromium
 
 # As root, with Debian's slurm-wlm: a cluster of one node on this machine.
 test-slurm: setup
-	ROVSIM_SLURM=1 $(BIN)/python -m pytest -rP tests/cluster
+	ROVSIM_SLURM=1 $(BIN)/python -m pytest -rPs tests/cluster
 
 test-ui: setup chromium
 	$(BIN)/python -m pytest tests/browser

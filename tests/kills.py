@@ -34,8 +34,8 @@ WORKS = {
         "hydra.sweep.dir=results/sweep",
     ],
     "blind": [
-        *ROVSIM, "blind", "blind.suite=quick", "blind.seeds=development", "blind.methods=[stlsq]",
-        "blind.page=results/page.md", "out=results",
+        *ROVSIM, "blind", "blind.suite=laboratory", "blind.seeds=development",
+        "blind.methods=[stlsq]", "blind.page=results/page.md", "out=results",
     ],
 }  # fmt: skip
 

@@ -201,7 +201,7 @@ def test_the_thesis_chapter_runs_and_a_preempted_job_is_queued_again(slurm, clon
     needed(SHARED / "data" / "kth_tank_2025")
     file = clone / "campaigns" / "kth_tank_2025" / "campaign.yaml"
     content = read_yaml(file)
-    content["runs"] = [run for run in content["runs"] if run["id"] in RUNS]
+    content["runs"] = [run for run in content["runs"] if str(run["id"]) in RUNS]
     write_yaml(file, content)
     before = jobs(slurm, "COMPLETED")
     chapter = snakemake(clone, CHAPTER)
