@@ -18,8 +18,13 @@ import tempfile
 import time
 from pathlib import Path
 
+from rovsim.application.settings import compose
+from rovsim.benchmarks.blind.answers import KeptAnswer
+from rovsim.benchmarks.blind.run import Benchmark
 from small_study import ROOT, SMALL
 
+SUITE = ["blind.suite=quick", "blind.seeds=development", "blind.methods=[stlsq]"]
+ASKED = 3  # of its cases; the others are said to have been answered, which saves minutes
 ROVSIM = [sys.executable, "-m", "rovsim"]
 WORKS = {
     "study": [
@@ -33,10 +38,7 @@ WORKS = {
     "sweep": [*ROVSIM, "train", "-m", "campaign=raw", "residual=knn", "residual.k=5,9,15",
         "hydra.sweep.dir=results/sweep",
     ],
-    "blind": [
-        *ROVSIM, "blind", "blind.suite=laboratory", "blind.seeds=development",
-        "blind.methods=[stlsq]", "blind.page=results/page.md", "out=results",
-    ],
+    "blind": [*ROVSIM, "blind", *SUITE, "blind.page=results/page.md", "out=results"],
 }  # fmt: skip
 
 
@@ -73,7 +75,21 @@ def fresh(work: str, scratch: Path, name: str) -> Path:
     folder.mkdir(parents=True)
     if work not in ("study", "blind"):
         shutil.copytree(scratch / "raw", folder / "raw")
+    if work == "blind":
+        answer_most(folder / "results")
     return folder
+
+
+def answer_most(out: Path) -> None:
+    """Answers to all cases but a few that hide nothing, as of a method that failed."""
+    asked = Benchmark.of(compose(SUITE).blind, str(out)).pending()
+    asked.sort(key=lambda job: not job.case.id.startswith("none/"))
+    for job in asked[ASKED:]:
+        for method, path, mark in job.methods:
+            KeptAnswer(
+                digest=mark, method=method.name, case=job.case, redrawn=False, seconds=0.0,
+                cpu_seconds=0.0, diagnosis=None, bands=None, error="left out here",
+            ).write(path)  # fmt: skip
 
 
 def digests(folder: Path) -> dict[str, str]:
