@@ -6,10 +6,10 @@ import pytest
 
 from chromium import Tab, started
 from rovsim.results.diagnosis import Diagnosis
+from screens import READY
 from synthetic_study import several_effects
 
 pytestmark = pytest.mark.browser
-REPLAYED = "[data-name='run/now'][data-value]"
 NO_SUCH_BODY = "inertia matrix"
 LAW = {
     "axis": "sway", "equation": "Y = c v", "file": "proposed_effect.py",
@@ -29,7 +29,7 @@ def told(tab, words):
 def test_a_model_that_cannot_be_is_told_on_its_card_until_it_can(diagnosed_tab):
     page = diagnosed_tab.page
     diagnosed_tab.go("add")
-    page.wait_for_selector(REPLAYED)
+    page.wait_for_selector(READY["add"])
     page.get_by_label("Another effect").click()
     page.get_by_role("option", name="added_mass", exact=True).click()
     mass = page.get_by_label("added_mass, surge, number")
@@ -45,7 +45,7 @@ def test_a_model_that_cannot_be_is_told_on_its_card_until_it_can(diagnosed_tab):
 def test_why_a_model_was_not_saved_stays(diagnosed_tab, tmp_path):
     page = diagnosed_tab.page
     diagnosed_tab.go("add")
-    page.wait_for_selector(REPLAYED)
+    page.wait_for_selector(READY["add"])
     page.get_by_label("Model file").fill(str(tmp_path / "elsewhere.yaml"))
     page.get_by_role("button", name="Save").click()
     told(diagnosed_tab, "outside the folder")

@@ -7,6 +7,7 @@ import pytest
 from chromium import PICTURES, Tab, started
 from rovsim.reporting.wording import ERROR_MEANING
 from rovsim.results.diagnosis import Diagnosis
+from screens import READY
 
 pytestmark = pytest.mark.browser
 PICTURE = "What pushes and follows no law: on the path, in time and by frequency"
@@ -54,9 +55,6 @@ def test_the_ranking_keeps_what_is_likely_and_its_values_are_those_of_the_file(
     assert page.get_by_role("img", name=seen).count() == 1
 
 
-REPLAYED = "[data-name='run/now'][data-value]"
-
-
 def type_value(page, effect, parameter, value):
     """Type the value of an effect, as on a keyboard."""
     number = page.get_by_label(f"{effect}, {parameter}, number")
@@ -69,7 +67,7 @@ def test_what_is_wrong_with_a_draft_is_told_in_words_and_colour(diagnosed_tab):
     pytest.importorskip("axe_playwright_python")
     page = diagnosed_tab.page
     diagnosed_tab.go("add?run=3dof-1")
-    page.wait_for_selector(REPLAYED)
+    page.wait_for_selector(READY["add"])
     page.get_by_role("checkbox", name="quadratic_damping").click()
     card = page.locator(".card", has=page.get_by_role("checkbox", name="quadratic_damping"))
     card.get_by_text("Warning: the diagnosis did not select it: probability below 0.001").wait_for()
@@ -96,7 +94,7 @@ def test_without_a_diagnosis_add_shows_the_way_to_one_and_saves_nothing(
     try:
         tab = Tab(chromium.new_page(), address)
         tab.go("add")
-        tab.page.wait_for_selector(REPLAYED)
+        tab.page.wait_for_selector(READY["add"])
         save = tab.page.get_by_role("button", name="Save")
         assert save.is_disabled()
         tab.page.get_by_label("Another effect").click()
