@@ -1,5 +1,7 @@
 """Every screen: its size, its axes, its colours, and what axe-core says of it."""
 
+import re
+
 import pytest
 
 from chromium import DARK
@@ -23,6 +25,26 @@ APART = """() => {
     return legend && icons ? [middle - 8 - box(legend).y - box(legend).height] : [];
   }))};
 }"""
+
+
+# What stands along the axes of every chart.
+TICKS = """() => [...document.querySelectorAll('.chart')].flatMap(div => {
+  const model = getElement(div.id.slice(1)).chart.getModel();
+  return ['xAxis', 'yAxis'].flatMap(name => model.queryComponents({mainType: name})).flatMap(
+    one => one.axis.getViewLabels().map(label => label.formattedLabel));
+})"""
+HYPHENED = re.compile(r"(?<![\w.-])-\d")  # a number below zero without a minus sign
+
+
+@pytest.mark.parametrize("screen", ["compare", "where", "why", "add", "models"])
+def test_numbers_below_zero_have_a_minus_sign(tab, screen):
+    have_diagnosed(tab)
+    tab.go(screen)
+    tab.page.wait_for_selector(READY[screen])
+    tab.page.wait_for_selector(".chart canvas")
+    shown = [*tab.page.evaluate(TICKS), *tab.page.locator(".screen").inner_text().splitlines()]
+    assert [one for one in shown if HYPHENED.search(one)] == []
+    assert any("−" in one for one in shown)
 
 
 @pytest.mark.parametrize("screen", ["compare", "where", "add", "models"])

@@ -105,6 +105,7 @@ def test_the_report_explains_symbols(content):
 def test_numbers_below_zero_have_a_minus_sign():
     assert significant(-3.9444) == "−3.94"
     assert significant(-2e-7, 2) == "−2.0e−07"
+    assert interval(FittedValue(value=-0.03, std=3.0, unit="m")) == "0.0 ± 5.9 m"
     assert interval(FittedValue(value=-3.944, std=0.1, unit="N")) == "−3.94 ± 0.20 N"
     assert interval(FittedValue(value=-3.944, unit="N")) == "−3.944 N"
     assert rounded(-3.9444) == -3.94

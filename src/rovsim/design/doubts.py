@@ -16,6 +16,7 @@ from rovsim.design.sticks import ticks
 from rovsim.design.worth import Worth
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
+from rovsim.reporting.wording import minus
 from rovsim.simulation.replay import predict as replay
 from rovsim.simulation.windows import find_windows
 
@@ -63,7 +64,8 @@ def warn_of_walls(paths: Array, start: Array, envelope: Envelope) -> tuple[str, 
 
 def _name(push: SteadyPush) -> str:
     return " and ".join(
-        f"{push.mean[i]:.2g} {UNITS[i]} in {AXES[i]}" for i in np.flatnonzero(push.large)
+        f"{minus(f'{push.mean[i]:.2g}')} {UNITS[i]} in {AXES[i]}"
+        for i in np.flatnonzero(push.large)
     )
 
 

@@ -124,5 +124,5 @@ def rounded(value: float, digits: int = 3) -> float:
 
 
 def minus(number: str) -> str:
-    """A number as people write it: with a minus sign, not a hyphen."""
-    return number.replace("-", "−")
+    """A number as people write it: with a minus sign, not a hyphen; a zero has no sign."""
+    return number.replace("-", "−") if number.strip("-0.") else number.lstrip("-")

@@ -55,6 +55,17 @@ function oneBelowTheOther(shown, names) {
   return [["series", ...heads].slice(0, wide), ...rows];
 }
 
+// Numbers as everywhere else on the page: three digits are told, and a minus is a minus.
+function tellNumber(value) {
+  const told = [value].flat().map((one) => Number(one).toPrecision(3));
+  return told.join(", ").replaceAll("-", "\u2212");
+}
+
+// The same for the ends of an axis, whose numbers are round.
+function tellTick(value) {
+  return value.toLocaleString("en", {maximumSignificantDigits: 12}).replace("-", "\u2212");
+}
+
 // Charts and the tank take every turn of the wheel: without Ctrl it belongs to the page.
 addEventListener("wheel", event => {
   if (!event.ctrlKey && event.target.closest?.(".chart, .path")) event.stopPropagation();
@@ -68,7 +79,7 @@ function tellPanels(points, titles) {
   const lines = titles.map((title, k) => [title, known.filter(p => p.seriesId.startsWith(`${k}/`))])
     .filter(([, own]) => own.length)
     .map(([title, own]) => `<div>${clean(title)}: ` + own.map(point =>
-      `${point.marker}${clean(point.seriesName)} <b>${Number(point.value[1]).toPrecision(3)}</b>`
+      `${point.marker}${clean(point.seriesName)} <b>${tellNumber(point.value[1])}</b>`
     ).join(", ") + "</div>");
   return `${Number(points[0].axisValue).toFixed(2)} s${lines.join("")}`;
 }

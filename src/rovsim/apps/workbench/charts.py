@@ -34,6 +34,23 @@ class Panel:
     about: Mapping[str, str] = field(default_factory=dict)
 
 
+def with_minus(options: Options) -> Options:
+    """The same chart, its numbers on axes and at the pointer with a true minus (charts.js)."""
+    found = dict(options)
+    for name in {"xAxis", "yAxis"} & found.keys():
+        axes = found[name] if isinstance(found[name], list) else [found[name]]
+        found[name] = [_axis_with_minus(axis) for axis in axes]
+    if "tooltip" in found:
+        found["tooltip"] = {":valueFormatter": "tellNumber", **found["tooltip"]}
+    return found
+
+
+def _axis_with_minus(axis: Options) -> Options:
+    if axis.get("type") != "value":
+        return axis
+    return {**axis, "axisLabel": {":formatter": "tellTick", **axis.get("axisLabel", {})}}
+
+
 def styles(names: Sequence[str]) -> dict[str, Look]:
     """One look per name; the first of all is the measurement."""
     return looks(names)
@@ -95,7 +112,7 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         "legend": {"type": "scroll", "top": 0, "left": 56, "right": 8, "itemWidth": 34,
                    "itemStyle": {"opacity": 0}},
         "toolbox": {
-            "right": 8, "top": ICONS,
+            "right": 8, "top": ICONS, "iconStyle": {"borderColor": SOFT},
             "feature": {
                 "dataZoom": {"yAxisIndex": "none", "title": {"zoom": "zoom", "back": "back"}}
             },

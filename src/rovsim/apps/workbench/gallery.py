@@ -14,6 +14,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.reporting.catalogue.entries import PICTURES, chaptered, unit
+from rovsim.reporting.wording import minus
 
 TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look like?"
 DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`
@@ -24,10 +25,11 @@ async def show(bench: Workbench, place: Place) -> None:
     heading(TITLE, QUESTION)
     for chapter, effects in chaptered(bench.catalogue).items():
         section(chapter)
-        with ui.column().classes("effects"):
+        with ui.element("div").classes("catalogue"):
             for cls in effects:
-                ui.link(cls.id, f"/gallery/{cls.id}")
-                text((cls.__doc__ or "").split("\n")[0], "soft")
+                with ui.element("div"):
+                    ui.link(cls.id, f"/gallery/{cls.id}")
+                    text((cls.__doc__ or "").split("\n")[0], "soft")
 
 
 async def entry(bench: Workbench, effect: str) -> None:
@@ -41,7 +43,7 @@ async def entry(bench: Workbench, effect: str) -> None:
     formula(cls.equation)
     await picture(bench, cls)
     if cls.signature is not None:
-        hidden = ", ".join(f"{k} = {v:g}" for k, v in cls.signature.values.items())
+        hidden = ", ".join(f"{k} = {minus(f'{v:g}')}" for k, v in cls.signature.values.items())
         text(
             f"Hidden in a calm tank: {hidden}. Left: {_about(cls.signature)}; right: over time. "
             "Black is what the nominal model misses, orange what the true effect adds.", "soft",
@@ -49,7 +51,9 @@ async def entry(bench: Workbench, effect: str) -> None:
     for title, said in (("Cause", cls.cause), ("What settles it", cls.revealed_by)):
         ui.html(f"<p><strong>{title}.</strong> {escape(said)}</p>", sanitize=False).classes("text")
     text(f"Neglects {cls.neglects}. Source: {cls.source}.", "soft")
-    rows = [(p.name, [words(unit(p.unit) or "–"), words(f"{p.scale:g}")]) for p in cls.parameters]
+    rows = [
+        (p.name, [words(unit(p.unit) or "–"), words(minus(f"{p.scale:g}"))]) for p in cls.parameters
+    ]
     table("Parameters", ["name", "unit", "a change worth looking for"], rows)
     ui.link("All effects", "/gallery")
 

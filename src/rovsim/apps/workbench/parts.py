@@ -12,7 +12,7 @@ from typing import Any, Callable, Mapping, Sequence
 
 from nicegui import ui
 
-from rovsim.apps.workbench.charts import Options
+from rovsim.apps.workbench.charts import Options, with_minus
 from rovsim.reporting.formula import mathml
 from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
@@ -183,7 +183,7 @@ def chart(
     The CSV calls its `columns` as the axes are called, unless they are named.
     """
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}
-    found = ui.echart({**common, **options}, on_point_click)
+    found = ui.echart({**common, **with_minus(options)}, on_point_click)
     found.props.update({"role": "img", "aria-label": about})
     literal = json.dumps(dict(columns)).replace("<", "\\u003c")  # names of models are in it
     with ui.row().classes("keep"):

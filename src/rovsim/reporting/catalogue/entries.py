@@ -23,6 +23,7 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.effects.parameters import Signature
+from rovsim.reporting.wording import minus
 from rovsim.reporting.words.symbols import explain_symbols
 
 PAGE, PICTURES = "catalogue.md", "images/effects"
@@ -120,7 +121,9 @@ def _picture(name: str, signature: Signature | None, units: Mapping[str, str]) -
         return ""
     what = "size of the" if signature.size else "mean"
     over = f"{what} {signature.axis} error over {signature.condition}"
-    values = ", ".join(f"{k} = {v:g} {unit(units[k])}".strip() for k, v in signature.values.items())
+    values = ", ".join(
+        f"{k} = {minus(f'{v:g}')} {unit(units[k])}".strip() for k, v in signature.values.items()
+    )
     return (
         f"![{name}: {over}]({PICTURES}/{name}.png)\n\n<sub>Hidden: {values}. Left: {over}.</sub>\n"
     )
@@ -148,15 +151,15 @@ def _symbols(same: list[Parameter]) -> str:
 
 
 def _default(p: Parameter) -> str:
-    return "the site's" if np.isnan(p.default) else f"{p.default:g}"
+    return "the site's" if np.isnan(p.default) else minus(f"{p.default:g}")
 
 
 def _range(low: float, high: float) -> str:
     if np.isinf(low) and np.isinf(high):
         return "any"
     if np.isinf(high):
-        return f"≥ {low:g}"
-    return f"≤ {high:g}" if np.isinf(low) else f"{low:.3g} … {high:.3g}"
+        return minus(f"≥ {low:g}")
+    return minus(f"≤ {high:g}" if np.isinf(low) else f"{low:.3g} … {high:.3g}")
 
 
 def unit(si: str) -> str:
