@@ -20,6 +20,18 @@ SLOW_DRAWING = "GL Driver Message (OpenGL, Performance"  # of these flags: no us
 DESK, PHONE = (1280, 720), (390, 844)
 PICTURES = os.environ.get("ROVSIM_SCREENSHOTS")  # a folder: `make screenshots`
 DARK = "document.body.classList.contains('body--dark')"
+HOME = "/home/you"
+# A folder, and the one that it is in, in all texts, and where a way leads through folders.
+CALL_HOME = """([folder, home]) => {
+  const around = folder.replace(/\\/[^/]*$/, '');
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) texts.currentNode.data =
+    texts.currentNode.data.replaceAll(folder, home).replaceAll(around, home);
+  const known = folder.split('/').length, called = home.split('/').slice(1);
+  const way = [...document.querySelectorAll('.way button')].slice(1, known);
+  way.splice(called.length).forEach(button => button.remove());
+  way.forEach((button, k) => { button.querySelector('.block').innerText = called[k]; });
+}"""
 LOG = "workbench.log"  # what it says on the way: no traceback, if all is well
 
 
@@ -111,10 +123,21 @@ class Tab:
         found = Axe().run(self.page).response["violations"]
         return [f"{one['id']}, {one['nodes'][0]['html'][:120]}" for one in found]
 
-    def picture(self, name: str) -> None:
-        """A screenshot for the docs, where they were asked for."""
-        if PICTURES:
-            self.page.wait_for_timeout(800)
-            self.page.mouse.move(0, 0)
-            self.page.locator(".q-notification").first.wait_for(state="hidden")
-            self.page.screenshot(path=str(Path(PICTURES) / f"{name}.png"))
+    def picture(self, name: str, height: int = 0, home: Path | None = None) -> None:
+        """A screenshot for the docs, where they were asked for.
+
+        `height` of the window in px, where it needs another; `home`: a folder that it calls HOME,
+        because readers have no folder of tests.
+        """
+        if not PICTURES:
+            return
+        size = self.page.viewport_size
+        if height:
+            self.page.set_viewport_size({**size, "height": height})
+        self.page.wait_for_timeout(800)
+        self.page.mouse.move(0, 0)
+        self.page.locator(".q-notification").first.wait_for(state="hidden")
+        if home:
+            self.page.evaluate(CALL_HOME, [str(home), HOME])
+        self.page.screenshot(path=str(Path(PICTURES) / f"{name}.png"))
+        self.page.set_viewport_size(size)

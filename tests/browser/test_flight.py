@@ -27,7 +27,7 @@ def test_a_planned_flight_is_shown_with_what_it_promises_and_what_to_do(tab, pho
         assert one.page.get_by_text("over a million").count() == 1
         assert one.page.get_by_role("listitem").all_inner_texts()[-1] == "Send experiment.csv."
         assert one.page.evaluate("document.scrollingElement.scrollWidth - innerWidth") <= 0
-    tab.picture("flight")
+    tab.picture("flight", height=1250)
     with tab.page.expect_download() as log:
         tab.page.get_by_role("button", name="Commands (experiment.csv)").click()
     assert log.value.path().read_bytes() == (folder / "experiment.csv").read_bytes()
