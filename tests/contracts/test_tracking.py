@@ -1,5 +1,6 @@
 """What is tracked: a database that is whole, whoever is killed; runs that can be ranked."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +10,7 @@ from mlflow.store.tracking import sqlalchemy_store
 from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import TrackingSettings, compose
-from rovsim.application.tracking.runs import ranking, track
+from rovsim.application.tracking.runs import ranking, tell_ranking, track
 from rovsim.apps.cli.sweep import choose_out, name_run
 from rovsim.core.errors import BadInput
 
@@ -38,6 +39,26 @@ def test_a_database_that_was_being_made_is_made_anew(tmp_path, monkeypatch):
     assert (run.info.run_name, run.data.params) == ("second", {"k": "5"})
     assert settings.artifacts in experiment.artifact_location
     assert experiment.tags["mlflow.experimentKind"] == "custom_model_development"
+
+
+def test_an_experiment_has_a_view_that_ranks_its_models_and_says_where(tmp_path, monkeypatch):
+    """Opened in a browser, this view shows the runs with the error, the lowest first."""
+    monkeypatch.chdir(tmp_path)
+    settings = tracked("first")
+    client = MlflowClient(tracking_uri=f"sqlite:///{tmp_path / 'results' / 'mlflow.db'}")
+    experiment = client.get_experiment_by_name("tank")
+    view = json.loads(experiment.tags["mlflow.sharedViewState.ranking"])
+    number, key = experiment.experiment_id, "mlflow.note.content"
+    assert (view["orderByKey"], view["orderByAsc"]) == ("metrics.`windows_2s`", True)
+    assert "metrics.`windows_2s`" in view["selectedColumns"]
+    found = client.search_runs([number], view["searchFilter"])
+    assert [run.info.run_name for run in found] == []  # the first has no error
+    there = f"#/experiments/{number}/runs?viewStateShareKey=ranking"
+    assert there in experiment.tags[key]
+    assert f"http://127.0.0.1:5000/{there}" in tell_ranking(settings, "tank")
+    client.set_experiment_tag(number, key, "In May the tether was slack.")
+    tracked("second")  # leaves what people wrote
+    assert client.get_experiment(number).tags[key] == "In May the tether was slack."
 
 
 @pytest.mark.parametrize("uri", ["http://127.0.0.1:9", "sqlite:///text.db", "file:mlruns"])

@@ -4,6 +4,6 @@ Runs are written under a lock, one writer at a time, so parallel jobs never find
 """
 
 from rovsim.application.tracking.diagnosis import track_diagnosis
-from rovsim.application.tracking.runs import ranking, track
+from rovsim.application.tracking.runs import ranking, tell_ranking, track
 
-__all__ = ["ranking", "track", "track_diagnosis"]
+__all__ = ["ranking", "tell_ranking", "track", "track_diagnosis"]

@@ -9,15 +9,20 @@ import numpy as np
 from filelock import FileLock
 
 from rovsim.application.settings import TrackingSettings
+from rovsim.application.tracking.ranking_view import (
+    OF_BASE,
+    RANKED_BY,
+    SHOWN,
+    UI,
+    address,
+    tags_of,
+)
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.core.files import appearing
 from rovsim.results.base import ByAxis
 from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
 
-RANKED_BY = "windows_2s"
-# MLflow's page of an experiment: the one for models, not for prompts.
-SHOWN = {"mlflow.experimentKind": "custom_model_development"}
 PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes for each call
     "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",
     "MLFLOW_HTTP_REQUEST_TIMEOUT": "60",
@@ -73,7 +78,7 @@ def ranking(errors: Mapping[str, float | None], model: str, base: str) -> dict[s
     own, before = errors[model], errors[base]
     if own is None or not before:
         return {}
-    return {RANKED_BY: own, f"{RANKED_BY}/of_base": own / before}
+    return {RANKED_BY: own, OF_BASE: own / before}
 
 
 def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
@@ -95,6 +100,18 @@ def _flat(metrics: Metrics) -> Iterable[tuple[str, float | None]]:
             yield from ((f"{quantity}/{axis}", v) for axis, v in value)
         else:
             yield quantity, value
+
+
+def tell_ranking(settings: TrackingSettings, experiment: str) -> str:
+    """Where the models of a campaign are ranked, in words: what to start, and what to open."""
+    with _told(settings.uri):
+        number = _found(_client(settings), settings, experiment)
+    if _local(settings.uri) is None:
+        return f"Ranking of the models: {address(number, settings.uri.rstrip('/') + '/')}"
+    return (
+        f"Ranking of the models: mlflow ui --backend-store-uri {settings.uri}\n"
+        f"  {address(number, UI)}"
+    )
 
 
 def _log(client, run_id: str, params: Mapping, metrics: Mapping, files: Iterable[Path]) -> None:
@@ -167,6 +184,16 @@ def _absolute(uri: str) -> str:
 
 
 def _experiment(client, settings: TrackingSettings, name: str) -> str:
+    """Number of the experiment, made if need be, which shows what ranks its runs."""
+    found = _found(client, settings, name)
+    known = client.get_experiment(found).tags
+    for key, value in tags_of(found).items():
+        if key not in known:  # what people wrote there is theirs
+            client.set_experiment_tag(found, key, value)
+    return found
+
+
+def _found(client, settings: TrackingSettings, name: str) -> str:
     known = client.get_experiment_by_name(name)
     if known is not None:
         return known.experiment_id

@@ -18,7 +18,7 @@ from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, TrackingSettings
-from rovsim.application.tracking import ranking, track
+from rovsim.application.tracking import ranking, tell_ranking, track
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
@@ -80,7 +80,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         )
     told = {said[model]: error for model, error in errors.items()}
     text = tell_comparison(told, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
-    say(settings, f"{text}\n\n{file}", {"model": str(file), "errors": errors})
+    kept = tell_ranking(settings.tracking, data.campaign.name)
+    say(settings, f"{text}\n\n{file}\n\n{kept}", {"model": str(file), "errors": errors})
 
 
 def _check_name(given: str | Sequence[str]) -> None:
