@@ -3,6 +3,7 @@
 form         what a law is, whatever it is made of
 products     laws that are sums of products of what acts at the same instant
 with_memory  laws that remember: a wake by axis, play of the thrusters
+with_thrust  laws of the thrust: along one axis it pushes along another, or with the motion
 action       where a law acts, and whether something is left there
 effect_file  a law as a file that can be read and edited
 seek         the likeliest law

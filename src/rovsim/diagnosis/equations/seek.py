@@ -1,7 +1,7 @@
 """From what is left to an equation, or to none."""
 
 from dataclasses import dataclass, replace
-from typing import Iterable, Mapping, Sequence, TypeVar
+from typing import Any, Iterable, Mapping, Sequence, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -20,13 +20,16 @@ from rovsim.diagnosis.equations.products.library import (
     Columns,
     Known,
     LawTerm,
+    Push,
     list_terms,
     middle_of,
     project,
+    push,
 )
 from rovsim.diagnosis.equations.products.products import Products
-from rovsim.diagnosis.equations.products.search import propose
+from rovsim.diagnosis.equations.products.search import find_alone, propose
 from rovsim.diagnosis.equations.with_memory import FORMS
+from rovsim.diagnosis.equations.with_thrust import WithThrust, begin, list_thrust_terms, push_thrust
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.candidates import list_means
@@ -39,6 +42,7 @@ from rovsim.dynamics.effects.law import TERMS
 TRIED = 5  # terms that are fitted before one is added
 BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
 SURELY = 2.0  # times what chance allows: no fit to all runs brings so much below it
+PULLED, NEAR = 4, 0.5  # so many laws of the thrust are fitted, if they may gain half of products'
 FALSE_ALARM = 0.002  # of all terms together, as of every kind of structure
 
 Key = TypeVar("Key")
@@ -182,6 +186,26 @@ class LawSearch:
         action = find_action(grown.form, grown.fit, bank.runs)
         return is_half(action.axis, grown.fit, bank, SURELY)
 
+    def pull(self, start: Hypothesis, grown: Judged | None) -> list[Judged]:
+        """The likeliest law of the thrust, where it may come near to what products explain."""
+        fit = self.selection.fit(start)
+        runs, score = self.workspace.bank.runs, self.workspace.score(fit)
+        terms = list_thrust_terms(runs, fit.hypothesis.model)
+        if not terms or not fit.held:
+            return []
+        columns = weigh(self.workspace, fit, terms, middle_of(runs), push_thrust)
+        gain = find_alone(columns.products) - self.price
+        least = max(self.chance, 0.0 if grown is None else NEAR * (grown.score - score))
+        order = np.argsort(-gain, kind="stable")[:PULLED]
+        laws = {
+            int(k): (WithThrust(columns.terms[k]), begin(columns, int(k), fit.hypothesis))
+            for k in order if gain[k] > least
+        }  # fmt: skip
+        best, *others = self.race(laws, fit).values() or (None,)
+        if best is None or not self.is_worth(best, fit, score):
+            return []
+        return [best.beats(others)]
+
     def finish(self, grown: Judged) -> Judged:
         """Without effects of the catalogue that the law has made idle, and terms it can spare."""
         current = grown
@@ -231,13 +255,17 @@ def seek_law(selection: Selection) -> Judged | None:
     runs, found = selection.workspace.bank.runs, selection.found
     if not all((run.shown | ~run.free.astype(bool)).all() for run in runs):
         return None
-    search = LawSearch(selection, len(list_terms(runs)))
-    if not search.candidates:
+    terms = list_terms(runs)
+    if not terms:
         return None
+    thrusts = list_thrust_terms(runs, found.hypothesis.model)
+    search = LawSearch(selection, len(terms) + len(thrusts))
     starts = [found.hypothesis]
     if found.hypothesis.terms:
         starts.append(replace(found.hypothesis, terms=()))
-    grown = [one for start in starts if (one := search.grow(start)) is not None]
+    each = [(start, search.grow(start)) for start in starts]
+    grown = [one for _, one in each if one is not None]
+    grown += [one for start, own in each for one in search.pull(start, own)]
     grown += [one for start in starts for one in search.remember(start)]
     if all(search.is_surely_half(one) for one in search.keep_close(grown)):
         return None  # which effects it can spare need not be known
@@ -248,12 +276,13 @@ def seek_law(selection: Selection) -> Judged | None:
 
 
 def weigh(
-    workspace: SearchWorkspace, current: Fit, candidates: Sequence[LawTerm], middle: Array
-) -> Columns:
+    workspace: SearchWorkspace, current: Fit, candidates: Sequence[Any], middle: Array,
+    push: Push = push,
+) -> Columns:  # fmt: skip
     """All candidate terms against what a fit leaves."""
     bank, noise = workspace.bank, current.noise
     white, J = bank.whiten(current.seen.e, noise), bank.whiten(current.seen.J, noise)
     return project(
         candidates, current.hypothesis.model, bank, white, J, bank.tune(noise),
-        number_blocks(bank.runs) % BLOCKS, middle,
+        number_blocks(bank.runs) % BLOCKS, middle, push,
     )  # fmt: skip

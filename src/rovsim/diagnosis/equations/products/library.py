@@ -2,12 +2,13 @@
 
 Dimensions are kept since every coefficient has the unit that its term needs; what acts on the
 vehicle along its own axes must turn with the mirror of port and starboard as its axis does.
-Accelerations are no factors: a force proportional to one is inertia, which the catalogue has.
+Accelerations are no factors: a force proportional to one is inertia, which the catalogue has, and
+the engine has none before all forces are known.
 """
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Iterator, Sequence
+from typing import Any, Callable, Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -137,7 +138,7 @@ class Columns:
     what was fitted is projected out. One for all readings, and one `parts` for each block of time.
     """
 
-    terms: tuple[LawTerm, ...]
+    terms: tuple[Any, ...]
     size: Array
     parts: tuple[Array, ...]
 
@@ -206,8 +207,11 @@ def respond_to(pushes: Array, model: Model, run: ObservedRun, tuning: Tuning) ->
     return out
 
 
+Push = Callable[[Sequence[Any], ObservedRun, Model, Array], Array]  # as `push`
+
+
 def project(
-    terms: Sequence[LawTerm],
+    terms: Sequence[Any],
     model: Model,
     bank: FilterBank,
     white: Array,
@@ -215,6 +219,7 @@ def project(
     tunings: Sequence[Tuning],
     block: Array,
     middle: Array,
+    push: Push = push,
 ) -> Columns:
     """Inner products of all terms' columns with what is left.
 
@@ -227,8 +232,9 @@ def project(
         tunings: filters that made them white, one for each run.
         block: number (m,) of the part of the runs that each lies in.
         middle: see `push`.
+        push: wrenches of terms, if they are of another kind.
     """
-    size = _measure_size(terms, model, bank.runs, middle)
+    size = _measure_size(terms, model, bank.runs, middle, push)
     acts = np.flatnonzero(size > 0.0)
     kept = tuple(terms[int(k)] for k in acts)
     rows = 1 + len(acts) + len(fitted)
@@ -248,7 +254,7 @@ def project(
 
 
 def _measure_size(
-    terms: Sequence[LawTerm], model: Model, runs: Sequence[ObservedRun], middle: Array
+    terms: Sequence[Any], model: Model, runs: Sequence[ObservedRun], middle: Array, push: Push
 ) -> Array:
     """Root mean square (c,) of the wrench of each term with a coefficient of 1, over all runs."""
     square, count = np.zeros(len(terms)), 0

@@ -29,13 +29,13 @@ def propose(columns: Columns, steps: int) -> list[LawTerm]:
     whole = columns.products
     subsets = [whole, *(whole - part for part in columns.parts)]
     named = Counter(k for products in subsets for k in _follow(products, steps))
-    alone = _alone(whole)
+    alone = find_alone(whole)
     order = sorted(named, key=lambda k: (-named[k], -alone[k]))
     order += [int(k) for k in np.argsort(-alone, kind="stable")[:FIRST] if k not in named]
     return [columns.terms[k] for k in order]
 
 
-def _alone(products: Array) -> Array:
+def find_alone(products: Array) -> Array:
     """What each term (c,) explains alone, in twice the log likelihood."""
     power = np.diag(products)[1:]
     return np.divide(products[0, 1:] ** 2, power, out=np.zeros(len(power)), where=power > 0.0)
@@ -45,7 +45,7 @@ def _follow(products: Array, steps: int) -> list[int]:
     """The terms of PySINDy's forward regression, in order."""
     from pysindy import FROLS
 
-    kept = np.sort(np.argsort(-_alone(products), kind="stable")[:KEPT])
+    kept = np.sort(np.argsort(-find_alone(products), kind="stable")[:KEPT])
     H, b = products[1:, 1:][np.ix_(kept, kept)], products[1:, 0][kept]
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     X, y = _as_rows(H / np.outer(scale, scale), b / scale)

@@ -1,0 +1,214 @@
+"""Laws of the thrust: along one axis it pushes along another, or with the motion.
+
+A jet that is blown aside, water that hovering thrusters take along, a thruster that sits elsewhere
+than the vehicle file says. One term each; how the thrust itself comes about is the catalogue's.
+"""
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from textwrap import indent
+from typing import Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.diagnosis.checks.regressors import EARLIER
+from rovsim.diagnosis.equations.effect_file import write_effect
+from rovsim.diagnosis.equations.form import Form, Number, Part
+from rovsim.diagnosis.equations.products.library import Columns
+from rovsim.diagnosis.equations.products.products import KERNEL
+from rovsim.diagnosis.equations.products.variables import FORCES, IN_CODE, NU, ODD
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.thrust_law import ALONE, OTHER, THRUSTERS, ThrustLaw
+from rovsim.dynamics.model import Model
+
+NAMES = ("ahead", "to starboard", "downwards", "in roll", "in pitch", "in yaw")
+
+
+@dataclass(frozen=True)
+class ThrustTerm:
+    """What acts `on` an axis: `thrust` along one (its size where `unsigned`), and a `factor`.
+
+    The factor is a velocity (0 to 5), its size (6 to 11), or the thrust along `other`.
+    """
+
+    on: int
+    thrust: int
+    unsigned: bool = False
+    factor: int = ALONE
+    other: int = ALONE
+
+    @property
+    def odd(self) -> bool:
+        """Whether it changes sign when port and starboard are exchanged."""
+        odd = (self.thrust in ODD and not self.unsigned) + (self.other in ODD)
+        return (odd + (0 <= self.factor < 6 and self.factor in ODD)) % 2 == 1
+
+
+def list_thrust_terms(runs: Sequence[ObservedRun], model: Model) -> list[ThrustTerm]:
+    """Terms that turn with the mirror, but for a thrust along its own axis; none where unknown."""
+    B = model.body.B
+    if not 0 < B.shape[1] <= THRUSTERS or len(model.vehicle.thrusters.units) != B.shape[1]:
+        return []
+    moving = [int(i) for i in np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))]
+    driven = [j for j in range(6) if np.abs(B[j]).max() > 1e-3]
+    terms = (term for i in moving for j in driven for term in _of(i, j, moving, driven))
+    return [term for term in dict.fromkeys(terms) if term.odd == (term.on in ODD)]
+
+
+def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterator[ThrustTerm]:
+    if i != j:
+        yield ThrustTerm(i, j)
+    yield ThrustTerm(i, j, True)
+    for k in moving:
+        yield from (ThrustTerm(i, j, False, k), ThrustTerm(i, j, True, k))
+        yield ThrustTerm(i, j, False, 6 + k)
+    for k in driven:
+        if k >= j:
+            yield ThrustTerm(i, j, False, OTHER, k)
+        if k != j:
+            yield ThrustTerm(i, j, True, OTHER, k)
+
+
+def push_thrust(
+    terms: Sequence[ThrustTerm], run: ObservedRun, model: Model, middle: Array
+) -> Array:
+    """Wrench (c, n, 6) of terms with a coefficient of 1 at the readings of a run."""
+    past = max(1, round(EARLIER / run.period))
+    state = run.motion.state[np.clip(run.index - past, 0, len(run.motion.time) - 1)]
+    step = np.minimum(run.at[run.index], len(run.grid) - 2)
+    force = run.replay_drives.of([model])[0].force[step]
+    return push_at(terms, np.nan_to_num(state[:, 7:]), force @ model.body.B.T)
+
+
+def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
+    """Wrench (c, n, 6) of terms at velocities (n, 6) and thrust (n, 6) N, N m."""
+    found = np.zeros((len(terms), len(nu), 6))
+    table = np.hstack([nu, np.abs(nu)])
+    for out, term in zip(found, terms, strict=True):
+        value = thrust[:, term.thrust]
+        value = np.abs(value) if term.unsigned else value
+        if term.factor == OTHER:
+            value = value * thrust[:, term.other]
+        elif term.factor >= 0:
+            value = value * table[:, term.factor]
+        out[:, term.on] = value
+    return found
+
+
+def begin(columns: Columns, k: int, h: Hypothesis) -> Hypothesis:
+    """A hypothesis with the law of the k-th term, at what the regression gives it."""
+    term, power = columns.terms[k], columns.products[1 + k, 1 + k]
+    law = build_law(term, h.model, float(columns.size[k]), columns.products[0, 1 + k] / power)
+    return replace(h, terms=(*h.terms, law))
+
+
+def build_law(term: ThrustTerm, model: Model, size: float, coefficient: float) -> Term:
+    """The law of a term that pushes with an RMS of `size` where its coefficient is 1."""
+    B = model.body.B
+    values = {"c": float(coefficient), "size": 1.0 / size, "on": float(term.on)}
+    values |= {"unsigned": float(term.unsigned), "factor": float(term.factor)}
+    values |= {f"b{i}": float(b) for i, b in enumerate(B[term.thrust])}
+    if term.factor == OTHER:
+        values |= {f"d{i}": float(b) for i, b in enumerate(B[term.other])}
+    return Term(ThrustLaw(**values), ("c",))
+
+
+@dataclass(frozen=True)
+class WithThrust(Form):
+    """A coefficient times a thrust, and perhaps another factor."""
+
+    term: ThrustTerm
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """It is one."""
+        own = (NU[self.term.factor % 6],) if 0 <= self.term.factor < OTHER else ()
+        return (Part(AXES[self.term.on], ("thrust", *own)),)
+
+    @property
+    def equation(self) -> str:
+        """In LaTeX."""
+        t = self.term
+        factors = [rf"|T_{FORCES[t.thrust]}|" if t.unsigned else f"T_{FORCES[t.thrust]}"]
+        if t.factor == OTHER:
+            factors.append(f"T_{FORCES[t.other]}")
+        elif t.factor >= 0:
+            v = NU[t.factor % 6]
+            factors.append(v if t.factor < 6 else f"|{v}|")
+        product = r"\,".join(("c", *factors))
+        return f"{FORCES[t.on]} = {product}"
+
+    @property
+    def meaning(self) -> str:
+        """In a sentence."""
+        t, what = self.term, "moment" if self.term.on >= 3 else "force"
+        more = ""
+        if t.factor == OTHER:
+            more = f" and that {NAMES[t.other]} (T_{FORCES[t.other]})"
+        elif t.factor >= 0:
+            more = f" and {AXES[t.factor % 6]} {'velocity' if t.factor < 6 else 'speed'}"
+        own = f"the thrust {NAMES[t.thrust]} (T_{FORCES[t.thrust]})"
+        return f"A {AXES[t.on]} {what} that varies with {own}{more}."
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the coefficient."""
+        t = self.term
+        powers = Counter({"N": 0, "m": int(t.on >= 3) - int(t.thrust >= 3)})
+        if t.factor == OTHER:
+            powers.update({"N": -1, "m": -int(t.other >= 3)})
+        elif t.factor >= 0:
+            powers.update({"s": 1, **({"rad": -1} if t.factor % 6 >= 3 else {"m": -1})})
+        above = [n if p == 1 else f"{n}{p}" for n, p in powers.items() if p > 0]
+        below = [n if p == -1 else f"{n}{-p}" for n, p in powers.items() if p < 0]
+        under = f"({' '.join(below)})" if len(below) > 1 else "".join(below)
+        return (" ".join(above) or "1") + (f"/{under}" if under else "")
+
+    def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
+        """The coefficient."""
+        size = law.effect["size"]
+        value = law.effect["c"] * size
+        scale = float(f"{max(abs(value), 1e-6):.1g}")
+        return [Number(AXES[self.term.on], self.unit, "c", value, std["c"] * size, scale)]
+
+    def divide(self, law: Term) -> list[Effect]:
+        """It is one."""
+        return [law.effect]
+
+    def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
+        """A kernel of plain arithmetic that reads the thrusters."""
+        return write_effect(
+            name, self, numbers, story, base="Wrench", imports="", start={},
+            method=KERNEL.format(body=indent("\n".join(self._lines(law)), "    ")),
+        )  # fmt: skip
+
+    def _lines(self, law: Term) -> Iterator[str]:
+        t = self.term
+        yield "F = at.actuators.force"
+        yield f"T_{FORCES[t.thrust]} = {_sum(law, 'b')}  # thrust {NAMES[t.thrust]}"
+        factors = [f"p.{AXES[t.on]}", f"abs(T_{FORCES[t.thrust]})" if t.unsigned else
+                   f"T_{FORCES[t.thrust]}"]  # fmt: skip
+        if t.factor == OTHER:
+            if t.other != t.thrust:
+                yield f"T_{FORCES[t.other]} = {_sum(law, 'd')}  # thrust {NAMES[t.other]}"
+            factors.append(f"T_{FORCES[t.other]}")
+        elif t.factor >= 0:
+            v = IN_CODE[t.factor % 6]
+            yield f"{v} = at.nu_r[{t.factor % 6}]"
+            factors.append(v if t.factor < 6 else f"abs({v})")
+        yield f"push = {' * '.join(factors)}"
+        yield "return " + ", ".join("push" if i == t.on else "0.0" for i in range(6))
+
+    def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
+        """It has one term."""
+        return []
+
+
+def _sum(law: Term, row: str) -> str:
+    """Thrust along an axis, of the thrusters that have a share in it."""
+    shares = [(i, float(f"{law.effect[f'{row}{i}']:.6g}")) for i in range(THRUSTERS)]
+    return " + ".join(f"{b:g} * F[{i}]" for i, b in shares if b)

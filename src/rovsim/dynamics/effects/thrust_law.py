@@ -1,0 +1,62 @@
+"""A push that follows the thrust: one of the laws that a diagnosis may propose, its term as data.
+
+The term is a coefficient, the axis it acts on, the thrust along an axis (as the forces of the
+thrusters and a row of the allocation make it) or its size, and perhaps one more factor: a
+velocity, its size, or the thrust along another axis.
+"""
+
+from rovsim.dynamics.effects.base import Parameter, Wrench
+from rovsim.dynamics.engine.compiled import inlined
+
+THRUSTERS = 12  # a vehicle with more has no such law
+FIRST, SECOND = 5, 5 + THRUSTERS  # where a row of the allocation begins among the parameters
+ALONE, OTHER = -1, 12  # codes of the further factor: none, and thrust; below 12 velocities, sizes
+
+
+@inlined
+def along(force, p, first):
+    """Thrust along an axis, N or N m."""
+    found = 0.0
+    for i in range(min(force.size, THRUSTERS)):
+        found += p[first + i] * force[i]
+    return found
+
+
+class ThrustLaw(Wrench):
+    """The thrust along one axis pushes along another, or with the motion."""
+
+    id = "thrust_law"
+    listed = False
+    through = "thrusters"
+    equation = r"\tau_i = c\,|T_j|\,\nu_k"
+    neglects = "what differs between thrusters"
+    source = "definition"
+    parameters = (
+        Parameter("c", "1", "c", scale=1.0),
+        *(
+            Parameter(name, "1", name, default=-1.0, scale=1.0, fitted=False)
+            for name in ("size", "on", "unsigned", "factor")
+        ),
+        *(Parameter(f"b{i}", "1", "b", scale=1.0, fitted=False) for i in range(THRUSTERS)),
+        *(Parameter(f"d{i}", "1", "d", scale=1.0, fitted=False) for i in range(THRUSTERS)),
+    )
+
+    @staticmethod
+    def wrench(at, p):
+        """One component."""
+        force = at.actuators.force
+        value, k = along(force, p, FIRST), int(p.factor)
+        if p.unsigned > 0.0:
+            value = abs(value)
+        if k == OTHER:
+            value *= along(force, p, SECOND)
+        elif k >= 6:
+            value *= abs(at.nu_r[k - 6])
+        elif k >= 0:
+            value *= at.nu_r[k]
+        value *= p.c * p.size
+        on = int(p.on)
+        return (
+            value if on == 0 else 0.0, value if on == 1 else 0.0, value if on == 2 else 0.0,
+            value if on == 3 else 0.0, value if on == 4 else 0.0, value if on == 5 else 0.0,
+        )  # fmt: skip
