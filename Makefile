@@ -15,7 +15,7 @@ help:
 	@echo "make ui      the workbench in the browser (CAMPAIGN=DIR opens one)"
 	@echo "make test    every test"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
-	@echo "make fuzz    hostile input at every door: TRIES=2000"
+	@echo "make fuzz    hostile input at every door: TRIES=2000 FIRST=1000"
 	@echo "make kills   commands killed at random moments: KILLS=20 each"
 	@echo "make crowd   two studies, two sweeps and a workbench at once on one database"
 	@echo "make soak    a long day at the workbench: 1,000 replays, 20 campaigns"
@@ -60,10 +60,11 @@ wheel-test: setup
 ui: setup
 	$(BIN)/rovsim ui $(if $(CAMPAIGN),campaign=$(CAMPAIGN))
 
-# Seeds that no test tries, TRIES at each door.
+# Seeds that no test tries, from FIRST on, TRIES at each door.
 TRIES ?= 2000
+FIRST ?= 1000
 fuzz: setup
-	ROVSIM_FUZZ=$(TRIES) ROVSIM_FUZZ_FIRST=1000 ROVSIM_MUTATIONS=500 $(BIN)/python -m pytest -n $(CORES) tests/fuzz tests/contracts/test_damaged_recordings.py
+	ROVSIM_FUZZ=$(TRIES) ROVSIM_FUZZ_FIRST=$(FIRST) ROVSIM_MUTATIONS=500 $(BIN)/python -m pytest -n $(CORES) tests/fuzz tests/contracts/test_damaged_recordings.py
 
 # Each command killed that often, at random moments: it must end as if nothing had happened.
 KILLS ?= 20
