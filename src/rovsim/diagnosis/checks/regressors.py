@@ -74,14 +74,15 @@ def find_dependence(
         # only the part counts that no fitted parameter could have taken
         part = abs(factor) * size * np.sqrt(power / whole)
         statistic = factor**2 * power
-        if statistic > limit * _spread(own * (target - factor * own), power, blocks):
+        left = own * (target - factor * own)
+        if not residual.of_channels or statistic > limit * _spread(left, power, blocks):
             yield from residual.weigh(name, size=part, statistic=statistic, limit=limit)
 
 
 def _spread(products: Array, power: float, blocks: Array) -> float:
     """How much more a factor is spread than where innovations are white (Liang & Zeger 1986).
 
-    Where a camera's errors last longer than the noise model has it, all readings of some time err
+    Where a sensor's errors last longer than the noise model has it, all readings of some time err
     alike, and what agrees with them there agrees by chance.
 
     Args:

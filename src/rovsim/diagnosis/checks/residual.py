@@ -62,9 +62,13 @@ class AxisResidual:
     undecided: tuple[Array, ...]
 
     @property
+    def of_channels(self) -> bool:
+        """Whether channels were measured in some run, and not full poses."""
+        return any(run.motion.measured is not None for run in self.runs)
+
+    @property
     def _margin(self) -> float:
-        channels = any(run.motion.measured is not None for run in self.runs)
-        return CHANNELS if channels else 1.0
+        return CHANNELS if self.of_channels else 1.0
 
     def respond(self, pushes: Sequence[Array]) -> Array:
         """How pushes (n_run,) on the runs would show (n,) over all of them."""
