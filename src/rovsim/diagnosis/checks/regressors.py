@@ -61,7 +61,7 @@ def find_dependence(
     target, fitted = np.concatenate(residual.white), residual.fitted
     basis = np.linalg.qr(fitted.T)[0] if len(fitted) else np.empty((len(target), 0))
     limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
-    blocks = number_blocks(residual.runs)
+    blocks = number_blocks(residual.runs) if residual.of_channels else None
     for name in tables[0]:
         pushes = [table[name] for table in tables]
         size = np.sqrt(np.mean(np.concatenate(pushes) ** 2))
@@ -74,9 +74,11 @@ def find_dependence(
         # only the part counts that no fitted parameter could have taken
         part = abs(factor) * size * np.sqrt(power / whole)
         statistic = factor**2 * power
-        left = own * (target - factor * own)
-        if not residual.of_channels or statistic > limit * _spread(left, power, blocks):
-            yield from residual.weigh(name, size=part, statistic=statistic, limit=limit)
+        if blocks is not None:
+            spread = _spread(own * (target - factor * own), power, blocks)
+            if statistic <= limit * spread:
+                continue
+        yield from residual.weigh(name, size=part, statistic=statistic, limit=limit)
 
 
 def _spread(products: Array, power: float, blocks: Array) -> float:
