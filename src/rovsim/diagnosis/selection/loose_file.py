@@ -60,10 +60,15 @@ def cost_beside(numbers: list[FileNumber], products: Array) -> float:
         numbers: of the file.
         products: of the innovations and the candidates' columns (1 + c, 1 + c).
     """
+    H, b, spread = _take(numbers, products)
+    return float(products[0, 0] - b @ solve(H + np.diag(spread**-2.0), b))
+
+
+def _take(numbers: list[FileNumber], products: Array) -> tuple[Array, Array, Array]:
+    """Of the numbers of the file: products with each other and the innovations, and spread."""
     own = [number.row for number in numbers]
     spread = np.array([number.spread for number in numbers])
-    H, b = products[np.ix_(own, own)], products[own, 0]
-    return float(products[0, 0] - b @ solve(H + np.diag(spread**-2.0), b))
+    return products[np.ix_(own, own)], products[own, 0], spread
 
 
 def measure_cost(workspace: SearchWorkspace, found: Fit) -> float:
@@ -78,10 +83,8 @@ def measure_doubt(workspace: SearchWorkspace, found: Fit) -> float:
     such files are off. Each number that nothing asks for counts against it.
     """
     numbers, products = list_numbers(workspace), workspace.columns.products(found.seen)
-    own = [number.row for number in numbers]
-    spread = np.array([number.spread for number in numbers])
-    told = spread[:, None] * products[np.ix_(own, own)] * spread
-    needless = float(np.linalg.slogdet(np.eye(len(own)) + told)[1])
+    H, _, spread = _take(numbers, products)
+    needless = float(np.linalg.slogdet(np.eye(len(H)) + spread[:, None] * H * spread)[1])
     return float(products[0, 0]) - cost_beside(numbers, products) - needless
 
 
