@@ -42,6 +42,26 @@ def test_a_model_that_cannot_be_is_told_on_its_card_until_it_can(diagnosed_tab):
     alert.wait_for(state="hidden")
 
 
+def test_a_draft_that_could_not_be_when_the_page_was_opened_is_replayed_once_it_can(diagnosed_tab):
+    page = diagnosed_tab.page
+    diagnosed_tab.go("add")
+    page.wait_for_selector(READY["add"])
+    page.get_by_label("Another effect").click()
+    page.get_by_role("option", name="added_mass", exact=True).click()
+    mass = page.get_by_label("added_mass, surge, number")
+    mass.fill("-10000")
+    mass.press("Enter")
+    told(diagnosed_tab, NO_SUCH_BODY)
+    diagnosed_tab.go("add")
+    alert = told(diagnosed_tab, NO_SUCH_BODY)
+    assert page.locator(READY["add"]).count() == 0
+    mass.fill("1")
+    mass.press("Enter")
+    alert.wait_for(state="hidden")
+    page.wait_for_selector(READY["add"])
+    page.get_by_role("checkbox", name="added_mass").click()
+
+
 def test_why_a_model_was_not_saved_stays(diagnosed_tab, tmp_path):
     page = diagnosed_tab.page
     diagnosed_tab.go("add")

@@ -44,6 +44,7 @@ class Add:
         }  # fmt: skip
         self.chosen = place.choose(first, possible)
         self.wanted = self.drawing = False
+        self.missing = False  # no chart, as the draft was no model
         self.drawn = 0  # times
         self.traces: Traces | None = None
 
@@ -114,22 +115,23 @@ class Add:
 
     async def draw(self) -> None:
         """The chart and the two errors, anew."""
-        model = self._model()
-        if model is None:
-            return
         self.area.clear()
+        self.traces, self.wanted = None, False
         self.drawn += 1
         mine = self.drawn
-        with self.area:
-            waiting = ui.spinner()  # the first replay with a new force compiles it
-        base, before = await computed(self._replayed, self.bench.base)
-        new, now = await computed(self._replayed, model)
-        if mine != self.drawn:  # something else was chosen meanwhile
+        model = self._model()
+        self.missing = model is None
+        if model is None:
             return
-        waiting.delete()
-        motion = self.bench.data.motions[self.run]
-        self.base = base
-        with self.area:
+        with self.area:  # outlives the control that was used
+            waiting = ui.spinner()  # the first replay with a new force compiles it
+            base, before = await computed(self._replayed, self.bench.base)
+            new, now = await computed(self._replayed, model)
+            if mine != self.drawn:  # something else was chosen meanwhile
+                return
+            waiting.delete()
+            motion = self.bench.data.motions[self.run]
+            self.base = base
             shown = panels(motion, {self.bench.base.name: base, "new": new}, self.axes)
             about = f"Run {self.run}, before and with the effects"
             remark = self._remark({self.bench.base.name: base, "the new model": new})
@@ -137,27 +139,38 @@ class Add:
         note = "2 s windows, " + motion.run.split + " run"
         self.before.content = tile_html("This run, before", before, "run/before", note)
         self.after.content = tile_html("This run, now", now, "run/now", note)
+        if self.wanted:  # a slider was moved meanwhile
+            await self.update()
 
     async def update(self) -> None:
         """Follow a slider; values that come while one is replayed are taken together."""
         self.wanted = True
-        if self.drawing:
+        if self.missing:
+            await self.draw()
+        if self.drawing or self.traces is None:
             return
         self.drawing = True
         try:
-            while self.wanted:
+            while self.wanted and self.traces is not None:
                 self.wanted = False
                 model = self._model()
-                if model is not None and self.traces is not None:
-                    new, now = await computed(self._replayed, model)
-                    motion = self.bench.data.motions[self.run]
-                    remark = self._remark({self.bench.base.name: self.base, "the new model": new})
-                    self.traces.redraw(panels(motion, {"new": new}, self.axes), remark)
-                    await asyncio.sleep(SENT)
-                    note = "2 s windows, " + motion.run.split + " run"
-                    self.after.content = tile_html("This run, now", now, "run/now", note)
+                if model is not None:
+                    await self._follow(model, self.traces)
         finally:
             self.drawing = False
+
+    async def _follow(self, model: Model, traces: Traces) -> None:
+        """New curves in the chart shown, then their error."""
+        with self.area:
+            new, now = await computed(self._replayed, model)
+        if traces is not self.traces:  # another chart is drawn, with the draft as it is then
+            return
+        motion = self.bench.data.motions[self.run]
+        remark = self._remark({self.bench.base.name: self.base, "the new model": new})
+        traces.redraw(panels(motion, {"new": new}, self.axes), remark)
+        await asyncio.sleep(SENT)
+        note = "2 s windows, " + motion.run.split + " run"
+        self.after.content = tile_html("This run, now", now, "run/now", note)
 
 
 async def show(bench: Workbench, place: Place) -> None:
