@@ -36,8 +36,8 @@ def hide(name, **values):
     return EffectEntry(effect=name, parameters=values)
 
 
-@pytest.mark.parametrize("rate", [0.004, 0.015])
-def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path, rate):
+def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path):
+    rate = 0.004  # (m/s) / s^0.5: as slow as one that can be told from turbulence
     hidden = (hide("current_drift", rate=rate), hide("net_buoyancy", force=4.0))
     base, runs = observed(tmp_path, duration=60.0, effects=hidden)
     found = diagnose(base, runs, SearchSettings(), catalogue=built_in())

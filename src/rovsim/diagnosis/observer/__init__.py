@@ -6,6 +6,7 @@ lost            where a model runs away although it is corrected
 usable_runs     those with something to observe, and whether that is enough
 noise           what no model predicts: noise of the readings, a disturbance with memory
 noise_fit       how large it most likely is
+whittle         the likeliest sizes of the parts of a noise, compiled
 camera_noise    how likely poses are, if the noise of the cameras is of some kind
 camera          does the software of the motion capture smooth what it reports?
 random_walk     pushes that wander: how they show, and how likely they are

@@ -10,11 +10,11 @@ from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
-from scipy.optimize import minimize
 from scipy.signal import welch
 
 from rovsim.core.rotations import body_rates
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.whittle import least_misfit
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.model import Model
@@ -84,34 +84,13 @@ class Spectrum:
             smoothed = self._response(cutoff)
             others = [*(smoothed * other for other in others), white]
             white, most = smoothed, [*most, ROUNDED]
-        return 2.0 * self.count * _misfit(self.power, white, np.array(others), most)
+        low, high = np.full(len(others), np.log(NOTHING)), np.log(most)
+        return 2.0 * self.count * least_misfit(self.power, white, np.array(others), low, high)
 
     def price(self, kind: Kind) -> float:
         """What its sizes cost beyond those of white noise (Schwarz 1978)."""
         sizes = (kind.memory is not None) + kind.bridged
         return float(np.log(self.count * self.power.shape[1]) * sizes * len(self.power))
-
-
-def _misfit(power: Array, white: Array, others: Array, most: Sequence[float]) -> float:
-    """Whittle's cost, least over sizes, of periodograms (c, f) of white and other noise (k, f).
-
-    `most` (k,): how large these may be beside the white noise.
-    """
-    shape = (len(power), len(others))
-
-    def cost(x: Array) -> tuple[float, Array]:
-        parts = np.exp(x.reshape(shape))[:, :, None] * others
-        total = white + np.sum(parts, axis=1)
-        ratio = power / total
-        size = np.mean(ratio, axis=1)  # the likeliest
-        misfit = (1.0 - ratio / size[:, None]) / total
-        slope = np.sum(parts * misfit[:, None], axis=2)
-        return float(np.sum(np.log(total)) + power.shape[1] * np.sum(np.log(size))), slope.ravel()
-
-    low, high = np.log(NOTHING), np.log(most)
-    start = np.tile(0.5 * (low + high), len(power))
-    bounds = [(low, one) for one in high] * len(power)
-    return float(minimize(cost, start, jac=True, method="L-BFGS-B", bounds=bounds).fun)
 
 
 def measure_spectra(base: Model, runs: Sequence[ObservedRun]) -> list[Spectrum]:
