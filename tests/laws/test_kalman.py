@@ -171,9 +171,8 @@ def observed(start, y):
     """Innovations of readings y (n,) on every axis, found with filters that suit a noise."""
     n, motions = len(y), [AxisMotion(1.0)] * 6
     axes = enumerate(motions)
-    found = Tuning(
-        tuple(design_filter(POSE, H, own, start.of_axis(i)) for i, own in axes), np.full(6, H)
-    )
+    filters = tuple(design_filter(POSE, H, own, start.of_axis(i)) for i, own in axes)
+    found = Tuning(filters, np.full(6, H), np.full(n, H))
     run = SimpleNamespace(
         axis_periods=np.full(6, H),
         reading_kinds=np.full(6, POSE),

@@ -1,6 +1,7 @@
 """Software that smooths poses: its inverse, its delay, and replay and training behind it."""
 
 from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -22,7 +23,7 @@ from rovsim.dynamics.low_pass import LowPass, in_body, in_world
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.simulation.measured_states import as_true
+from rovsim.simulation.measured_states import as_true, true_states
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
@@ -103,6 +104,7 @@ def test_none_gives_back_the_same_array():
         assert world.mocap_view.sharpen(state, 0.01) is state
 
 
+@cache
 def driven(world, seconds=6.0):
     """True states of a run, and the run as ideal cameras and this model's software report it."""
     start = at_rest()
@@ -120,6 +122,7 @@ def driven(world, seconds=6.0):
 LAG = ThrusterLag(time_constant=0.1)
 FILTERED = model(LAG, MarkerOffset(x=0.1), WorldTilt(roll=0.03), PoseFilter(cutoff=3.0))
 CLEAR = model(LAG, MarkerOffset(x=0.1), WorldTilt(roll=0.03))
+MOVING = ("eta", "nu", "nu_dot", "state_nu")
 
 
 def missed(world, run):
@@ -147,6 +150,17 @@ def test_the_motion_behind_it_is_the_true_one():
     np.testing.assert_allclose(found.eta[inside, :3], true[inside, :3], atol=1e-5)
     error, blind = (np.abs(one.nu - true[:, 7:])[inside].max() for one in (found, clear))
     assert error < 0.02 * blind
+
+
+@given(lost=st.sets(st.integers(0, 59), max_size=20))
+def test_one_state_of_the_motion_behind_it_needs_no_more_than_its_neighbours(lost):
+    _, run = driven(FILTERED)
+    run, seen = run.part(slice(300, 360)), np.isin(np.arange(60), list(lost), invert=True)
+    gappy = {name: np.where(seen[:, None], getattr(run, name), np.nan) for name in MOVING}
+    run, index = replace(run, usable=seen, **gappy), np.flatnonzero(seen)
+    for base in (FILTERED, model(PoseFilter(cutoff=3.0)), CLEAR, model(LAG)):
+        found, whole = true_states(base, run, index), as_true(base, run).state_at(index)
+        np.testing.assert_allclose(found, whole, rtol=1e-9, atol=1e-9)
 
 
 def test_a_residual_has_nothing_left_to_learn():

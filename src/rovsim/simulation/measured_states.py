@@ -25,6 +25,18 @@ def as_true(model: Model, motion: Motion) -> Motion:
     )  # fmt: skip
 
 
+def true_states(model: Model, motion: Motion, index: Array) -> Array:
+    """States (k, 13) of `as_true` at some samples or bins (k,), without the rest of the motion."""
+    view = model.mocap_view
+    if motion.binned or (view.identity and not view.low_pass.time_constants):
+        return as_true(model, motion).state_at(index)
+    found = np.empty((len(index), 13))
+    for k, i in enumerate(index):  # each stage knows its predecessor; the first two, the line
+        first = max(int(i) - len(view.low_pass.time_constants), 0)
+        found[k] = as_true(model, motion.part(slice(first, int(i) + 2))).state[int(i) - first]
+    return found
+
+
 def interpolate_state(motion: Motion, time: float) -> Array:
     """State (13,) between two samples or bin starts, linearly."""
     state = interpolate(motion.time, motion.state, time)

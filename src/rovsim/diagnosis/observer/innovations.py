@@ -12,7 +12,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
 from rovsim.simulation.initial_memory import remembered_at
-from rovsim.simulation.measured_states import as_true
+from rovsim.simulation.measured_states import as_true, true_states
 
 # Of the root mean square: a torpedo's sway drives its yaw at 0.98 of it, axes of vehicles that go
 # to and fro drive each other at 0.6 of it at most.
@@ -39,7 +39,7 @@ def observe(
         time,
         run.ends,
         tuning.gains,
-        tuning.decay(np.diff(time)),
+        tuning.decays,
         run.motion.binned,
     )
     drives = run.drives.of(models)
@@ -133,7 +133,8 @@ def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts
     readings = {back.key: run.read(back) for back in {v.key: v for v in views}.values()}
     first = np.array([a for a, _ in run.spans], np.int64)
     steps = np.array([b - a for a, b in run.spans], np.int64)
-    true = {m.mocap_view.key: as_true(m, run.motion).state_at(run.sample[first]) for m in models}
+    alike = {m.mocap_view.key: m for m in models}
+    true = {key: true_states(m, run.motion, run.sample[first]) for key, m in alike.items()}
     states = np.stack([true[m.mocap_view.key] for m in models])
     starts = Starts(states, first, steps, recall(models, run, run.edges, run.ends[first]))
     return [readings[back.key] for back in views], starts

@@ -13,6 +13,7 @@ candidates be compared, without observing anew.
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple, Sequence
 
 import numpy as np
@@ -91,16 +92,22 @@ FIRST_NOISE = Noise(
 
 @dataclass(frozen=True, eq=False)
 class Tuning:
-    """One filter an axis, for one noise and one way to move."""
+    """One filter an axis, for one noise and one way to move, and the run's steps (s,) s."""
 
     filters: tuple[AxisFilter, ...]
     periods: Array
+    steps: Array
 
     @property
     def gains(self) -> Array:
         """Corrections (3, 6) of pose, velocity and disturbance per unit of innovation."""
         rows = [np.concatenate([np.zeros(3 - len(f.gain)), f.gain]) for f in self.filters]
         return np.ascontiguousarray(np.array(rows).T)
+
+    @cached_property
+    def decays(self) -> Array:
+        """What remains of the disturbance (s, 6) after each of the run's steps."""
+        return self.decay(self.steps)
 
     def decay(self, h: Array) -> Array:
         """What remains of the disturbance (s, 6) after each of h (s,) s."""
@@ -119,7 +126,7 @@ def tune(noise: Noise, motions: Sequence[AxisMotion], run: ObservedRun) -> Tunin
         design_filter(kinds[i], float(periods[i]), motion, noise.of_axis(i))
         for i, motion in enumerate(motions)
     ]
-    return Tuning(tuple(filters), periods)
+    return Tuning(tuple(filters), periods, np.diff(run.since_start(run.edges)))
 
 
 def whiten(
