@@ -7,13 +7,14 @@ export PYTHONHASHSEED := 0
 # compiled once, not anew in each of the hundred processes of a workflow or of the tests
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup study thesis test test-ui fuzz kills crowd commands soak test-slurm wheel-test walk ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
+.PHONY: help setup study thesis test test-thorough test-ui fuzz kills crowd commands soak test-slurm wheel-test walk ui screenshots check bench bench-ui benchmark-blind catalogue docs clean lock
 
 help:
 	@echo "make study   the whole study on the default campaign, into results/"
 	@echo "make thesis  the thesis' own runs, each held out once, beside its published numbers"
 	@echo "make ui      the workbench in the browser (CAMPAIGN=DIR opens one)"
-	@echo "make test    every test"
+	@echo "make test    every test but those that take half a minute each"
+	@echo "make test-thorough   these: physics hidden in whole campaigns, demanded back"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
 	@echo "make fuzz    hostile input at every door: TRIES=2000 FIRST=1000"
 	@echo "make kills   commands killed at random moments: KILLS=20 each"
@@ -48,7 +49,10 @@ thesis: setup
 	$(BIN)/python -m rovsim.reporting.pages.leave_one_run_out results/kth_tank_2025 docs/thesis.md
 
 test: setup
-	$(BIN)/python -m pytest -n $(CORES) --dist worksteal
+	$(BIN)/python -m pytest -n $(CORES) --dist worksteal -m "not thorough"
+
+test-thorough: setup
+	$(BIN)/python -m pytest -n $(CORES) --dist worksteal -m thorough
 
 # Minutes, and it needs a package index: what a newcomer types, timed.
 walk: setup

@@ -32,6 +32,7 @@ def impossible(diagnosed_tab):
     page = diagnosed_tab.page
     diagnosed_tab.go("add")
     page.wait_for_selector(READY["add"])
+    page.wait_for_selector(".chart canvas")  # ECharts complains of what goes before it is drawn
     page.get_by_label("Another effect").click()
     page.get_by_role("option", name="added_mass", exact=True).click()
     mass = page.get_by_label("added_mass, surge, number")

@@ -21,7 +21,7 @@ from rovsim.core.errors import RovsimError
 for doors in sorted(Path(__file__).parent.glob("[!_t]*.py")):
     import_module(f"fuzz.{doors.stem}")
 
-COUNT = int(os.environ.get("ROVSIM_FUZZ", "20"))  # inputs at each door
+COUNT = int(os.environ.get("ROVSIM_FUZZ", "12"))  # inputs at each door
 FIRST = int(os.environ.get("ROVSIM_FUZZ_FIRST", "0"))  # seed of the first
 FEWEST = 10
 LONGEST = 10.0  # s of the processor an input: the machine may be busy with something else

@@ -57,6 +57,7 @@ def test_a_slow_error_of_the_cameras_is_told_from_noise_and_from_turbulence(tmp_
     assert np.median(levels[1][:3]) == pytest.approx(1.0e-3, rel=0.4)
 
 
+@pytest.mark.thorough
 def test_a_filter_that_replays_worse_than_nothing_is_refused(tmp_path, monkeypatch):
     base, runs = observed(tmp_path, duration=60.0)
     wrong = Smoothing(

@@ -22,6 +22,7 @@ def named(found):
     return {one.effect: one.parameters for one in found.selected}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", PRACTICE)
 def test_independent_exports_give_up_what_they_hide(name):
     folder = needed(SHARED / "practice" / name)
@@ -64,7 +65,7 @@ def check_bands(found):
     "case",
     [
         combination(2, 41, "development"),
-        outside("squat", 0, "development"),
+        pytest.param(outside("squat", 0, "development"), marks=pytest.mark.thorough),
     ],
     ids=lambda case: case.id,
 )

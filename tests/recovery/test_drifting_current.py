@@ -50,6 +50,7 @@ def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path):
     assert drift.probability > 0.99
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "hidden",
     [

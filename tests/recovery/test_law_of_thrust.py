@@ -16,7 +16,7 @@ RUNS = (
 TERM, SIZE = ThrustTerm(5, 2, True, 1), 0.3  # s
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_law_of_the_thrust_is_found(tmp_path):
     """What drifts is turned by the water that vertical thrusters take along."""
     settings = TankSettings(name="turned", seed=11, duration=16.0, runs=RUNS)

@@ -119,7 +119,7 @@ def test_a_place_is_refused_where_it_means_nothing(tmp_path):
         tracked(tmp_path / "raw", {"rates": {"rate": 50, "noise": 0, "at": [1, 0, 0]}})
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_weight_is_named_by_depth_and_attitude_alone(tmp_path):
     """Sensors of a vehicle without a motion capture; nothing is said of surge and sway."""
     runs = [

@@ -78,7 +78,7 @@ def test_two_causes_are_told_one_after_the_other():
     assert set(conditions) == {"surge speed", "surge thrust"}
 
 
-@pytest.mark.parametrize("memory", [0.0, 1.0])
+@pytest.mark.parametrize("memory", [pytest.param(0.0, marks=pytest.mark.thorough), 1.0])
 def test_noise_gives_no_finding_in_95_of_100_campaigns(memory):
     seeds = range(60)
     alarms = sum(bool(explain(driven(SECONDS, noise(memory, s), s)).findings) for s in seeds)
