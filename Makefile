@@ -13,8 +13,8 @@ help:
 	@echo "make study   the whole study on the default campaign, into results/"
 	@echo "make thesis  the thesis' own runs, each held out once, beside its published numbers"
 	@echo "make ui      the workbench in the browser (CAMPAIGN=DIR opens one)"
-	@echo "make test    every test but those that take half a minute each"
-	@echo "make test-thorough   these: physics hidden in whole campaigns, demanded back"
+	@echo "make test    every test but the longest"
+	@echo "make test-thorough   these: physics hidden in whole campaigns, the workbench in a browser"
 	@echo "make test-ui the workbench in a real Chromium, which is installed if need be"
 	@echo "make fuzz    hostile input at every door: TRIES=2000 FIRST=1000"
 	@echo "make kills   commands killed at random moments: KILLS=20 each"
@@ -49,10 +49,10 @@ thesis: setup
 	$(BIN)/python -m rovsim.reporting.pages.leave_one_run_out results/kth_tank_2025 docs/thesis.md
 
 test: setup
-	$(BIN)/python -m pytest -n $(CORES) --dist worksteal -m "not thorough"
+	$(BIN)/python -m pytest -n $(CORES) --dist worksteal -m "not thorough and not browser"
 
 test-thorough: setup
-	$(BIN)/python -m pytest -n $(CORES) --dist worksteal -m thorough
+	$(BIN)/python -m pytest -n $(CORES) --dist worksteal -m "thorough or browser"
 
 # Minutes, and it needs a package index: what a newcomer types, timed.
 walk: setup

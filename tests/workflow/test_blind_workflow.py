@@ -25,7 +25,7 @@ def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.Completed
     )  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_case_is_a_job_and_is_not_asked_again(tmp_path):
     out = tmp_path / "answers"
     benchmark = Benchmark.of(compose(WORDS).blind, str(out))

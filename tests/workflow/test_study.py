@@ -84,7 +84,7 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     assert "read" not in touched
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_fold_that_holds_out_the_test_run_finds_what_the_study_found(study):
     results = study / "results" / "tank-tiny"
     folds = f"{SMALL} folds.leave_one_run_out=true folds.residuals=[knn] folds.controls=[6dof]"
