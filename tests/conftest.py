@@ -22,11 +22,7 @@ settings.load_profile("rovsim")
 
 
 def pytest_collection_modifyitems(items):
-    """The longest first: with several workers, none is left with a whole study at the end.
-
-    The browser comes after it, on the same worker: it waits for a page a minute, no longer, and a
-    page waits for what is compiled.
-    """
+    """The longest first: with several workers, none is left with a whole study at the end."""
     items.sort(key=lambda item: "workflow" not in item.path.parts)
 
 
