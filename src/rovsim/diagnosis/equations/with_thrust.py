@@ -4,7 +4,6 @@ A jet that is blown aside, water that hovering thrusters take along, a thruster 
 than the vehicle file says. One term each; how the thrust itself comes about is the catalogue's.
 """
 
-from collections import Counter
 from dataclasses import dataclass, replace
 from textwrap import indent
 from typing import Iterator, Mapping, Sequence
@@ -18,7 +17,14 @@ from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.library import Columns
 from rovsim.diagnosis.equations.products.products import KERNEL
-from rovsim.diagnosis.equations.products.variables import FORCES, IN_CODE, NU, ODD
+from rovsim.diagnosis.equations.products.variables import (
+    FORCES,
+    NU,
+    ODD,
+    VARIABLES,
+    Variable,
+    write_unit,
+)
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.base import Effect
@@ -26,13 +32,19 @@ from rovsim.dynamics.effects.thrust_law import ALONE, OTHER, THRUSTERS, ThrustLa
 from rovsim.dynamics.model import Model
 
 NAMES = ("ahead", "to starboard", "downwards", "in roll", "in pitch", "in yaw")
+THRUST = tuple(
+    Variable(
+        f"T_{X}", f"T_{X}", f"T_{X}", int(j >= 3), 0, 0, j in ODD, f"the thrust {name} (T_{X})"
+    )
+    for j, (X, name) in enumerate(zip(FORCES, NAMES, strict=True))
+)  # in N, too
 
 
 @dataclass(frozen=True)
 class ThrustTerm:
     """What acts `on` an axis: `thrust` along one (its size where `unsigned`), and a `factor`.
 
-    The factor is a velocity (0 to 5), its size (6 to 11), or the thrust along `other`.
+    The factor is a velocity or its size, as `VARIABLES` numbers them, or the thrust along `other`.
     """
 
     on: int
@@ -42,10 +54,24 @@ class ThrustTerm:
     other: int = ALONE
 
     @property
+    def thrusts(self) -> tuple[int, ...]:
+        """Axes of the thrusts in it; a square has one twice."""
+        return (self.thrust, self.other) if self.factor == OTHER else (self.thrust,)
+
+    @property
+    def factors(self) -> tuple[Variable, ...]:
+        """What is multiplied."""
+        first, *others = (THRUST[j] for j in self.thrusts)
+        if self.unsigned:
+            code, latex = f"abs({first.code})", f"|{first.latex}|"
+            first = replace(first, code=code, latex=latex, odd=False)
+        moving = [VARIABLES[self.factor]] if ALONE < self.factor < OTHER else []
+        return (first, *others, *moving)
+
+    @property
     def odd(self) -> bool:
         """Whether it changes sign when port and starboard are exchanged."""
-        odd = (self.thrust in ODD and not self.unsigned) + (self.other in ODD)
-        return (odd + (0 <= self.factor < 6 and self.factor in ODD)) % 2 == 1
+        return sum(bool(factor.odd) for factor in self.factors) % 2 == 1
 
 
 def list_thrust_terms(runs: Sequence[ObservedRun], model: Model) -> list[ThrustTerm]:
@@ -132,41 +158,25 @@ class WithThrust(Form):
     @property
     def equation(self) -> str:
         """In LaTeX."""
-        t = self.term
-        factors = [rf"|T_{FORCES[t.thrust]}|" if t.unsigned else f"T_{FORCES[t.thrust]}"]
-        if t.factor == OTHER:
-            factors.append(f"T_{FORCES[t.other]}")
-        elif t.factor >= 0:
-            v = NU[t.factor % 6]
-            factors.append(v if t.factor < 6 else f"|{v}|")
-        product = r"\,".join(("c", *factors))
-        return f"{FORCES[t.on]} = {product}"
+        product = r"\,".join(("c", *(factor.latex for factor in self.term.factors)))
+        return f"{FORCES[self.term.on]} = {product}"
 
     @property
     def meaning(self) -> str:
         """In a sentence."""
-        t, what = self.term, "moment" if self.term.on >= 3 else "force"
-        more = ""
-        if t.factor == OTHER:
-            more = f" and that {NAMES[t.other]} (T_{FORCES[t.other]})"
-        elif t.factor >= 0:
-            more = f" and {AXES[t.factor % 6]} {'velocity' if t.factor < 6 else 'speed'}"
-        own = f"the thrust {NAMES[t.thrust]} (T_{FORCES[t.thrust]})"
-        return f"A {AXES[t.on]} {what} that varies with {own}{more}."
+        what = "moment" if self.term.on >= 3 else "force"
+        with_what = " and ".join(factor.meaning for factor in self.term.factors)
+        return f"A {AXES[self.term.on]} {what} that varies with {with_what}."
 
     @property
     def unit(self) -> str:
         """SI unit of the coefficient."""
-        t = self.term
-        powers = Counter({"N": 0, "m": int(t.on >= 3) - int(t.thrust >= 3)})
-        if t.factor == OTHER:
-            powers.update({"N": -1, "m": -int(t.other >= 3)})
-        elif t.factor >= 0:
-            powers.update({"s": 1, **({"rad": -1} if t.factor % 6 >= 3 else {"m": -1})})
-        above = [n if p == 1 else f"{n}{p}" for n, p in powers.items() if p > 0]
-        below = [n if p == -1 else f"{n}{-p}" for n, p in powers.items() if p < 0]
-        under = f"({' '.join(below)})" if len(below) > 1 else "".join(below)
-        return (" ".join(above) or "1") + (f"/{under}" if under else "")
+        factors = self.term.factors
+        powers = {"N": 1 - len(self.term.thrusts)}
+        powers["m"] = int(self.term.on >= 3) - sum(factor.meters for factor in factors)
+        powers["s"] = -sum(factor.seconds for factor in factors)
+        powers["rad"] = -sum(factor.radians for factor in factors)
+        return write_unit(powers)
 
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
         """The coefficient."""
@@ -189,18 +199,11 @@ class WithThrust(Form):
     def _lines(self, law: Term) -> Iterator[str]:
         t = self.term
         yield "F = at.actuators.force"
-        yield f"T_{FORCES[t.thrust]} = {_sum(law, 'b')}  # thrust {NAMES[t.thrust]}"
-        factors = [f"p.{AXES[t.on]}", f"abs(T_{FORCES[t.thrust]})" if t.unsigned else
-                   f"T_{FORCES[t.thrust]}"]  # fmt: skip
-        if t.factor == OTHER:
-            if t.other != t.thrust:
-                yield f"T_{FORCES[t.other]} = {_sum(law, 'd')}  # thrust {NAMES[t.other]}"
-            factors.append(f"T_{FORCES[t.other]}")
-        elif t.factor >= 0:
-            v = IN_CODE[t.factor % 6]
-            yield f"{v} = at.nu_r[{t.factor % 6}]"
-            factors.append(v if t.factor < 6 else f"abs({v})")
-        yield f"push = {' * '.join(factors)}"
+        for j, row in dict(zip(t.thrusts, "bd", strict=False)).items():
+            yield f"{THRUST[j].code} = {_sum(law, row)}  # thrust {NAMES[j]}"
+        if ALONE < t.factor < OTHER:
+            yield f"{VARIABLES[t.factor % 6].code} = at.nu_r[{t.factor % 6}]"
+        yield f"push = {' * '.join((f'p.{AXES[t.on]}', *(f.code for f in t.factors)))}"
         yield "return " + ", ".join("push" if i == t.on else "0.0" for i in range(6))
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:

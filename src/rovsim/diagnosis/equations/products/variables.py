@@ -5,7 +5,7 @@ nearly every vehicle, sway, roll, yaw and what goes with them change sign.
 """
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -108,14 +108,12 @@ def unit_of(on: int, factors: Sequence[int]) -> str:
     m, s = sum(v.meters for v in used), sum(v.seconds for v in used)
     rad = sum(v.radians for v in used)
     if on < WATER:
-        head = "N m" if 3 <= on < WORLD else "N"
-        return _written(head, -m, -s, -rad)
-    return _written("", (1 if on < SWIRL else 0) - m, -1 - s, -rad)
+        return write_unit({"m": -m, "s": -s, "rad": -rad}, "N m" if 3 <= on < WORLD else "N")
+    return write_unit({"m": (1 if on < SWIRL else 0) - m, "s": -1 - s, "rad": -rad})
 
 
-def _written(head: str, m: int, s: int, rad: int) -> str:
-    """A unit as catalogues write it: N s2/m2, N m s/rad, 1/s."""
-    powers = {"m": m, "s": s, "rad": rad}
+def write_unit(powers: Mapping[str, int], head: str = "") -> str:
+    """A unit of these powers as catalogues write it: N s2/m2, N m s/rad, 1/s."""
     above = [_power(name, k) for name, k in powers.items() if k > 0]
     below = [_power(name, -k) for name, k in powers.items() if k < 0]
     over = " ".join(([head] if head else []) + above) or "1"
