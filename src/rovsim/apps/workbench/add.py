@@ -113,6 +113,12 @@ class Add:
         """What is wrong with replays of the run shown."""
         return tell_divergence(self.bench.data.motions[self.run].time, predicted)
 
+    def _tell(self, place: ui.html, when: str, error: float | None) -> None:
+        """The error of the run shown, before or now, in its tile."""
+        split = self.bench.data.motions[self.run].run.split
+        note = f"2 s windows, {split} run"
+        place.content = tile_html(f"This run, {when}", error, f"run/{when}", note)
+
     async def draw(self) -> None:
         """The chart and the two errors, anew."""
         self.area.clear()
@@ -136,9 +142,8 @@ class Add:
             about = f"Run {self.run}, before and with the effects"
             remark = self._remark({self.bench.base.name: base, "the new model": new})
             self.traces = Traces(motion.time, shown, about, remark=remark)
-        note = "2 s windows, " + motion.run.split + " run"
-        self.before.content = tile_html("This run, before", before, "run/before", note)
-        self.after.content = tile_html("This run, now", now, "run/now", note)
+        self._tell(self.before, "before", before)
+        self._tell(self.after, "now", now)
         if self.wanted:  # a slider was moved meanwhile
             await self.update()
 
@@ -169,8 +174,7 @@ class Add:
         remark = self._remark({self.bench.base.name: self.base, "the new model": new})
         traces.redraw(panels(motion, {"new": new}, self.axes), remark)
         await asyncio.sleep(SENT)
-        note = "2 s windows, " + motion.run.split + " run"
-        self.after.content = tile_html("This run, now", now, "run/now", note)
+        self._tell(self.after, "now", now)
 
 
 async def show(bench: Workbench, place: Place) -> None:
