@@ -126,7 +126,7 @@ def tune(noise: Noise, motions: Sequence[AxisMotion], run: ObservedRun) -> Tunin
         design_filter(kinds[i], float(periods[i]), motion, noise.of_axis(i))
         for i, motion in enumerate(motions)
     ]
-    return Tuning(tuple(filters), periods, np.diff(run.since_start(run.edges)))
+    return Tuning(tuple(filters), periods, run.step_lengths)
 
 
 def whiten(

@@ -129,6 +129,11 @@ class ObservedRun(Steps):
         return np.asarray(total / self.group)
 
     @cached_property
+    def step_lengths(self) -> Array:
+        """How long each step (s,) takes, s."""
+        return np.diff(self.since_start(self.edges))
+
+    @cached_property
     def instants(self) -> Array:
         """When each reading (k,) holds, s since the first step."""
         return self.edges[self.ends] - self.edges[0]
