@@ -3,6 +3,8 @@
 Whittle's likelihood (Whittle 1953) is greatest there. Fisher's scoring, damped as by Levenberg and
 Marquardt, uses that the expected curvature is known: a quasi-Newton method of a library takes three
 times as long in all and ends a hundred short of the greatest likelihood where parts are alike.
+
+All that is compiled for it is in this file, `solve` too: see `axis_kernels`.
 """
 
 import numpy as np
