@@ -10,7 +10,6 @@ from rovsim.core.files import write_text
 from rovsim.core.progress import step
 from rovsim.diagnosis.checks.held_still import find_standstills
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
-from rovsim.diagnosis.equations.proposal import FILE
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
 from rovsim.diagnosis.procedure import diagnose
@@ -25,7 +24,7 @@ from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract
 from rovsim.measurement.runs import Runs
 from rovsim.results.comparison import HORIZON, WINDOW
-from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.diagnosis import Diagnosis, law_beside
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step
 from rovsim.simulation.replay import replay
@@ -54,13 +53,6 @@ class Diagnosed:
         else:
             write_text(law, self.effect_file)
         self.diagnosis.write(path)
-
-
-def law_beside(diagnosis: Path) -> Path:
-    """Where the file of the effect lies that a diagnosis proposes."""
-    return diagnosis.with_name(
-        FILE if diagnosis.stem == "diagnosis" else f"{diagnosis.stem}_{FILE}"
-    )
 
 
 def diagnose_campaign(

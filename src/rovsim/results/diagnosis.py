@@ -1,5 +1,6 @@
 """`diagnosis.json`: which physical effects a model lacks, and how sure that is."""
 
+from pathlib import Path
 from typing import ClassVar, Literal
 
 from pydantic import Field, JsonValue
@@ -10,6 +11,7 @@ from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import FittedEffect, FittedNoise, FittedValue, Posterior
 from rovsim.results.ladder import Ladder
 
+LAW = "proposed_effect.py"
 Verdict = Literal["missing_effects", "adequate", "unexplained", "insufficient_data"]
 
 
@@ -211,3 +213,8 @@ class Diagnosis(Result):
         """All that has values, by id: the selected effects first, with those of the final model."""
         selected = {one.effect: one for one in self.selected}
         return selected | {r.effect: r for r in self.ranking if r.effect not in selected}
+
+
+def law_beside(diagnosis: Path) -> Path:
+    """Where the file of the effect lies that a diagnosis proposes."""
+    return diagnosis.with_name(LAW if diagnosis.stem == "diagnosis" else f"{diagnosis.stem}_{LAW}")

@@ -237,6 +237,7 @@ def _stayed(record: logging.LogRecord) -> bool:
 def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
     sessions = Sessions(settings, catalogue)
+    server.on_startup(sessions.begin)
     logging.getLogger("uvicorn.error").addFilter(_stayed)
     server.add_middleware(Gate)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])

@@ -17,12 +17,11 @@ from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text, write_text
 from rovsim.design.settings import Question
-from rovsim.diagnosis.of_campaign import law_beside
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
 from rovsim.dynamics.model_file import read_model, write_model
-from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.diagnosis import Diagnosis, law_beside
 from rovsim.results.ladder import EFFECTS, Ladder, Step
 
 OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and measured

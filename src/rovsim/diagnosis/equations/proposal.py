@@ -20,7 +20,7 @@ from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.model import Model
 from rovsim.results.base import or_nan
 
-ID, FILE = "proposed_effect", "proposed_effect.py"
+ID = "proposed_effect"
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
 ENOUGH = 0.05  # of the error of replays: less is not worth an equation
 
