@@ -21,10 +21,11 @@ TIMES, BETWEEN = 10, 0.5  # s, between signals to a process that must end
 
 
 @contextmanager
-def second_process(*modules: str) -> Iterator[Executor]:
+def second_process(*modules: str, first: str | None = None) -> Iterator[Executor]:
     """An executor of one process, which imports `modules` at once and ends with this one.
 
     Where they are imported here already, or there is no core to spare, it is this process itself.
+    Elsewhere it calls `first`, a "module:function", before that.
 
     Raises:
         RovsimError: somebody killed the other process.
@@ -34,6 +35,8 @@ def second_process(*modules: str) -> Iterator[Executor]:
         return
     others, executor = set(active_children()), _OtherProcess()
     try:
+        if first is not None:
+            executor.submit(call, first)
         executor.submit(_import, modules)
         yield executor
     except BaseException as error:

@@ -25,9 +25,11 @@ from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.report_data import ReportData
 from rovsim.results.error_conditions import ErrorConditions
+from rovsim.simulation.compiled_ahead import is_compiled
 
 # The second process imports these; this one does without them, to begin sooner.
 DRAWING, SHOWING = "rovsim.reporting.html.folder", "rovsim.application.pipeline.shown_diagnosis"
+COMPILING = "rovsim.simulation.compiled_ahead:compile_ahead"
 LOGGING = ("mlflow.tracking", "mlflow.store.tracking.sqlalchemy_store")
 
 
@@ -46,7 +48,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     data = measure(campaign, settings.signals, even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     tracking = settings.tracking if installed("tracking") else None
-    with second_process(DRAWING, SHOWING, *(LOGGING if tracking else ())) as other:
+    others = (DRAWING, SHOWING, *(LOGGING if tracking else ()))
+    with second_process(*others, first=None if is_compiled() else COMPILING) as other:
         drawing: dict[str, Future] = {}
 
         def draw(known: ReportData) -> None:

@@ -1,0 +1,54 @@
+"""Functions of the engines that a diagnosis needs later, compiled meanwhile in another process."""
+
+import numpy as np
+
+from rovsim.core.run import Site
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.engine.cache import cache_folder
+from rovsim.dynamics.model import Model, nominal
+from rovsim.dynamics.vehicle.load import load_vehicle
+from rovsim.simulation.batch import Batch, Correction, Starts
+from rovsim.simulation.drive import Drive
+
+DONE = "compiled_ahead"  # in the folder of what is kept, once it was done
+VEHICLE = "bluerov2"  # types are those of any
+
+
+def is_compiled() -> bool:
+    """Whether this was done before."""
+    return (cache_folder() / DONE).exists()
+
+
+def compile_ahead() -> None:
+    """Compile them, in the order in which they are needed, by calls that do next to nothing."""
+    if is_compiled():
+        return
+    model = nominal(load_vehicle(VEHICLE))
+    with_effects = Batch([model], Site.unknown(), candidates=built_in().wrenches, learned=False)
+    with_effects.innovations([_drive(model)], _starts(), _correction())
+    for batch in (with_effects, Batch([model], Site.unknown(), learned=False)):
+        batch.trajectories([_drive(model)], _starts(), np.array([0.0, 0.01]))
+    (cache_folder() / DONE).touch()
+
+
+def _starts() -> Starts:
+    """At rest, for one step or reading."""
+    state = np.zeros((1, 1, 13))
+    state[..., 3] = 1.0
+    return Starts(state, np.zeros(1, np.int64), np.ones(1, np.int64))
+
+
+def _drive(model: Model) -> Drive:
+    """Of thrusters that stand still, over one step."""
+    thrusters = model.body.B.shape[1]
+    return Drive(np.zeros((1, 6)), np.zeros((1, thrusters)), np.full((1, 6), np.nan), 1.0)
+
+
+def _correction() -> Correction:
+    """Two readings at one place."""
+    readings = np.zeros((2, 13))
+    readings[:, 3] = 1.0
+    return Correction(
+        [readings], np.ones((2, 6)), np.ones(5), np.array([0.0, 0.01]), np.array([0, 1]),
+        np.zeros((3, 6)), np.ones((1, 6)), False,
+    )  # fmt: skip
