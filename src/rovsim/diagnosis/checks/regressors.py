@@ -1,6 +1,6 @@
 """What a force nobody named might vary with, and whether the remainder does."""
 
-from itertools import combinations, product
+from itertools import combinations, permutations, product
 from typing import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -29,17 +29,7 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
     nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
     t = 2.0 * run.time / max(run.time[-1], 1e-9) - 1.0 if len(run.time) else run.time
     found = {"nothing (a constant)": np.ones(len(t)), "time": t, "time squared": t**2}
-    for i, axis in enumerate(AXES):
-        v = nu[:, i]
-        found[f"{axis} velocity"] = v
-        found[f"{axis} speed"] = np.abs(v)
-        found[f"{axis} velocity, squared"] = np.abs(v) * v
-        found[f"{axis} velocity, cubed"] = v**3
-        found[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
-        for memory in MEMORIES:
-            found[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
-    for i, j in combinations(range(6), 2):
-        found[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
+    found |= _of_velocities(nu, run)
     for name, x in zip(("north", "east", "down"), place.T, strict=True):
         found[f"place along {name}"] = x
         found[f"place along {name}, squared"] = x**2
@@ -51,6 +41,26 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
     for heading, side in product(("north", "east"), repeat=2):
         along = found[f"place along {side}"] * found[f"heading ({heading})"]
         found[f"place along {side} times heading ({heading})"] = along
+    return found
+
+
+def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
+    """Functions (n,) of the velocities (n, 6) alone."""
+    found = {}
+    for i, axis in enumerate(AXES):
+        v = nu[:, i]
+        found[f"{axis} velocity"] = v
+        found[f"{axis} speed"] = np.abs(v)
+        found[f"{axis} velocity, squared"] = np.abs(v) * v
+        found[f"{axis} velocity, cubed"] = v**3
+        found[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
+        for memory in MEMORIES:
+            found[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
+    for i, j in combinations(range(6), 2):
+        found[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
+    for i, j in permutations(range(6), 2):  # drags and moments that a cross-flow changes
+        found[f"{AXES[i]} velocity times {AXES[j]} speed"] = nu[:, i] * np.abs(nu[:, j])
+        found[f"{AXES[i]} velocity times {AXES[j]} speed squared"] = nu[:, i] * nu[:, j] ** 2
     return found
 
 
