@@ -11,7 +11,7 @@ from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import FittedEffect, FittedNoise, FittedValue, Posterior
 from rovsim.results.ladder import Ladder
 
-LAW = "proposed_effect.py"
+LAW = "proposed_effect.py"  # beside it: the effect that it proposes
 Verdict = Literal["missing_effects", "adequate", "unexplained", "insufficient_data"]
 
 

@@ -15,14 +15,12 @@ VEHICLE = "bluerov2"  # types are those of any
 
 
 def is_compiled() -> bool:
-    """Whether this was done before."""
+    """Whether `compile_ahead` was done before."""
     return (cache_folder() / DONE).exists()
 
 
 def compile_ahead() -> None:
     """Compile them, in the order in which they are needed, by calls that do next to nothing."""
-    if is_compiled():
-        return
     model = nominal(load_vehicle(VEHICLE))
     with_effects = Batch([model], Site.unknown(), candidates=built_in().wrenches, learned=False)
     with_effects.innovations([_drive(model)], _starts(), _correction())
