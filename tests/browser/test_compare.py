@@ -11,6 +11,9 @@ from screens import CHANGED, READY, read_csv
 pytestmark = pytest.mark.browser
 WHEEL = """document.querySelector('.path canvas').dispatchEvent(
   new WheelEvent('wheel', {deltaY: 100, bubbles: true, cancelable: true}))"""
+# A promise that waits for the next tick, as every chart does, waits for five seconds.
+SLOW_CHARTS = """const soon = window.setTimeout, resolves = /native code/;
+  window.setTimeout = (f, ms, ...more) => soon(f, ms || !resolves.test(f) ? ms : 5000, ...more)"""
 LATER = (
     "([name, v]) => Number(document.querySelector(`[role=slider][aria-label='${name}']`)"
     ".getAttribute('aria-valuenow')) > v"
@@ -33,6 +36,18 @@ def test_the_horizon_changes_the_errors_and_a_run_plays(tab):
     # Without a graphics card a click of the mouse waits for pictures of the tank: press at once.
     tab.page.get_by_role("button", name="Pause").dispatch_event("click")
     tab.page.get_by_role("button", name="Play").wait_for()
+
+
+def test_charts_that_are_replaced_before_they_are_drawn_leave_no_error(tab):
+    tab.page.add_init_script(SLOW_CHARTS)
+    tab.go("compare?axes=surge")
+    tab.page.wait_for_selector(".chart", state="attached")
+    assert tab.page.locator(".chart canvas").count() == 0
+    first = tab.page.locator(".chart").first.get_attribute("id")
+    tab.page.get_by_label("Quantity").click()
+    tab.page.get_by_role("option", name="position and attitude").click()
+    tab.page.wait_for_selector(f"#{first}", state="detached")
+    tab.page.wait_for_selector(READY["compare"])
 
 
 def test_a_wide_window_is_used(tab):

@@ -26,6 +26,13 @@ async function saveVectors(chart) {
   copy.dispose();
 }
 
+/* NiceGUI (3.18) makes the chart a moment after its element, and ends in an error where a page that changed has taken
+   the element away by then. */
+function leftUndrawn(element) {
+  const its = element.component.proxy;
+  its.chart ??= {dispose() { its.chart = undefined; }};
+}
+
 /* `columns` names what stands in the table: its `x` and each of its `curves` by id, side by side over one x; or `names` of
    what each point tells, one below the other. */
 function saveValues(chart, columns) {

@@ -184,6 +184,7 @@ def chart(
     """
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}
     found = ui.echart({**common, **with_minus(options)}, on_point_click)
+    found.on("vnodeBeforeUnmount", js_handler="leftUndrawn")
     found.props.update({"role": "img", "aria-label": about})
     literal = json.dumps(dict(columns)).replace("<", "\\u003c")  # names of models are in it
     with ui.row().classes("keep"):
