@@ -1,5 +1,6 @@
 """Csv files as other tools write them: read right, or refused with one message and a way out."""
 
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from recordings import Swim, csv_lines, write_lines
 from rovsim.core.errors import BadInput
-from rovsim.core.rotations import from_matrix, matrix
+from rovsim.core.rotations import from_euler, from_matrix, matrix
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.csv import read_csv
 from rovsim.measurement.survey.csv_files import look_into_csv
@@ -31,6 +32,14 @@ def stamped(factor: int) -> list[str]:
     return [f"{t},{row.partition(',')[2]}" for t, row in zip(late, ROWS, strict=True)]
 
 
+def dated(shape: str, zone: str = "") -> list[str]:
+    """Rows whose times are dates, or times of day, that pass midnight."""
+    begin = datetime(2026, 5, 12, 23, 59, 59, 500_000)
+    late = (begin + timedelta(seconds=t) for t in POSE[:, 0])
+    each = zip(late, ROWS, strict=True)
+    return [f"{t.strftime(shape)}{zone},{row.partition(',')[2]}" for t, row in each]
+
+
 def every_50th(cell: str) -> list[str]:
     """Rows of which some hold another word in all cells but the time."""
     gone = [f"{row.partition(',')[0]},{','.join([cell] * 6)}" for row in ROWS]
@@ -52,6 +61,16 @@ WRITTEN = {
     "ms since 1970": [HEAD.replace("time_s", "stamp_ms").replace("stamp", "timestamp"),
                       *stamped(1000)],
     "ms in time_s": [HEAD, *scaled(1e3, *[1] * 6)],
+    "dates": [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")],
+    "dates of pandas": [FREE.replace("time", "datetime"), *dated("%Y-%m-%d %H:%M:%S.%f")],
+    "dates in quotes": [HEAD, *dated('"%Y-%m-%d %H:%M:%S.%f"')],
+    "dates in UTC": [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f", "Z")],
+    "dates in Sweden": [FREE.replace("time", "timestamp"),
+                        *dated("%Y-%m-%d %H:%M:%S.%f", "+02:00")],
+    "dates below names in a remark": [f"# {HEAD}", *dated("%Y-%m-%dT%H:%M:%S.%f")],
+    "dates and decimal commas": [line.replace(",", ";").replace(".", ",")
+                                 for line in [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")]],
+    "times of day": [HEAD, *dated("%H:%M:%S.%f")],
     "no pose is -999": [HEAD, *every_50th("-999")],
     "no pose is NA": [HEAD, *every_50th("NA")],
     "no pose is null": [HEAD, *every_50th("null")],
@@ -95,9 +114,26 @@ def with_quaternion(names: str) -> list[str]:
     return [f"time_s,x_m,y_m,z_m,{names}", *(",".join(f"{x:.6f}" for x in row) for row in rows)]
 
 
+@pytest.mark.parametrize("turns", [0.0, 1.5], ids=["near north", "all around"])
+@pytest.mark.parametrize("wrong", [False, True], ids=["w first", "w last"])
+def test_a_quaternion_in_another_order_than_its_names_is_doubted(tmp_path, turns, wrong):
+    yaw = np.linspace(-0.3, 0.3 + 2.0 * np.pi * turns, 200)
+    q = from_euler(0.1 * np.sin(yaw), 0.1 * np.cos(3.0 * yaw), yaw)
+    q = np.roll(q, -1, axis=1) if wrong else q
+    rows = [f"{0.1 * k:.1f},0,0,{k},{','.join(f'{x:.6f}' for x in row)}" for k, row in enumerate(q)]
+    path = write_lines(tmp_path / "run.csv", ["time_s,x_m,y_m,z_m,qw,qx,qy,qz", *rows])
+    doubted = any("x, y, z, w" in note for note in read_csv(path, MOCAP).notes)
+    assert doubted == (wrong and turns > 0.0)  # near one heading both orders are upright
+
+
 REFUSED = {
     "numbered quaternion": (with_quaternion("q0,q1,q2,q3"), "none says which is w"),
-    "dates": ([HEAD, *(f"2026-05-12T10:00:{r}" for r in ROWS)], "is a date or a time of day"),
+    "dates of no norm": ([HEAD, *(f"12/05/2026 10:00:{r}" for r in ROWS)], "the cell holds '12/05"),
+    "dates, then seconds": ([HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")[:9], *ROWS], "all as dates"),
+    "dates of depths": (
+        ["time_s,depth_m", "0.1,2026-05-12T10:00:12", "0.2,1"],
+        "Only times may be",
+    ),
 }
 
 

@@ -12,7 +12,11 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.channels import Channel, measured
-from rovsim.measurement.recording.csv_checks import check_plausible, without_fillers
+from rovsim.measurement.recording.csv_checks import (
+    check_plausible,
+    doubt_order,
+    without_fillers,
+)
 from rovsim.measurement.recording.readers import (
     Export,
     finite_rows,
@@ -77,6 +81,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     columns = Columns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
     check_plausible(path, columns.time, columns.values)
     notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
+    notes += doubt_order(columns.of(QUATERNION))
     return _export(columns, mocap, {"cut_lines": cut}, notes)
 
 

@@ -13,6 +13,7 @@ LONGEST_STEP = 5.0  # s between two lines of any recording
 TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and hardly any counts on
 ABOVE, SHARE = -0.1, 0.95  # m: a zero of the sensor that is off; of the lines
 DEEP = 0.5  # m
+UPRIGHT, TUMBLING = 0.9, 0.5  # cosine of the tilt that hardly ever is below: 26 and 60 degrees
 RENAME = "Name the column after its unit ({}), and let `rovsim init` make a copy in {}."
 
 
@@ -48,6 +49,25 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
         raise _refused(path, "depth_m", f"depths from {low:.3g} to {high:.3g} m: heights?",
                        "m, positive down", "Turn the sign of the column; `rovsim init` does so in "
                        "a copy.")  # fmt: skip
+
+
+def doubt_order(quaternion: Array) -> tuple[str, ...]:
+    """A sentence where quaternions (n, 4) tumble as w, x, y, z, and stay upright as x, y, z, w.
+
+    Upright or upside down: that is a matter of axes.
+    """
+    known = quaternion[np.isfinite(quaternion).all(axis=1) & quaternion.any(axis=1)]
+    if not len(known):
+        return ()
+    square = (known / np.linalg.norm(known, axis=1, keepdims=True)) ** 2
+    tilts = [np.abs(1.0 - 2.0 * (square[:, k] + square[:, k + 1])) for k in (1, 0)]
+    as_named, other = (float(np.percentile(tilt, 5)) for tilt in tilts)
+    if as_named > TUMBLING or other < UPRIGHT:
+        return ()
+    return (
+        "As qw, qx, qy, qz say, the vehicle tumbles; it would stay upright if these columns, in "
+        "this order, held x, y, z, w, as ROS, Motive and SciPy write them. Rename them if they do.",
+    )
 
 
 def is_height(depth: Array) -> bool:

@@ -10,6 +10,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
+from rovsim.measurement.recording.dates import is_date, to_seconds
 from rovsim.measurement.recording.units_row import with_units
 
 MISSING = {"", "na", "n/a", "null", "none", "-"}  # words for "not measured", in any case
@@ -90,7 +91,8 @@ def find_header(lines: Sequence[str]) -> int | None:
     filled = [n for n, line in enumerate(lines) if line.strip()]
     first = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
     before = [n for n in filled if first is None or n < first]
-    if first is None or (before and _is_number(re.split(r"[,;\t]", lines[first])[0])):
+    begins = "" if first is None else re.split(r"[,;\t]", lines[first])[0]
+    if first is None or (before and (_is_number(begins) or is_date(begins))):
         return before[-1] if before else first
     return first
 
@@ -168,16 +170,17 @@ def _plain_numbers(table: Lines, columns: list[int]) -> Array:
 
 
 def times(table: Lines, column: int) -> Array:
-    """Times (lines,) of one column.
+    """Times (lines,) of one column, which may be dates or times of day.
 
     Raises:
         BadInput: a time is no finite number.
     """
-    time = numbers(table, [column])[:, 0]
+    dated = dates(table, column)
+    time = numbers(table, [column])[:, 0] if dated is None else dated
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
         cell = table.cells(int(bad[0]))[column].strip()
-        raise _bad_cell(table, table.numbers[bad[0]], column, cell, "a finite time in s")
+        raise _bad_cell(table, table.numbers[bad[0]], column, cell, "a time in s, or all as dates")
     if len(time) and np.abs(time).max() > LATEST:
         raise BadInput(
             f"times up to {np.abs(time).max():.3g}: ms, us or ns since 1970?",
@@ -187,6 +190,13 @@ def times(table: Lines, column: int) -> Array:
             "`rovsim init` make a copy in s.",
         )
     return time
+
+
+def dates(table: Lines, column: int) -> Array | None:
+    """Times (lines,) of a column that begins with a date or a time of day; None for another."""
+    cells = (row[column].strip(' "') if column < len(row) else "" for row in table.all_cells())
+    first = next(cells, "")
+    return to_seconds([first, *cells]) if is_date(first) else None
 
 
 def find_filler(values: Array) -> float | None:
@@ -231,7 +241,8 @@ def _bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) ->
             f"{cell!r} is a date or a time of day",
             where=place,
             expected=expected,
-            remedy="Write seconds, from any start or since 1970; commands on the same clock.",
+            remedy="Only times may be such, all of a file alike, as 2026-05-12T10:00:12.5 or "
+            "10:00:12.5; else write seconds.",
         )
     if re.fullmatch(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?", cell):
         return BadInput(

@@ -16,13 +16,21 @@ from rovsim.core.files import write_text
 from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
 from rovsim.measurement.recording.csv_checks import LONGEST_STEP, is_height
-from rovsim.measurement.recording.table import LATEST, Lines, csv_lines, find_filler, numbers
+from rovsim.measurement.recording.table import (
+    LATEST,
+    Lines,
+    csv_lines,
+    dates,
+    find_filler,
+    numbers,
+)
 from rovsim.measurement.survey.quaternions import check_quaternion
 
 DEGREE = np.pi / 180.0
 # Names after their units, brackets and case are gone; `{}` stands for a letter of the channel.
 FORMS = {
-    "time_s": "t|time|timestamp|time_stamp|secs?|seconds|elapsed|elapsed_time|time_boot|rostime",
+    "time_s": "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|time_boot|"
+    "rostime",
     **{
         ours: f"{letter}|p{letter}|pos_?{letter}|position_?{letter}|(pose_)*position_{letter}|"
         f"t{letter}|translation_{letter}|{letter}_pos(ition)?"
@@ -114,9 +122,11 @@ def _columns(lines: Lines) -> list[Column]:
     _drop_ambiguous(places, lines)
     if "time_s" not in places:
         return []
-    time, said = _time(lines, places["time_s"], plain[places["time_s"]][1])
-    columns = [Column("time_s", places["time_s"], time, said)]
-    seconds = _values(lines, places["time_s"]) * time
+    place = places["time_s"]
+    dated = dates(lines, place)
+    time, said = _time(lines, place, plain[place][1]) if dated is None else (1.0, " from dates")
+    columns = [Column("time_s", place, time, said)]
+    seconds = _values(lines, place) * time if dated is None else dated
     for group in (POSITION, EULER, QUATERNION, LINEAR, ANGULAR, ["depth_m"]):
         here = {ours: places[ours] for ours in group if ours in places}
         columns += _group(lines, here, {k: plain[k][1] for k in here.values()}, seconds)

@@ -1,0 +1,39 @@
+"""Times that are written as dates or as times of day (ISO 8601), as loggers and pandas do."""
+
+import re
+from datetime import UTC, datetime, time
+from typing import Iterable
+
+import numpy as np
+from numpy import ndarray as Array
+
+DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+TIME_OF_DAY = re.compile(r"\d\d:\d\d:\d\d")
+DAY = 86_400.0  # s
+
+
+def is_date(cell: str) -> bool:
+    """Whether a cell begins as a date with its time, or as a time of day."""
+    return bool(DATE.match(cell) or TIME_OF_DAY.match(cell))
+
+
+def to_seconds(cells: Iterable[str]) -> Array:
+    """Seconds (n,) since 1970, or since the midnight before the first cell; NaN for other texts.
+
+    Dates without a time zone are taken for UTC.
+    """
+    found = np.array([_seconds(cell) for cell in cells], float)
+    midnights = np.diff(found, prepend=found[:1]) < -0.5 * DAY
+    return found + DAY * np.cumsum(midnights)
+
+
+def _seconds(cell: str) -> float:
+    try:
+        if DATE.match(cell):
+            at = datetime.fromisoformat(cell)
+            return (at if at.tzinfo else at.replace(tzinfo=UTC)).timestamp()
+        at_day = time.fromisoformat(cell)
+    except ValueError:
+        return float("nan")
+    within = 60.0 * (60.0 * at_day.hour + at_day.minute) + at_day.second
+    return within + 1e-6 * at_day.microsecond
