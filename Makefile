@@ -85,9 +85,10 @@ commands: setup
 soak: setup chromium
 	PYTHONPATH=tests $(BIN)/python tests/browser/soak.py
 
-# As root, with Debian's slurm-wlm: a cluster of one node on this machine.
+# As root, with Debian's slurm-wlm: a cluster of one node on this machine. CHAPTER=whole: an hour.
+CHAPTER ?= short
 test-slurm: setup
-	ROVSIM_SLURM=1 $(BIN)/python -m pytest -rPs tests/cluster
+	ROVSIM_SLURM=$(CHAPTER) $(BIN)/python -m pytest -rPs tests/cluster
 
 test-ui: setup chromium
 	$(BIN)/python -m pytest tests/browser
