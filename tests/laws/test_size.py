@@ -96,7 +96,8 @@ def test_runs_taken_in_one_by_one_score_as_one_set():
     random = np.random.default_rng(1)
     parts = [random.normal(k, 1.0 + k, size=(n, 6)) for k, n in enumerate((50, 0, 7))]
     whole = np.concatenate(parts)
-    together = sum((Moments.of(part) for part in parts), Moments.nothing())
+    motions = [SimpleNamespace(nu=x, usable=np.ones(len(x), bool), measured=None) for x in parts]
+    together = sum(map(Moments.of, motions), Moments.nothing())
     np.testing.assert_allclose(together.std, whole.std(axis=0), rtol=1e-12)
     np.testing.assert_allclose(together.mean, whole.mean(axis=0), rtol=1e-12)
 

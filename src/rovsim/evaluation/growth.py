@@ -4,6 +4,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.evaluation.scores import root_mean
+from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import or_none
 from rovsim.results.growth import Curve
@@ -19,7 +21,7 @@ class GrowthScore:
 
     def __init__(self) -> None:
         self._edges = np.linspace(0.0, float(LONG), BINS + 1)
-        self._count, self._squares = np.zeros(BINS), np.zeros((BINS, 6))
+        self._count, self._squares = np.zeros((BINS, 6)), np.zeros((BINS, 6))
 
     def add(self, motion: Motion, prediction: Prediction) -> None:
         """Take in a run and its windows of 5 s; a train run is passed by."""
@@ -29,16 +31,17 @@ class GrowthScore:
         known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
         member = np.digitize(age, self._edges) - 1
         known &= (member >= 0) & (member < BINS)
-        self._count += np.bincount(member[known], minlength=BINS)
+        axes = find_measured(motion.measured)
+        self._count += np.bincount(member[known], minlength=BINS)[:, None] * axes
         with np.errstate(over="ignore"):  # of a model that diverged: infinite
             squares = np.square((prediction.nu - motion.nu)[known])
-        np.add.at(self._squares, member[known], squares)
+        np.add.at(self._squares, member[known], np.where(axes, squares, 0.0))
 
     @property
     def curve(self) -> Curve:
-        """Velocity RMSE against time; nothing without test runs."""
-        seen = np.flatnonzero(self._count)
-        rows = np.sqrt(self._squares[seen] / self._count[seen, None])
+        """Velocity RMSE against time, of measured axes; nothing without test runs."""
+        seen = np.flatnonzero(self._count.any(axis=1))
+        rows = root_mean(self._squares[seen], self._count[seen])
         columns = {a: tuple(map(or_none, row)) for a, row in zip(AXES, rows.T, strict=True)}
         return Curve(horizon_s=tuple(self._edges[seen + 1].tolist()), velocity_rmse=columns)
 

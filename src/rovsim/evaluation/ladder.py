@@ -24,12 +24,12 @@ class StepScore:
         if motion.run.split != self.split:
             return
         self._errors += Sums.of(errors)
-        self._measured += Moments.of(motion.nu[motion.usable])
+        self._measured += Moments.of(motion)
 
     @property
     def step(self) -> Step:
         """What was found; None where there was no run."""
-        if not self._errors.samples:
+        if not self._errors.samples.any():
             return Step(model=self.model, split=self.split)
         metrics = self._errors.metrics()
         return Step(

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.quality import EXCITED
-from rovsim.measurement.signals.measured import Measured, blank
+from rovsim.measurement.signals.measured import Measured, find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis, or_none
 from rovsim.results.comparison import Metrics
@@ -17,53 +17,63 @@ from rovsim.simulation.prediction import Prediction
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Model minus measurement at the samples both have.
+    """Model minus measurement at the samples both have, of one run.
 
-    `nu` (n, 6), `nu_dot` (m, 6), `position` (n,) m, `attitude` (n,) rad.
+    `nu` (n, 6), `nu_dot` (m, 6), `position` (n,) m, `attitude` (n,) rad; NaN where it was not
+    measured: `axes` (6,) which velocities were, `placed` and `turned` whether position and attitude
+    were, as a whole.
     """
 
     nu: Array
     nu_dot: Array
     position: Array
     attitude: Array
+    axes: Array
+    placed: bool
+    turned: bool
 
 
 def subtract(motion: Motion, prediction: Prediction) -> Errors:
-    """Errors of one prediction at usable samples; infinite where it diverged.
-
-    NaN for what was not measured.
-    """
+    """Errors of one prediction at usable samples; infinite or NaN where it diverged."""
     both = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
     moved = both & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
     with np.errstate(invalid="ignore"):
         turn = log(multiply(conjugate(motion.eta[both, 3:]), prediction.eta[both, 3:]))
-    place, angle = _posed(motion.measured)
+    axes = find_measured(motion.measured)
+    placed, turned = _find_posed(motion.measured)
+    apart = np.linalg.norm(prediction.eta[both, :3] - motion.eta[both, :3], axis=1)
     return Errors(
-        blank(motion.measured, prediction.nu[both] - motion.nu[both], np.nan),
-        blank(motion.measured, prediction.nu_dot[moved] - motion.nu_dot[moved], np.nan),
-        place * np.linalg.norm(prediction.eta[both, :3] - motion.eta[both, :3], axis=1),
-        angle * np.linalg.norm(turn, axis=1),
+        np.where(axes, prediction.nu[both] - motion.nu[both], np.nan),
+        np.where(axes, prediction.nu_dot[moved] - motion.nu_dot[moved], np.nan),
+        np.where(placed, apart, np.nan),
+        np.where(turned, np.linalg.norm(turn, axis=1), np.nan),
+        axes,
+        placed,
+        turned,
     )
 
 
-def _posed(measured: Measured | None) -> tuple[float, float]:
-    """1 where the whole position, the whole attitude was measured; else NaN."""
+def _find_posed(measured: Measured | None) -> tuple[bool, bool]:
+    """Whether the whole position, and the whole attitude, was measured."""
     if measured is None:
-        return 1.0, 1.0
-    place, angle = measured.coordinates.all(), measured.axes[3:].all()
-    return (1.0 if place else np.nan), (1.0 if angle else np.nan)
+        return True, True
+    return bool(measured.coordinates.all()), bool(measured.axes[3:].all())
 
 
 @dataclass(frozen=True, eq=False)
 class Sums:
     """Sums over samples, from which all metrics follow; those of several runs add up.
 
-    `samples`, `accelerated` samples with an acceleration; `nu_squared`, `nu_absolute`,
-    `nu_dot_squared` (6,), `position_squared` m2, `attitude_squared` rad2.
+    Of each measure the squares' sum and how many samples it was measured at: `samples` (6,) with a
+    velocity, `accelerated` (6,) with an acceleration, `placed` and `turned` with a pose.
+    `nu_squared`, `nu_absolute`, `nu_dot_squared` (6,), `position_squared` m2, `attitude_squared`
+    rad2.
     """
 
-    samples: int
-    accelerated: int
+    samples: Array
+    accelerated: Array
+    placed: int
+    turned: int
     nu_squared: Array
     nu_absolute: Array
     nu_dot_squared: Array
@@ -73,20 +83,24 @@ class Sums:
     @staticmethod
     def nothing() -> "Sums":
         """Of no samples."""
-        return Sums(0, 0, np.zeros(6), np.zeros(6), np.zeros(6), 0.0, 0.0)
+        none, zero = np.zeros(6, int), np.zeros(6)
+        return Sums(none, none, 0, 0, zero, zero, zero, 0.0, 0.0)
 
     @staticmethod
     def of(errors: Errors) -> "Sums":
         """Sums of the errors of one run."""
+        known = errors.axes
         with np.errstate(over="ignore"):  # of a model that diverged: infinite
             return Sums(
-                len(errors.nu),
-                len(errors.nu_dot),
-                np.square(errors.nu).sum(axis=0),
-                np.abs(errors.nu).sum(axis=0),
-                np.square(errors.nu_dot).sum(axis=0),
-                float(np.square(errors.position).sum()),
-                float(np.square(errors.attitude).sum()),
+                len(errors.nu) * known.astype(int),
+                len(errors.nu_dot) * known.astype(int),
+                len(errors.position) * int(errors.placed),
+                len(errors.attitude) * int(errors.turned),
+                np.where(known, np.square(errors.nu).sum(axis=0), 0.0),
+                np.where(known, np.abs(errors.nu).sum(axis=0), 0.0),
+                np.where(known, np.square(errors.nu_dot).sum(axis=0), 0.0),
+                float(np.square(errors.position).sum()) if errors.placed else 0.0,
+                float(np.square(errors.attitude).sum()) if errors.turned else 0.0,
             )
 
     def __add__(self, other: "Sums") -> "Sums":
@@ -104,16 +118,17 @@ class Sums:
             acceleration_rmse=ByAxis.of(root_mean(self.nu_dot_squared, self.accelerated)),
             velocity_mae=ByAxis.of(_mean(self.nu_absolute, self.samples)),
             velocity_rmse=ByAxis.of(self.velocity_rmse),
-            position_rmse_m=or_none(float(root_mean(self.position_squared, self.samples))),
-            attitude_rmse_rad=or_none(float(root_mean(self.attitude_squared, self.samples))),
+            position_rmse_m=or_none(float(root_mean(self.position_squared, self.placed))),
+            attitude_rmse_rad=or_none(float(root_mean(self.attitude_squared, self.turned))),
         )
 
 
-def _mean(total: Array | float, count: int) -> Array:
-    return np.asarray(total) / count if count else np.full(np.shape(total), np.nan)
+def _mean(total: Array | float, count: Array | int) -> Array:
+    nothing = np.full(np.shape(total), np.nan)
+    return np.divide(total, count, out=nothing, where=np.asarray(count) > 0)
 
 
-def root_mean(total: Array | float, count: int) -> Array:
+def root_mean(total: Array | float, count: Array | int) -> Array:
     """Root of the mean of `count` squares that add up to `total` (...); NaN where there is none."""
     return np.asarray(np.sqrt(_mean(total, count)))
 
@@ -131,29 +146,31 @@ def summarize(errors: Errors) -> Metrics:
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """How many samples, their mean (6,) and the squares (6,) about it; those of two sets add up.
+    """How many samples (6,), their mean (6,) and squares (6,) about it; those of two sets add up.
 
     Chan, Golub & LeVeque 1983, Am. Stat. 37(3), eq. 2.1.
     """
 
-    count: int
+    count: Array
     mean: Array
     squares: Array
 
     @staticmethod
     def nothing() -> "Moments":
         """Of no samples."""
-        return Moments(0, np.zeros(6), np.zeros(6))
+        return Moments(np.zeros(6, int), np.zeros(6), np.zeros(6))
 
     @staticmethod
-    def of(x: Array) -> "Moments":
-        """Of samples (n, 6)."""
-        mean = x.mean(axis=0) if len(x) else np.zeros(x.shape[1:])
-        return Moments(len(x), mean, np.square(x - mean).sum(axis=0))
+    def of(motion: Motion) -> "Moments":
+        """Of the measured velocity of a run, on the axes that were measured."""
+        x = motion.nu[motion.usable]
+        mean = x.mean(axis=0) if len(x) else np.zeros(6)
+        count = len(x) * find_measured(motion.measured).astype(int)
+        return Moments(count, mean, np.square(x - mean).sum(axis=0))
 
     def __add__(self, other: "Moments") -> "Moments":
         count = self.count + other.count
-        share, apart = other.count / max(count, 1), other.mean - self.mean
+        share, apart = other.count / np.maximum(count, 1), other.mean - self.mean
         squares = self.squares + other.squares + apart**2 * self.count * share
         return Moments(count, self.mean + share * apart, squares)
 
@@ -164,8 +181,8 @@ class Moments:
 
 
 def measured_spread(motions: Iterable[Motion]) -> Array:
-    """Standard deviation (6,) of the measured velocity over some runs."""
-    return sum((Moments.of(m.nu[m.usable]) for m in motions), Moments.nothing()).std
+    """Standard deviation (6,) of the measured velocity over some runs; NaN on unmeasured axes."""
+    return sum(map(Moments.of, motions), Moments.nothing()).std
 
 
 def normalize(spread: Array, velocity_rmse: Array) -> float | None:

@@ -18,6 +18,7 @@ from rovsim.apps.workbench.parts import Failure, heading
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.session import Session, Sessions
 from rovsim.apps.workbench.work import LongWork
+from rovsim.core.collector import give_back_memory
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
@@ -38,6 +39,7 @@ RECALL = """
   if (kept !== null) setDark(kept === "true");
 """
 LOOK = 0.25  # s between two looks at long work
+TIDY = 60.0  # s between two times that memory is given back
 
 
 class Screens(ui.sub_pages):
@@ -238,6 +240,7 @@ def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
     sessions = Sessions(settings, catalogue)
     server.on_startup(sessions.begin)
+    server.timer(TIDY, give_back_memory, immediate=False)
     logging.getLogger("uvicorn.error").addFilter(_stayed)
     server.add_middleware(Gate)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])

@@ -50,7 +50,7 @@ def simulate_noise_floor(
         errors = perfect.errors(run)
         squares, count = squares + np.square(errors).sum(axis=0), count + len(errors)
         windows += len(Windows(run).spans)
-        measured += Moments.of(run.motion.nu[run.motion.usable])
+        measured += Moments.of(run.motion)
     return NoiseFloor(normalize(measured.std, root_mean(squares, count)), windows)
 
 

@@ -46,6 +46,9 @@ def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Windo
     rmse[[m.possible for m in models]] = [
         rms(np.concatenate([p[k] for p in parts])) for k in range(len(able))
     ]
+    every = sum(part.shape[1] for part in parts)
+    known = sum(part.shape[1] * run.axes for part, run in zip(parts, runs, strict=True))
+    rmse *= np.sqrt(every / np.maximum(known, 1))  # zeros stand where nothing was measured
     spread = measured_spread(run.motion for run in runs)
     return WindowErrors(rmse, [normalize(spread, row) for row in rmse])
 

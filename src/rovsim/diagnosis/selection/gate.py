@@ -65,7 +65,7 @@ class Gate:
     @cached_property
     def spread(self) -> Array:
         """Standard deviation (6,) of the measured velocity."""
-        return np.maximum(measured_spread(run.motion for run in self.whole), SMALLEST)
+        return np.fmax(measured_spread(run.motion for run in self.whole), SMALLEST)
 
     def judge(self, selection: Selection) -> tuple[Selection, bool]:
         """What passes, and whether that is all that was selected."""

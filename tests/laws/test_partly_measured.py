@@ -1,0 +1,81 @@
+"""Runs of which parts were measured: what was not counts nowhere, alone or beside other runs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rovsim import AXES
+from rovsim.dynamics.effects.damping import QuadraticDamping
+from rovsim.evaluation.growth import GrowthScore
+from rovsim.evaluation.ladder import score_step
+from rovsim.evaluation.scores import Sums, subtract
+from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.measurement.signals.measured import Measured
+from rovsim.simulation.replay import replay, simulate
+from rovsim.simulation.settings import ReplaySettings
+from worlds import at_rest, model, motion, sticks
+
+ROTATIONS = np.array([False] * 3 + [True] * 3)
+READ, UNREAD = AXES[3:], AXES[:3]
+HORIZONS = ReplaySettings(horizons=(2.0, 5.0))
+
+
+def flown(seed: int, turns_alone: bool):
+    """A test run of a model under sticks, and how a wrong model replays it."""
+    truth, run = model(), motion(sticks(seed, 6), seconds=12.0)
+    path = simulate(truth, run, [(0, len(run.time) - 1, at_rest())], ReplaySettings())[0]
+    run = replace(run, run=replace(run.run, split="test"), eta=path[:, :7])
+    nu, measured = path[:, 7:], None
+    if turns_alone:
+        every = np.ones((len(path), 6), bool)
+        measured = Measured(
+            np.zeros(3, bool), np.ones(1, bool), ROTATIONS, ROTATIONS, every, np.array([20.0])
+        )
+        nu = np.where(ROTATIONS, nu, 0.0)
+    slope = np.gradient(nu, run.time, axis=0)
+    run = replace(run, nu=nu, state_nu=nu, nu_dot=slope, measured=measured)
+    wrong = truth + QuadraticDamping(surge=40.0, sway=40.0, yaw=2.0)
+    return run, replay(wrong, run, SignalSettings(), HORIZONS, open_loop=False)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return [flown(3, turns_alone=False), flown(5, turns_alone=True)]
+
+
+def errors(run, replayed):
+    return subtract(run, replayed.horizons["2"])
+
+
+def test_a_run_without_velocities_takes_nothing_from_those_of_another(runs):
+    whole, both = Sums.of(errors(*runs[0])).metrics(), score_step("wrong", runs)
+    assert both.windows_2s is not None
+    for axis in UNREAD:
+        assert both.velocity_mae[axis] == pytest.approx(whole.velocity_mae[axis])
+        assert both.acceleration_rmse[axis] == pytest.approx(whole.acceleration_rmse[axis])
+    together = np.concatenate([errors(*one).nu[:, 5] for one in runs])
+    assert both.velocity_mae["yaw"] == pytest.approx(np.abs(together).mean())
+
+
+def test_of_a_run_without_velocities_only_turns_are_scored(runs):
+    metrics, step = Sums.of(errors(*runs[1])).metrics(), score_step("wrong", runs[1:])
+    assert all(metrics.velocity_rmse[axis] is None for axis in UNREAD)
+    assert all(metrics.velocity_rmse[axis] > 0.0 for axis in READ)
+    assert (metrics.position_rmse_m, metrics.attitude_rmse_rad is None) == (None, False)
+    assert step.windows_2s is not None
+
+
+def test_the_growth_of_the_error_is_that_of_measured_axes(runs):
+    def grown(some):
+        score = GrowthScore()
+        for run, replayed in some:
+            score.add(run, replayed.horizons["5"])
+        return score.curve.velocity_rmse
+
+    alone, whole, both = grown(runs[1:]), grown(runs[:1]), grown(runs)
+    for axis in UNREAD:
+        assert set(alone[axis]) == {None}
+        assert both[axis] == pytest.approx(whole[axis])
+    assert both["yaw"] != pytest.approx(whole["yaw"])
+    assert max(alone["yaw"]) > 0.01
