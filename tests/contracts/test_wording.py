@@ -25,6 +25,7 @@ from rovsim.reporting.words import terminal
 from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
+from rovsim.results.diagnosis import Proposal
 from rovsim.results.fitted import FittedEffect, FittedValue
 from synthetic_study import study
 
@@ -164,6 +165,35 @@ def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
     assert "But the effects alone lower it by 77\u202f%." in said
     said = residual_sentences(errors, steps | {"effects+gp_6dof": 0.22})
     assert not any("effects alone" in sentence for sentence in said)
+    law = {"nominal": 1.0, "+lift": 0.75, "+proposed_effect": 0.25, "effects+gp_6dof": 0.8}
+    assert "But the effects alone lower it by 25\u202f%." in residual_sentences(errors, law)
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "beside", "why"),
+    [
+        ("lift", {"sway": 1.0}, None, "no other name was tried"),
+        ("lift", {"sway": 1.0}, ("lift",), "no other name was tried"),
+        ("lift", {"sway": 1.0}, (), "the proposed equation does without it"),
+        ("current_drift", {"rate": 0.01}, (), "may seem a current that wanders"),
+        ("input_delay", {"delay": -0.05}, None, "may look ahead"),
+        ("input_delay", {"delay": 0.05}, None, "no other name was tried"),
+    ],
+)
+def test_why_a_name_has_no_probability_is_said(content, effect, values, beside, why):
+    given = {k: FittedValue(value=x, std=None, unit="") for k, x in values.items()}
+    camera = FittedEffect(effect="pose_filter", parameters={}, probability=0.9)
+    one = FittedEffect(effect=effect, parameters=given)
+    others = tuple(FittedEffect(effect=name, parameters={}) for name in beside or ())
+    law = Proposal(
+        axis="sway", equation="", file="", parameters={}, error_reduction=0.5, effect="",
+        meaning="", terms=(), beside=others,
+    )  # fmt: skip
+    left = content["diagnosis"].unexplained
+    left = left.model_copy(update={"proposal": None if beside is None else law})
+    found = {"selected": (camera, one), "unexplained": left, "rivals": ()}
+    said = explain(content["diagnosis"].model_copy(update=found), built_in()).missing[1]
+    assert re.search(f", no probability: .*{why}$", said.worth)
 
 
 def test_what_is_unexplained_is_not_said_to_be_all_that_a_perfect_model_leaves(content):

@@ -4,6 +4,8 @@ import math
 import re
 from typing import Iterable, Sequence
 
+from rovsim.results.diagnosis import PROPOSED
+
 LONGEST = 40  # letters of a name before its middle is left out
 # The study's own models; a user's keep the name of their file.
 TITLES = {
@@ -68,6 +70,8 @@ def explain_model(model: str) -> str:
             f"{title(base or 'nominal')}, and {LEARNERS[learner][1]} that learned the rest of the "
             f"acceleration from the train runs{of}"
         )
+    if model == f"+{PROPOSED}":
+        return "the proposed equation, and the effects that act beside it"
     if STEP.fullmatch(model):
         return "the step above, and this effect"
     return MEANINGS.get(model, "")

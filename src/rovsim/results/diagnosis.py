@@ -11,7 +11,8 @@ from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import FittedEffect, FittedNoise, FittedValue, Posterior
 from rovsim.results.ladder import Ladder
 
-LAW = "proposed_effect.py"  # beside it: the effect that it proposes
+PROPOSED = "proposed_effect"  # the effect that a diagnosis proposes, as models know it
+LAW = f"{PROPOSED}.py"  # its file, beside the diagnosis
 Verdict = Literal["missing_effects", "adequate", "unexplained", "insufficient_data"]
 
 

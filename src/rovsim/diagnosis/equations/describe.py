@@ -6,12 +6,13 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.equations.disturbance import ForceInTime
-from rovsim.diagnosis.equations.proposal import ID, ProposedLaw
+from rovsim.diagnosis.equations.proposal import ProposedLaw
 from rovsim.diagnosis.equations.spectrum import Spectrum
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.results.base import ByAxis
 from rovsim.results.diagnosis import (
     LAW,
+    PROPOSED,
     Disturbance,
     ForceOfRun,
     ForceSpectrum,
@@ -91,7 +92,7 @@ def describe_law(law: ProposedLaw) -> Proposal:
         for one in law.beside
     ]
     return Proposal(
-        axis=law.axis, equation=law.form.equation, file=LAW, effect=ID,
+        axis=law.axis, equation=law.form.equation, file=LAW, effect=PROPOSED,
         meaning=law.form.meaning,
         parameters={
             n.name: FittedValue(value=rounded(n.value), std=rounded(n.std), unit=n.unit)

@@ -19,8 +19,8 @@ from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.model import Model
 from rovsim.results.base import or_nan
+from rovsim.results.diagnosis import PROPOSED
 
-ID = "proposed_effect"
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
 ENOUGH = 0.05  # of the error of replays: less is not worth an equation
 
@@ -61,7 +61,7 @@ class ProposedLaw:
     @property
     def model(self) -> Model:
         """All that was found, with the law."""
-        return self.fit.hypothesis.model.called(f"+{ID}")
+        return self.fit.hypothesis.model.called(f"+{PROPOSED}")
 
     @cached_property
     def numbers(self) -> list[Number]:
@@ -72,7 +72,7 @@ class ProposedLaw:
     @property
     def source(self) -> str:
         """The effect as a Python file."""
-        return self.form.write(ID, self.law, self.numbers, STORY)
+        return self.form.write(PROPOSED, self.law, self.numbers, STORY)
 
 
 def propose_law(

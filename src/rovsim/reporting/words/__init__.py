@@ -1,8 +1,7 @@
 """What numbers say, in plain language: one statement for terminal, report, workbench and notebook.
 
 verdict           what a diagnosis found
-shown             what recordings could not show
-symbols           what the symbols of an equation stand for
+sureness          how sure a name is, and why no probability is given where none is
 sentences         the report's summary
 speed             what the timing says about control loops
 published_errors  folds beside published errors, pitfalls

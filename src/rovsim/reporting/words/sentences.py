@@ -16,6 +16,7 @@ from rovsim.reporting.words.speed import timing_sentences
 from rovsim.reporting.words.verdict import leaves_unexplained
 from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.comparison import HORIZON
+from rovsim.results.diagnosis import PROPOSED
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
 from rovsim.results.quality import Quality
 
@@ -175,8 +176,9 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
 
 def _effects_alone(ratios: Mapping[str, float], learned: float) -> list[str]:
     """That physics without a residual does better, where it does."""
-    # a ladder has the effects one by one, the last of them on top of all others
-    alone = [r for name, r in ratios.items() if name == "effects" or STEP.fullmatch(name)][-1:]
+    # a ladder has the effects one by one, the last of them on top of all others; then an equation
+    steps = {name: r for name, r in ratios.items() if name == "effects" or STEP.fullmatch(name)}
+    alone = [r for name, r in steps.items() if name != f"+{PROPOSED}"][-1:]
     return [f"But the effects alone lower it by {_percent(1 - r)}." for r in alone if r < learned]
 
 

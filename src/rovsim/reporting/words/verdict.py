@@ -18,9 +18,9 @@ from rovsim.reporting.wording import (
     listed,
     minus,
     significant,
-    tell_probability,
 )
 from rovsim.reporting.words.shown import shown_sentences
+from rovsim.reporting.words.sureness import tell_sureness
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
@@ -92,7 +92,13 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         *shown_sentences(found),
     ]
     missing = tuple(
-        _missing(one, catalogue.get(one.effect), found.thrusters, above=bool(place))
+        _missing(
+            one,
+            catalogue.get(one.effect),
+            found.thrusters,
+            tell_sureness(one, found, catalogue),
+            above=bool(place),
+        )
         for place, one in enumerate(found.selected)
     )
     return Verdict(
@@ -116,9 +122,9 @@ def _key(effects: int) -> str:
 
 
 def _missing(
-    one: FittedEffect, known: type[Effect] | None, thrusters: Sequence[str], above: bool
+    one: FittedEffect, known: type[Effect] | None, thrusters: Sequence[str], sure: str, above: bool
 ) -> Missing:
-    """`thrusters`: their names; `above`: whether effects stand above it.
+    """`thrusters`: their names; `sure`: how its name is; `above`: whether effects stand above it.
 
     What it removes then comes on top of these.
     """
@@ -132,7 +138,7 @@ def _missing(
     removed = _removed(one.error_reduction, above)
     if known and issubclass(known, Wander):
         removed = "cannot be foreseen"
-    worth = f"{removed}, {_sure(one.probability)}"
+    worth = f"{removed}, {sure}"
     return Missing(one.effect, meaning, values, worth, equation, tuple(symbols), cause)
 
 
@@ -170,12 +176,6 @@ def differs_from_zero(value: FittedValue) -> bool:
 def percent(share: float | None) -> str:
     """A share as a whole number of percent."""
     return "an unknown share" if share is None else f"{100 * share:.0f}\u202f%"
-
-
-def _sure(probability: float | None) -> str:
-    if probability is None:
-        return "no other name was tried"
-    return f"probability {tell_probability(probability)}"
 
 
 def error_sentence(found: Diagnosis) -> str:
