@@ -16,8 +16,8 @@ from rovsim.application.sections import SimulationSettings
 from rovsim.application.settings import compose
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
+from rovsim.core.bounded_cache import ReadAgain
 from rovsim.core.errors import BadInput
-from rovsim.core.remade import ReadAgain
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean

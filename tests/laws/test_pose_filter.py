@@ -13,8 +13,8 @@ from hypothesis.extra.numpy import arrays
 from rovsim.core.rotations import exp, log, multiply, normalized
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.selection.filter_delay import absorb_delay, seen_through
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.diagnosis.selection.smoothed import absorb_delay, seen_through
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.sensing import MarkerOffset, WorldTilt

@@ -11,7 +11,7 @@ import pytest
 from flown import observed
 from rovsim.application.pipeline.replays import score_run
 from rovsim.core.array_files import read_arrays, write_arrays
-from rovsim.core.remade import ReadAgain, Recent, Remade, size
+from rovsim.core.bounded_cache import ReadAgain, Recent, Remade, size
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.clocks import ClockDrift

@@ -10,10 +10,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterator
 
+from rovsim.core.bounded_cache import ReadAgain, Remade, read_again
 from rovsim.core.collector import end_at_once
 from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
-from rovsim.core.remade import ReadAgain, Remade, read_again
 from rovsim.core.schema import S, checked
 from rovsim.measurement.signals.motion import Motion
 

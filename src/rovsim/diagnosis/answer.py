@@ -17,13 +17,13 @@ from rovsim.diagnosis.checks.whole_file import (
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
+from rovsim.diagnosis.selection.cluster_robust import drop_unsure
+from rovsim.diagnosis.selection.cross_validation import drop_idle
 from rovsim.diagnosis.selection.forward_selection import search_unnoticed
 from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
-from rovsim.diagnosis.selection.idle_effects import drop_idle
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.diagnosis.selection.unsure_effects import drop_unsure
 from rovsim.dynamics.model import Model
 
 

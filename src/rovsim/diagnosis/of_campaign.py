@@ -8,8 +8,8 @@ import numpy as np
 
 from rovsim.core.files import write_text
 from rovsim.core.progress import step
-from rovsim.diagnosis.checks.held_still import find_standstills
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
+from rovsim.diagnosis.checks.standstills import find_standstills
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
 from rovsim.diagnosis.procedure import diagnose

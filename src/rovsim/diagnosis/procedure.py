@@ -33,13 +33,14 @@ from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
+from rovsim.diagnosis.observer.divergence import ModelLost, require_held
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.lost import ModelLost, require_held
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.filter_delay import absorb_delay, seen_through
 from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.gate import Gate, keep_apart
 from rovsim.diagnosis.selection.gauss_newton import Fit
@@ -57,7 +58,6 @@ from rovsim.diagnosis.selection.ranking import (
 from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.smoothed import absorb_delay, seen_through
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Mapping, Sequence
 
-from rovsim.core.remade import Remade
+from rovsim.core.bounded_cache import Remade
 from rovsim.measurement.signals.chain import Stage, read_stage
 from rovsim.measurement.signals.motion import Motion
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.sparse import csr_array
 
-from rovsim.core.remade import Recent
+from rovsim.core.bounded_cache import Recent
 from rovsim.core.run import Commands
 from rovsim.dynamics.actuation import Between, Thrust
 from rovsim.dynamics.model import Model

@@ -12,8 +12,8 @@ from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive, drive_by_log
 from rovsim.simulation.initial_memory import measured_memory
 from rovsim.simulation.settings import ReplaySettings
-from rovsim.simulation.sharpened import sharpen
 from rovsim.simulation.step_grid import StepGrid
+from rovsim.simulation.unfiltered_motion import sharpen
 
 
 def as_true(model: Model, motion: Motion) -> Motion:

@@ -19,15 +19,15 @@ from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import OPEN_LOOP
 from rovsim.simulation.batch import Batch, Starts
-from rovsim.simulation.carried import carry
 from rovsim.simulation.drive import drive_by_log
+from rovsim.simulation.filter_padding import Embedded, derive, embed
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import as_true, interpolate, interpolate_state
-from rovsim.simulation.neighbourhood import Embedded, derive, embed
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.settings import ReplaySettings
-from rovsim.simulation.sharpened import stage_outputs
 from rovsim.simulation.step_grid import StepGrid
+from rovsim.simulation.unfiltered_motion import stage_outputs
+from rovsim.simulation.unmeasured_velocities import carry
 from rovsim.simulation.windows import find_whole, find_windows
 
 Spans = Sequence[tuple[int, int]]

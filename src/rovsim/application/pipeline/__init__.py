@@ -10,7 +10,7 @@ forces            who pushes how much
 diagnosis         which effects a model lacks
 shown_diagnosis   the same with figures, tracked, while the command goes on
 design            the flight that would tell most
-kept              diagnoses that are found again where nothing changed
+result_cache      diagnoses that are found again where nothing changed
 refit             the nominal model's own parameters, fitted
 training          a learned residual on top of a model; how long its predictions take
 comparison        replays, scores, conditions and forces of some models, together

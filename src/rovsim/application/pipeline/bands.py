@@ -5,8 +5,8 @@ from typing import Mapping, Sequence
 
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.application.sections import SimulationSettings
+from rovsim.core.bounded_cache import Recent, Remade
 from rovsim.core.progress import counted
-from rovsim.core.remade import Recent, Remade
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.motion import Motion

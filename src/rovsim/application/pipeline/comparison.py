@@ -9,8 +9,8 @@ from rovsim.application.pipeline.forces import balance_run
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.application.pipeline.replays import replay_when_asked, score_run
 from rovsim.application.sections import SimulationSettings
+from rovsim.core.bounded_cache import Remade
 from rovsim.core.progress import counted
-from rovsim.core.remade import Remade
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch

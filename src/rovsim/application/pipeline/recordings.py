@@ -7,9 +7,9 @@ from typing import Mapping
 import numpy as np
 
 from rovsim.application.pipeline.reading import load_campaign_vehicle, read_recording
+from rovsim.core.bounded_cache import Remade
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
-from rovsim.core.remade import Remade
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
 from rovsim.measurement.quality import usable_reason

@@ -3,8 +3,8 @@
 from typing import Iterator, Mapping, Sequence
 
 from rovsim.application.sections import SimulationSettings
+from rovsim.core.bounded_cache import Recent, Remade
 from rovsim.core.progress import counted
-from rovsim.core.remade import Recent, Remade
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion

@@ -13,7 +13,6 @@ from rovsim.application.export.targets import target
 from rovsim.application.export.write import export_model, model_parts, write_export
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
-from rovsim.application.pipeline.kept import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.models import add_effects, load_models, load_one_model
 from rovsim.application.pipeline.recordings import (
     Measured,
@@ -21,6 +20,7 @@ from rovsim.application.pipeline.recordings import (
     open_campaign,
     refuse_unusable,
 )
+from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import describe_origin, provenance
 from rovsim.application.sections import TrainingSettings

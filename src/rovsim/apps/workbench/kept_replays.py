@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from numpy import ndarray as Array
 
-from rovsim.core.remade import Recent
+from rovsim.core.bounded_cache import Recent
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
 from rovsim.evaluation.ladder import score_step

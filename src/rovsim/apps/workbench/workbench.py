@@ -6,9 +6,9 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any, Sequence
 
-from rovsim.application.pipeline.kept import kept_diagnosis, kept_flight, kept_folder
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
+from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_flight, kept_folder
 from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import WorkbenchSettings, select
 from rovsim.apps.workbench.draft import Draft

@@ -20,7 +20,7 @@ from rovsim.diagnosis.checks.common_scale import (
     describe_scale,
     include_scale,
 )
-from rovsim.diagnosis.checks.left_open import leave_open
+from rovsim.diagnosis.checks.nuisance_parameters import leave_open
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun

@@ -12,9 +12,9 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
+from rovsim.diagnosis.selection.cross_validation import cross_validate
 from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.idle_effects import cross_validate
 from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.model import Model

@@ -7,7 +7,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.remade import Recent
+from rovsim.core.bounded_cache import Recent
 from rovsim.core.rotations import normalized
 from rovsim.diagnosis.observer.axis_kernels import BIN_MEAN, POSE, SUM
 from rovsim.dynamics.catalogue import Catalogue

@@ -13,7 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize_scalar
 
-from rovsim.core.remade import Recent
+from rovsim.core.bounded_cache import Recent
 from rovsim.diagnosis.observer.noise import Tuning, whiten_run
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 

@@ -14,7 +14,7 @@ from typing import Iterator, NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.remade import Recent
+from rovsim.core.bounded_cache import Recent
 from rovsim.core.rotations import unrotate
 from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
 from rovsim.diagnosis.settings import MOST

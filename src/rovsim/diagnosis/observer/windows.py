@@ -20,9 +20,9 @@ from rovsim.evaluation.scores import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.results.comparison import WINDOW
 from rovsim.simulation.batch import Starts
-from rovsim.simulation.carried import carry
 from rovsim.simulation.measured_states import as_true
-from rovsim.simulation.sharpened import stage_outputs
+from rovsim.simulation.unfiltered_motion import stage_outputs
+from rovsim.simulation.unmeasured_velocities import carry
 from rovsim.simulation.windows import find_windows
 
 

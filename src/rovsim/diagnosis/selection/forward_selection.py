@@ -8,19 +8,19 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection import loose_file
-from rovsim.diagnosis.selection.file_first import (
-    add_file,
-    hold_gain,
-    prefer_file,
-    suspect_file,
-)
+from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.rivals import Rival, Selection
 from rovsim.diagnosis.selection.steady_current import prefer_steady
+from rovsim.diagnosis.selection.vehicle_file_steps import (
+    add_file,
+    hold_gain,
+    prefer_file,
+    suspect_file,
+)
 from rovsim.diagnosis.selection.workspace import HOPELESS, Removed, SearchWorkspace
 from rovsim.dynamics.model import Model
 
@@ -59,7 +59,7 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         for best, name in sorted(tried, key=lambda one: workspace.score(one[0]), reverse=True):
             if not _beats_chance(workspace, best, current, threshold):
                 break
-            if off and loose_file.explains(workspace, best, name):
+            if off and uncertain_file.explains(workspace, best, name):
                 continue
             if find_relevant(workspace, best, [current.hypothesis.model])[0]:
                 return prune(workspace, best)
@@ -104,10 +104,10 @@ def contest(
             if trial is not None:
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -swap and not (
-                    off and loose_file.explains(workspace, trial, p.term.id)
+                    off and uncertain_file.explains(workspace, trial, p.term.id)
                 ):
                     return contest(workspace, prune(workspace, trial), trials, swap)
-                weight = loose_file.weigh(workspace, (current, term), (trial, p.term), deficit)
+                weight = uncertain_file.weigh(workspace, (current, term), (trial, p.term), deficit)
                 deficit = max(0.0, weight)  # likelier only beside a loose file: not told apart
             rivals.append(Rival(p.term.id, term.id, deficit, trial))
     return current, rivals

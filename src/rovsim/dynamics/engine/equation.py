@@ -12,8 +12,8 @@ State: position NED, quaternion body to world, body velocity. SI, float64, FRD a
 import numpy as np
 
 from rovsim.dynamics.engine.compiled import inline_anew, inline_internal, internal
-from rovsim.dynamics.engine.further import further_forces
 from rovsim.dynamics.engine.types import At, State
+from rovsim.dynamics.engine.uncommon_forces import further_forces
 from rovsim.dynamics.engine.vectors import (
     add3,
     add6,

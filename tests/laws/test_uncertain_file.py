@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.selection.candidates import Candidate
-from rovsim.diagnosis.selection.loose_file import (
+from rovsim.diagnosis.selection.proposals import rank_proposals
+from rovsim.diagnosis.selection.sensitivities import CandidateColumns
+from rovsim.diagnosis.selection.uncertain_file import (
     FILE_ODDS,
     FileNumber,
     cost_beside,
@@ -17,8 +19,6 @@ from rovsim.diagnosis.selection.loose_file import (
     propose_file,
     weigh,
 )
-from rovsim.diagnosis.selection.proposals import rank_proposals
-from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle

@@ -10,8 +10,8 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import number_blocks
+from rovsim.diagnosis.selection.cluster_robust import estimate_spread
 from rovsim.diagnosis.selection.gauss_newton import fit
-from rovsim.diagnosis.selection.unsure_effects import estimate_spread
 from rovsim.dynamics.catalogue import built_in
 
 DRAG = built_in()["quadratic_damping"]

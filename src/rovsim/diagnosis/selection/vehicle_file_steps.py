@@ -1,7 +1,7 @@
 """What the vehicle file, where it is off anyway, explains as well as something that is rarer."""
 
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection import loose_file
+from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
@@ -15,7 +15,7 @@ def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     if not any(term.id in STATED for term in terms):
         return current
     for term in terms:
-        if loose_file.explains(workspace, current, term.id):
+        if uncertain_file.explains(workspace, current, term.id):
             rest = workspace.fit(workspace.drop(current, [(term,)])[0])
             fewer = prune(workspace, add_file(workspace, rest))
             if _is_as_good(workspace, fewer, current, term):
@@ -26,9 +26,9 @@ def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
 def _is_as_good(workspace: SearchWorkspace, fewer: Fit, current: Fit, term: Term) -> bool:
     """Whether more of the file makes up for a special term, as far as such a term is rare."""
     if not is_off(current.hypothesis):
-        return workspace.score(fewer) > workspace.score(current) - loose_file.FILE_ODDS
-    costs = [loose_file.measure_cost(workspace, one) for one in (fewer, current)]
-    return costs[0] - costs[1] <= loose_file.find_limit(workspace, term)
+        return workspace.score(fewer) > workspace.score(current) - uncertain_file.FILE_ODDS
+    costs = [uncertain_file.measure_cost(workspace, one) for one in (fewer, current)]
+    return costs[0] - costs[1] <= uncertain_file.find_limit(workspace, term)
 
 
 def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
@@ -43,7 +43,7 @@ def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     rest = current
     while explained := _find_explained(workspace, rest):
         rest = workspace.fit(workspace.drop(rest, [(explained,)])[0])
-    doubt = loose_file.measure_doubt(workspace, rest)
+    doubt = uncertain_file.measure_doubt(workspace, rest)
     if workspace.score(rest) + doubt < workspace.score(current) + SURE:
         return current
     loose = add_file(workspace, rest)
@@ -54,7 +54,8 @@ def _find_explained(workspace: SearchWorkspace, found: Fit) -> Term | None:
     """The special effect that a loose file needs least, if it explains one."""
     special = [term for term in found.hypothesis.terms if term.id not in STATED]
     beyond = [
-        loose_file.measure_loss(workspace, found, term) - loose_file.find_limit(workspace, term)
+        uncertain_file.measure_loss(workspace, found, term)
+        - uncertain_file.find_limit(workspace, term)
         for term in special
     ]
     return special[beyond.index(min(beyond))] if beyond and min(beyond) <= 0.0 else None
@@ -62,7 +63,7 @@ def _find_explained(workspace: SearchWorkspace, found: Fit) -> Term | None:
 
 def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     """With all that the vehicle file states and that is worth its price."""
-    wanted = loose_file.propose_file(workspace, current)
+    wanted = uncertain_file.propose_file(workspace, current)
     if wanted is None:
         return current
     trial = workspace.fit(wanted)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.checks.held_still import find_standstills
+from rovsim.diagnosis.checks.standstills import find_standstills
 from rovsim.reporting.words.shown import held_sentences
 from rovsim.simulation.samples import Samples
 from worlds import motion, sticks

@@ -5,7 +5,7 @@ import pytest
 
 from flown import observed
 from rovsim.diagnosis import procedure
-from rovsim.diagnosis.observer.lost import ModelLost, require_held
+from rovsim.diagnosis.observer.divergence import ModelLost, require_held
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in
 
