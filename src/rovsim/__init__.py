@@ -2,6 +2,20 @@
 
 import rovsim
 campaign = rovsim.open("my_campaign")     # a notebook's way in: docs/notebooks.md
+
+core         errors, files, rotations, progress
+results      what is written as JSON
+dynamics     the equation of motion: vehicle, effects, engine
+measurement  campaigns, readers of raw exports, signals
+simulation   models driven by commands, and the synthetic tank
+evaluation   how far model and measurement are apart
+learning     trained residuals
+diagnosis    which physical effects a model lacks
+design       the next flight
+reporting    figures, tables, pages
+application  settings, the pipeline, tracking
+benchmarks   how right and how fast
+apps         command line, workbench, notebook, other programs
 """
 
 from importlib import import_module

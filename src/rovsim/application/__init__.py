@@ -1,1 +1,14 @@
-"""What the edges share: settings, loading, the pipeline, the study, tracking."""
+"""What the edges share.
+
+conf_search        where Hydra looks
+sections           sections of the configuration that several steps take
+settings           the configuration, composed once
+pipeline           the way of the data, one step a file
+study              the study as the workflow sees it
+leave_one_run_out  each run of a study held out once
+snakemake_job      what surrounds the script of a rule
+provenance         where a result came from
+tracking           MLflow
+intake             from files that nobody has described to a `campaign.yaml`
+export             a model written for another simulator
+"""

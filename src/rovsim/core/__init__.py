@@ -1,1 +1,23 @@
-"""What every room needs and what needs nothing: errors, files, rotations, progress, runs."""
+"""What every room needs and what needs nothing: errors, files, rotations, progress, runs.
+
+errors          what was found, where, what was expected, what to do
+files           files that appear whole or not at all
+yaml_files      YAML, read safely and written
+array_files     arrays in `.npz` files, without pickle
+schema          typed sections of YAML
+mappings        nested mappings by dotted name
+names           names that people give
+columns         text that fits a terminal
+progress        how far long work is, and the time that is left
+run             which run a thing belongs to, what was commanded, where
+pwm             pulses of a radio control, and what they command
+rotations       rotations and axis conventions
+normal          numbers of the normal distribution
+bounded_cache   values that are made again where memory did not hold them
+collector       when Python collects, and what is given back to the system
+second_process  a second process for what needs other libraries
+termination     SIGTERM as Ctrl-C
+extras          packages that only some commands need
+shipped         files that come with rovsim
+making          when, from which commit and on which machine something is made
+"""

@@ -1,1 +1,13 @@
-"""What was recorded: campaigns, readers of raw exports, signals. Knows no dynamics."""
+"""What was recorded. Knows no dynamics.
+
+campaign_file  the keys of `campaign.yaml`
+unanswered     lines that `rovsim init` left to its reader
+campaign       a campaign: one folder of recordings
+sensors        where sensors sit, and how late they are
+recording      raw exports in, recordings in NED and FRD out
+signals        from poses to velocities and accelerations
+quality        how good a recording is
+remarks        the same in sentences
+runs           the usable runs of a campaign
+survey         what is in files that nobody has described yet
+"""

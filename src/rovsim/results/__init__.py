@@ -1,1 +1,18 @@
-"""Results as they are written and read: one frozen model for each JSON file."""
+"""Results as they are written and read: one frozen model for each JSON file.
+
+base              what all results share
+fitted            fitted values, how these hang together, and the noise
+diagnosis         `diagnosis.json`
+comparison        `comparison.json`
+ladder            `ladder.json`
+error_conditions  `where.json`
+growth            `growth.json`
+budget            `budget.json`
+bands             `bands.json`
+experiment        `experiment.json`
+quality           `quality/RUN.json`
+timing            `timing.json`, `bench.json`
+published_errors  `published_errors.json`
+pitfalls          `pitfalls.json`
+blind_benchmark   `summary.json` of the blind benchmark
+"""

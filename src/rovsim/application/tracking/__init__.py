@@ -1,6 +1,11 @@
 """MLflow: one experiment a campaign, one run a model or diagnosis. Written after results, unread.
 
 Runs are written under a lock, one writer at a time, so parallel jobs never find a locked database.
+
+runs          one run: its tags, parameters, metrics and files
+study         a study as runs
+diagnosis     a diagnosis as runs
+ranking_view  how MLflow shows a campaign
 """
 
 from rovsim.application.tracking.diagnosis import track_diagnosis

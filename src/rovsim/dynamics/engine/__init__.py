@@ -1,1 +1,14 @@
-"""The compiled equation of motion."""
+"""The compiled equation of motion.
+
+types            what the engine passes around
+vectors          small vectors as tuples, which live in registers
+equation         Fossen's equation of motion
+uncommon_forces  of a waterplane, of products of velocities, of control surfaces
+reading          what effects may read beside the state
+integration      its integration over steps
+observer         a model along a measurement, corrected by it
+modules          written modules for lists of effects
+compiled         how functions are compiled, and kept
+cache            one folder for each state of the sources
+parallel         kernels on all cores, in threads
+"""

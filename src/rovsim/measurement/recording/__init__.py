@@ -1,4 +1,25 @@
-"""Raw exports in, recordings out: one module per format, axes converted once."""
+"""Raw exports in, recordings out: one module per format, axes converted once.
+
+readers       the formats; a new one is a module here with a registered function
+qtm_tsv       Qualisys Track Manager
+motive_csv    OptiTrack Motive
+c3d           C3D with rigid bodies
+csv           measured channels in columns that name their units
+csv_checks    what its numbers cannot be
+commands_csv  commands in columns
+rosbag2       ROS 2 bags
+ardupilot     ArduPilot logs
+table         columns of numbers in text
+units_row     a line of units below the names
+dates         times that are dates
+foreign       errors of foreign libraries as one message
+channels      each kind of measurement at its own times
+commands      logged values become commands
+joined        several files of one run
+tidying       sorted by time, each time once
+reading       from the files of a run to a recording
+recording     a run as it was logged, before any filter
+"""
 
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.recording.reading import Anomalies, read_run, site

@@ -1,4 +1,12 @@
-"""ROS 2 bags, sqlite3 or MCAP, by `rosbags`: poses, other channels, commands."""
+"""ROS 2 bags, sqlite3 or MCAP, by `rosbags`: poses, other channels, commands.
+
+bag          topics, and the numbers of one of them
+definitions  types of messages: of ROS, of mavros, of the bag
+messages     numbers of messages, by their fields
+stamps       when a message was measured
+motion       poses and channels
+commands     pulses, arrays, wrenches, joysticks
+"""
 
 from rovsim.measurement.recording.rosbag2.commands import read_commands
 from rovsim.measurement.recording.rosbag2.motion import read_bag
