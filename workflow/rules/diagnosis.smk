@@ -45,7 +45,7 @@ rule refit:
     benchmark:
         f"{R}/benchmarks/refit.tsv"
     params:
-        settings=study.settings.replay.model_dump_json(),
+        settings=study.section(DiagnosisSettings),
         code=code_of("refit"),
     script:
         "../scripts/refit.py"

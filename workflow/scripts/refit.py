@@ -2,14 +2,14 @@
 
 from rovsim.application.pipeline.refit import refit
 from rovsim.application.snakemake_job import job
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.diagnosis.settings import DiagnosisSettings
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         refit(
             runs=rule.runs(),
             base=rule.model("nominal"),
-            settings=rule.section(ReplaySettings),
+            settings=rule.section(DiagnosisSettings),
             catalogue=rule.catalogue,
             out=rule.output(),
         )

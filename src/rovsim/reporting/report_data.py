@@ -160,7 +160,7 @@ class RunData:
 
     @property
     def predicted_eta(self) -> dict[str, Array]:
-        """Pose (n, 6) by model, in open loop."""
+        """Pose (n, 7) by model, in open loop."""
         return self._predicted(OPEN_LOOP, "eta")
 
     @property

@@ -68,7 +68,7 @@ def suite(name: str, seeds: Range) -> list[Case]:
 
 
 def quick(seeds: Range) -> Iterator[Case]:
-    """Some 40 cases: every effect once, and a few of the other kinds."""
+    """49 cases: every effect once, and a few of the other kinds."""
     for name in RECIPES:
         yield hiding("single", (name,), 0, seeds)
     yield from (nothing(k, seeds) for k in range(3))

@@ -31,7 +31,8 @@ def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
     count = int(np.sum(np.abs(sums) > RARE * usual))
     limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE / UNEVEN))
     if count > limit:
-        what = f"sudden pushes, one in about {len(sums) * SUDDEN / count:.2g} s"
+        seconds = len(sums) * few * residual.runs[0].period
+        what = f"sudden pushes, one in about {seconds / count:.2g} s"
         yield Structure(residual.axis, what, 1.0, count / limit)
 
 

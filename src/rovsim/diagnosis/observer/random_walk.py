@@ -65,7 +65,7 @@ class RandomWalk:
     _kept: Recent[list[_Principal]] = field(default_factory=Recent)
 
     def _decompose(self, wanted: Sequence[Tuning]) -> list[_Principal]:
-        key = tuple(f.gain.tobytes() for one in wanted for f in one.filters)
+        key = tuple((f.gain.tobytes(), f.variance) for one in wanted for f in one.filters)
         each = zip(self.columns, self.runs, self.found, wanted, strict=True)
         return self._kept.get(key, lambda: [_decompose(whiten_run(*one)) for one in each])
 

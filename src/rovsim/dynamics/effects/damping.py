@@ -69,7 +69,7 @@ class CubicDamping(Wrench):
         "each: doubling the speed takes eight times the drag, with quadratic drag four times."
     )
     signature = Signature({"sway": 400.0}, "sway", "sway speed")
-    parameters = per_axis("N s3/m3", "N m s3", "c", scales=(50.0, 0.5))
+    parameters = per_axis("N s3/m3", "N m s3/rad3", "c", scales=(50.0, 0.5))
 
     @staticmethod
     def wrench(at, p):

@@ -20,7 +20,9 @@ class DryFriction(Wrench):
 
     id = "dry_friction"
     equation = r"\tau_i = -c_i \tanh(\nu_{r,i} / 0.01)"
-    neglects = "sticking, and a force that changes with the load"
+    neglects = (
+        "sticking, a force that changes with the load, and that in a current the rail stands still"
+    )
     source = "Coulomb's law, smoothed as by Andersson et al. 2007, Tribology International 40"
     cause = (
         "The tether slides over the edge of the tank or along its floor, or the vehicle along a "
