@@ -15,6 +15,6 @@ def test_all_that_promise_nearly_what_a_term_explains_challenge_it(loss, tried):
     term = Term(ConstantWrench(surge=1.0), ("surge",))
     others = [Proposal(SimpleNamespace(id=str(gain)), gain) for gain in (95.0, 90.0, 80.0, 30.0)]
     found = find_challengers(
-        SimpleNamespace(price=0.0), term, SimpleNamespace(loss=loss, others=others), trials=1
+        SimpleNamespace(penalty=0.0), term, SimpleNamespace(loss=loss, others=others), trials=1
     )
     assert [p.gain for p in found] == [95.0, 90.0, 80.0][:tried]

@@ -159,7 +159,7 @@ def test_a_noise_that_cannot_be_ends_no_search(level, reading):
 
     def cost(noise):
         squares, log, count = misfit(
-            np.array(noise), POSE, H, motion.over(H, POSE), f.poles, f.forgets, e,
+            np.array(noise), POSE, H, motion.over(H, POSE), f.denominator, f.noise_denominator, e,
             np.array([[0, 500]]), every, every,
         )  # fmt: skip
         return squares + count * log

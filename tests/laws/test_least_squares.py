@@ -21,7 +21,7 @@ def columns():
 def test_the_few_that_matter_are_chosen_among_many(columns):
     noise = np.random.default_rng(5).normal(size=500)
     target = -(3.0 * columns[2] - 2.0 * columns[6]) + 0.1 * noise
-    found = select_columns(inner_products(columns), columns @ target, price=12.0)
+    found = select_columns(inner_products(columns), columns @ target, penalty=12.0)
     assert set(found.chosen) == {2, 6}
     by_name = dict(zip(found.chosen, found.x, strict=True))
     assert by_name[2] == pytest.approx(3.0, abs=0.05)
@@ -36,14 +36,14 @@ def test_two_that_hide_each_other_are_found_from_above(columns):
     target = -20.0 * (alike[0] - alike[-1]) + columns[7]  # of `apart`, which no column shows
     H, b = inner_products(alike), alike @ target
     alone = np.max(b**2 / np.diag(H) * (np.arange(len(b)) != 7))
-    found = eliminate_columns(H, b, price=2.0 * alone)
+    found = eliminate_columns(H, b, penalty=2.0 * alone)
     assert set(found.chosen) == {0, 7, 8}
     assert found.x == pytest.approx([20.0, -1.0, -20.0])
     assert found.decrease == pytest.approx(target @ target)
 
 
 def test_nothing_is_kept_of_what_explains_nothing(columns):
-    assert eliminate_columns(inner_products(columns), np.zeros(8), price=12.0).chosen == ()
+    assert eliminate_columns(inner_products(columns), np.zeros(8), penalty=12.0).chosen == ()
 
 
 def test_the_joint_solution_is_the_bounded_one(columns):

@@ -23,7 +23,7 @@ LOOPS = {
     for axis in ("roll", "pitch", "yaw")
     for name, value in (("gain", 0.7), ("bandwidth", 2.0))
 }
-PRICE = 10.0
+PENALTY = 10.0
 TRIED = ("propeller_torque", "thruster_deadband", "quadratic_damping")
 
 
@@ -83,7 +83,7 @@ def test_of_a_larger_vehicle_more_is_worth_looking_for(tmp_path):
         bank, Hypothesis(base), [c for c in listed if c.effect.id == "linear_damping"]
     )
     (block,) = known.blocks
-    needed = np.sqrt(PRICE) + SURELY
+    needed = np.sqrt(PENALTY) + SURELY
     sizes = np.full(known.count, 0.1 * needed)
-    assert _find_shown(sizes, [block], PRICE, 1.0) == {"linear_damping": False}
-    assert _find_shown(sizes, [block], PRICE, 11.0) == {"linear_damping": True}
+    assert _find_shown(sizes, [block], PENALTY, 1.0) == {"linear_damping": False}
+    assert _find_shown(sizes, [block], PENALTY, 11.0) == {"linear_damping": True}

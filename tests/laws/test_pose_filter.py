@@ -242,7 +242,7 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
     h = Hypothesis(
         seen_through(base, smoothing), (Term(ThrusterLag(time_constant=lag), ("time_constant",)),)
     )
-    workspace = SimpleNamespace(fit=fit, score=lambda one: one.score, price=0.0)
+    workspace = SimpleNamespace(fit=fit, score=lambda one: one.score, penalty=0.0)
     again, finer = absorb_delay(Selection(workspace, found(h), ()), base, smoothing)
     assert (again.found.hypothesis.terms == ()) is absorbed
     assert finer.latency == pytest.approx(lag if absorbed else 0.0)

@@ -11,13 +11,13 @@ from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
-PRICE = 11.5  # of about 300 columns
+PENALTY = 11.5  # of about 300 columns
 
 
 class Wald:
     """A workspace where a lost parameter costs the square of its standard deviations from zero."""
 
-    price = PRICE
+    penalty = PENALTY
 
     def __init__(self, z: dict[str, float], likelihood: float) -> None:
         self.z, self.likelihood = z, likelihood
@@ -31,7 +31,7 @@ class Wald:
         return SimpleNamespace(hypothesis=h, std=std, likelihood=likelihood, held=held)
 
     def score(self, found: SimpleNamespace) -> float:
-        return found.likelihood - PRICE * len(found.hypothesis.x)
+        return found.likelihood - PENALTY * len(found.hypothesis.x)
 
 
 @pytest.mark.parametrize(

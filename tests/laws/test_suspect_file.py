@@ -35,7 +35,7 @@ class Workspace:
         names = [(one.effect.id, name) for one, _ in owned for name in one.free]
         self.readings, self.all = readings, columns
         self.by_name = dict(zip(names, columns, strict=True))
-        self.price = 2.0 * np.log(len(columns))
+        self.penalty = 2.0 * np.log(len(columns))
         self.columns = SimpleNamespace(products=self.products)
         blocks = [CandidateColumns(one, None, own) for one, own in owned]
         self.sensitivities = SimpleNamespace(base_model=BASE, blocks=blocks)
@@ -70,7 +70,7 @@ class Workspace:
 
     def score(self, found):
         h = found.hypothesis
-        return -float(self.left(h) @ self.left(h)) - self.price * len(h.x)
+        return -float(self.left(h) @ self.left(h)) - self.penalty * len(h.x)
 
 
 def make(seed, off, special):

@@ -23,9 +23,9 @@ from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
-PRICE = 10.0
+PENALTY = 10.0
 OFF = ("linear_damping", "quadratic_damping", "added_mass")
-LIMIT = PRICE + FILE_ODDS  # of an effect with one number
+LIMIT = PENALTY + FILE_ODDS  # of an effect with one number
 
 
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 6))
@@ -51,7 +51,7 @@ def fit(cost, *names):
 def workspace_of(without=0.0):
     """`without`: what is left beside a loose file if a term is taken away."""
     return SimpleNamespace(
-        price=PRICE, columns=SimpleNamespace(products=lambda seen: np.array([[seen]])),
+        penalty=PENALTY, columns=SimpleNamespace(products=lambda seen: np.array([[seen]])),
         products_without=lambda found, term: np.array([[without]]),
         sensitivities=SimpleNamespace(base_model=None, blocks=()),
     )  # fmt: skip
@@ -99,11 +99,11 @@ def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
     columns = np.vstack([slow, slow + 0.1 * random.normal(size=400)])
     hidden = columns[0] - columns[1]  # of opposite sign: hardly anything is left of them
     rows = np.vstack([-50.0 * hidden, columns])
-    alone = rank_proposals(rows @ rows.T, blocks, price=400.0)
+    alone = rank_proposals(rows @ rows.T, blocks, penalty=400.0)
     assert all(one.gain < 0.0 for one in alone)
     base = nominal(load_vehicle(default_vehicle()))
     workspace = SimpleNamespace(
-        price=400.0, columns=SimpleNamespace(products=lambda seen: rows @ rows.T),
+        penalty=400.0, columns=SimpleNamespace(products=lambda seen: rows @ rows.T),
         sensitivities=SimpleNamespace(base_model=base, blocks=blocks),
     )  # fmt: skip
     both = propose_file(workspace, SimpleNamespace(seen=None, hypothesis=Hypothesis(base)))

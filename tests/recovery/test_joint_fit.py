@@ -42,7 +42,7 @@ HIDDEN = (
 class OpenScale:
     """Drag is twice what the file says; while the gain is free, no value is sure."""
 
-    price = 10.0
+    penalty = 10.0
 
     def fit(self, h, reach):
         free = {term.id for term in h.terms}
@@ -51,7 +51,7 @@ class OpenScale:
 
     def score(self, found):
         free = {term.id for term in found.hypothesis.terms}
-        return (100.0 if "quadratic_damping" in free else 0.0) - self.price * len(free)
+        return (100.0 if "quadratic_damping" in free else 0.0) - self.penalty * len(free)
 
 
 def test_of_an_open_scale_the_gain_goes_and_what_differs_stays():

@@ -144,12 +144,12 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
 
 
 def _know(
-    found: Fit, bank: FilterBank, wanted: Sequence[str], price: float = 0.0,
+    found: Fit, bank: FilterBank, wanted: Sequence[str], penalty: float = 0.0,
     widest: Hypothesis | None = None,
 ) -> Known:  # fmt: skip
     names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
-    paid = price * sum(term.choices for term in found.hypothesis.terms)
+    paid = penalty * sum(term.choices for term in found.hypothesis.terms)
     likelihood, taking_up = found.likelihood - paid, found.hypothesis
     information = held = inner_products(bank.flatten(found.seen.J, found.noise))
     if widest is not None:
@@ -164,18 +164,18 @@ def _learn_rivals(
     candidates: Sequence[Candidate],
 ) -> Knowledge:  # fmt: skip
     """Each rival fitted in the other's absence, beside all else."""
-    rest, fits, price = _without(start, *question.between), [], 0.0
+    rest, fits, penalty = _without(start, *question.between), [], 0.0
     for name in question.between:
         given = next((t for t in start.terms if t.id == name), None)
         own = [c for c in candidates if c.effect.id == name]
-        term, price = (given, price) if given else _propose(rest, runs, own)
+        term, penalty = (given, penalty) if given else _propose(rest, runs, own)
         fits.append(_fit(rest.with_term(term), runs))
-    price = max(price, 2.0 * float(np.log(len(candidates))))
+    penalty = max(penalty, 2.0 * float(np.log(len(candidates))))
     rivals = []
     for name, (found, bank) in zip(question.between, fits, strict=True):
         names = found.hypothesis.parameter_names
         wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
-        rivals.append(_know(found, bank, wanted, price, widen(found.hypothesis, name)))
+        rivals.append(_know(found, bank, wanted, penalty, widen(found.hypothesis, name)))
     best, bank = max(fits, key=lambda one: one[0].likelihood)
     asked = tuple(question.between)
     return Knowledge(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
@@ -194,8 +194,8 @@ def widen(h: Hypothesis, effect: str) -> Hypothesis:
 def _propose(
     h: Hypothesis, runs: Sequence[ObservedRun], own: Sequence[Candidate]
 ) -> tuple[Term, float]:
-    """The start and the free parameters of an effect that promise most, and their price."""
+    """The start and the free parameters of an effect that promise most, and their penalty."""
     found, bank = _fit(h, runs)
     seen = linearise_candidates(bank, found.hypothesis, own)
     workspace = SearchWorkspace(WhiteColumns(bank, seen, found.noise), SearchSettings())
-    return workspace.propose(found)[0].term, workspace.price
+    return workspace.propose(found)[0].term, workspace.penalty

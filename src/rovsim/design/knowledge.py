@@ -23,7 +23,7 @@ class Known:
     """A hypothesis as the train runs leave it.
 
     `information` (k, k) they hold about its scaled parameters, of which `wanted` (j,) are asked
-    for; `likelihood` twice its logarithm, the price of its parameters paid. `widest` has all
+    for; `likelihood` twice its logarithm, with the penalty of its parameters. `widest` has all
     parameters free with which a rival might take up a flight, `held` (w, w) the information on it.
     """
 

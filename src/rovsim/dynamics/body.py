@@ -33,7 +33,7 @@ class Body:
     `center_of_buoyancy` (3,) m; `current` (3,) m/s NED; `B` (6, n) wrench per thruster force and
     `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m; `coupling`
     (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column), never
-    changed by walls; `memory` (6,) force per remembered velocity; `forgets` 1/s, 0 = no memory;
+    changed by walls; `memory` (6,) force per remembered velocity; `memory_decay` 1/s, 0: none;
     `memories`: so many effects gave one; `waterplane` (3,) stiffness N/m, N m/rad in heave, roll,
     pitch; `products` (t,) coefficients of products of velocities, `factors` (t, 4) axis of the
     force and up to three velocities: i, 6 + i for its size, -1 for none; `surfaces` (s, 15)
@@ -58,7 +58,7 @@ class Body:
     advance: float = 0.0
     coupling: Array = field(default_factory=lambda: np.zeros((2, 6, 6)))
     memory: Array = field(default_factory=lambda: np.zeros(6))
-    forgets: float = 0.0
+    memory_decay: float = 0.0
     memories: int = 0
     waterplane: Array = field(default_factory=lambda: np.zeros(3))
     products: Array = field(default_factory=lambda: np.zeros(0))
@@ -81,7 +81,7 @@ class Body:
         changes; the engine adds c times what is remembered. A body has at most one.
         """
         self.memories += 1
-        self.memory, self.forgets = memory, 1.0 / time_constant
+        self.memory, self.memory_decay = memory, 1.0 / time_constant
         self.coupling[0] += np.diag(memory)
 
     @property
@@ -160,7 +160,7 @@ def packed(body: Body) -> Constants:
         coupled=alone(np.any(body.coupling)),
         coupling=alone(body.coupling),
         memory=alone(body.memory),
-        forgets=alone(body.forgets),
+        memory_decay=alone(body.memory_decay),
         B=alone(body.B),
         directions=np.ascontiguousarray(body.directions, dtype=float),
         further=alone(body.goes_further),

@@ -25,7 +25,7 @@ class ProposedTerm(Section):
 
 
 class RivalLaw(Section):
-    """A law tried in its place; `deficit` in -2 log likelihood, prices paid."""
+    """A law tried in its place; `deficit` in -2 log likelihood, with penalties."""
 
     equation: str
     deficit: float | None
@@ -95,7 +95,7 @@ class Disturbance(Section):
 
 
 class Unexplained(Section):
-    """Structure that no effect of the catalogue explains: its share of the innovations.
+    """Structure that no effect of the catalogue explains: its share of the disturbance's power.
 
     `proposal`: an equation for it, where one holds; `disturbance`: the force in time, where none
     does.

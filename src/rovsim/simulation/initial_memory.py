@@ -22,7 +22,7 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
     """
     body = model.body
     known = np.flatnonzero(motion.usable | np.isfinite(motion.state_nu).all(axis=1))
-    if body.forgets == 0.0:
+    if body.memory_decay == 0.0:
         return NO_MEMORY
     if len(known) == 0:
         return np.zeros((len(times), 6))
@@ -32,7 +32,7 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
     grid = np.linspace(motion.time[0], times[-1], count + 1)
     h = float(grid[1] - grid[0])
     moved = np.stack([np.interp(grid, motion.time[known], column) for column in nu_r.T], axis=1)
-    wake = LowPass((1.0 / body.forgets,))
+    wake = LowPass((1.0 / body.memory_decay,))
     remembered = wake.smooth(moved, h, first=np.zeros((1, 6)), straight=True)
     return np.stack([np.interp(times, grid, column) for column in remembered.T], axis=1)
 
@@ -45,7 +45,7 @@ def remembered_at(
     `see`: the run's true motion as a model sees it; `edges` (k+1,) s those of the grid. Models that
     see and forget alike remember the same, and it is found once.
     """
-    if not any(m.body.forgets for m in models):
+    if not any(m.body.memory_decay for m in models):
         return NO_MEMORY
     keys = [_name_memory(m) for m in models]
     whole = {
@@ -57,4 +57,4 @@ def remembered_at(
 
 def _name_memory(model: Model) -> tuple:
     """All of a model that its memory of a motion depends on."""
-    return model.mocap_view.key, model.body.forgets, model.body.current.tobytes()
+    return model.mocap_view.key, model.body.memory_decay, model.body.current.tobytes()

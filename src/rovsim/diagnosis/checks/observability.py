@@ -39,11 +39,13 @@ def list_not_observable(
     runs = workspace.bank.runs
     blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
     larger = max(1.0, vehicle.rigid_body.mass / SCALED_FOR)
-    shown = _find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.price, larger)
+    shown = _find_shown(
+        workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, larger
+    )
     if selection.found.hypothesis.model.thrust_path.autopilots:
         driven = [block for block in blocks if block.candidate.effect.through == "thrusters"]
         sizes = workspace.columns.sizes(selection.found.hypothesis)
-        shown |= _find_shown(sizes, driven, workspace.price, larger)
+        shown |= _find_shown(sizes, driven, workspace.penalty, larger)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
     if not workspace.bank.shows_drift(workspace.noise):
@@ -54,13 +56,13 @@ def list_not_observable(
 
 
 def _find_shown(
-    sizes: Array, blocks: Sequence[CandidateColumns], price: float, larger: float
+    sizes: Array, blocks: Sequence[CandidateColumns], penalty: float, larger: float
 ) -> dict[str, bool]:
-    """Of each effect, whether a column, `sizes` (c,) long at one scale, surely pays the price.
+    """Of each effect, whether a column, `sizes` (c,) long at one scale, surely is worth it.
 
     `larger`: than what the scales are for, that many times, is the vehicle.
     """
-    needed = np.sqrt(price) + SURELY
+    needed = np.sqrt(penalty) + SURELY
     shown: dict[str, bool] = {}
     for block in blocks:
         name = block.candidate.effect.id

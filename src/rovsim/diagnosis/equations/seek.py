@@ -50,7 +50,7 @@ Key = TypeVar("Key")
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A law on top of a hypothesis, fitted; `score` with the price of each of its numbers paid.
+    """A law on top of a hypothesis, fitted; `score` with the penalty of each of its numbers.
 
     `rivals`: equations of laws that were tried in its place, and by how much less likely each is.
     """
@@ -77,7 +77,7 @@ class Judged:
 class LawSearch:
     """Laws on top of hypotheses, about what was selected.
 
-    `candidates`: so many terms there are to choose from, which sets the price of a number.
+    `candidates`: so many terms there are to choose from, which sets the penalty of a number.
     """
 
     selection: Selection
@@ -89,14 +89,14 @@ class LawSearch:
         return self.selection.workspace
 
     @property
-    def price(self) -> float:
+    def penalty(self) -> float:
         """What a number of a law costs, in twice the log likelihood."""
         return 2.0 * float(np.log(self.candidates))
 
     @property
     def chance(self) -> float:
-        """What the best of all terms gains by chance, its price paid (Bonferroni's bound)."""
-        return max(0.0, float(chi2.isf(FALSE_ALARM / self.candidates, 1)) - self.price)
+        """What the best of all terms gains by chance, with its penalty (Bonferroni's bound)."""
+        return max(0.0, float(chi2.isf(FALSE_ALARM / self.candidates, 1)) - self.penalty)
 
     def challenge(self, form: Form, h: Hypothesis, current: Fit, score: float) -> Judged | None:
         """A law, fitted with all else; None as soon as it surely does not come near a score.
@@ -121,7 +121,7 @@ class LawSearch:
 
     def _ask(self, h: Hypothesis) -> float:
         """What the numbers of a law cost more than those of the catalogue."""
-        return (self.price - self.workspace.price) * get_law(h).choices
+        return (self.penalty - self.workspace.penalty) * get_law(h).choices
 
     def is_worth(self, more: Judged, less: Fit, score: float) -> bool:
         """Whether it gains more than chance would, and users would see it in some axis' windows."""
@@ -194,7 +194,7 @@ class LawSearch:
         if not terms or not fit.held:
             return []
         columns = weigh(self.workspace, fit, terms, middle_of(runs), push_thrust)
-        gain = find_alone(columns.products) - self.price
+        gain = find_alone(columns.products) - self.penalty
         least = max(self.chance, 0.0 if grown is None else NEAR * (grown.score - score))
         order = np.argsort(-gain, kind="stable")[:PULLED]
         laws = {
@@ -224,7 +224,7 @@ class LawSearch:
         """Effects of the catalogue that to first order are not needed: others surely stay."""
         h, idle = found.hypothesis, []
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
-            most = HOPELESS + 2.0 * self.workspace.price * len(own)
+            most = HOPELESS + 2.0 * self.workspace.penalty * len(own)
             stays = own and term.vanishes and found.distance(own) > most
             if term.effect.listed and not stays:
                 idle.append(i)

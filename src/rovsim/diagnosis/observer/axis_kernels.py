@@ -99,7 +99,7 @@ def invert(A):
 
 @njit(**FROM_PYTHON)
 def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_memory):
-    """F, C, gain, variance of the innovations, poles and forgetting of the filter of one axis.
+    """F, C, gain, variance of the innovations, denominators of the filter of one axis.
 
     Its pose and velocity go on as `moved` (3, 3) says. Velocities of bins have no slow error of
     their own.
@@ -107,9 +107,9 @@ def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_me
     phi, slow = np.exp(-h / memory), np.exp(-h / colour_memory)
     binned = kind == BIN_MEAN
     n = 2 if binned else 4 if colour > 0.0 else 3
-    F, C, forgets = np.zeros((n, n)), np.zeros(n), np.zeros(3 if n == 4 else 2)
+    F, C, noise_denominator = np.zeros((n, n)), np.zeros(n), np.zeros(3 if n == 4 else 2)
     Q, r, disturbed = np.zeros((n, n)), reading**2, 1 if binned else 2
-    C[0], forgets[0], forgets[1] = 1.0, 1.0, -phi
+    C[0], noise_denominator[0], noise_denominator[1] = 1.0, 1.0, -phi
     F[disturbed, disturbed] = phi
     if binned:
         F[0, 0], F[0, 1] = moved[1, 1], h
@@ -121,7 +121,7 @@ def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_me
     if n == 4:
         F[3, 3], C[3] = slow, 1.0
         Q[3, 3] = colour**2 * (1.0 - slow**2)
-        forgets[1], forgets[2] = -phi - slow, phi * slow
+        noise_denominator[1], noise_denominator[2] = -phi - slow, phi * slow
     if kind == SUM:
         Q[0, 0], r = r, READ_AS_IS * r
     P = solve_riccati(F, C, Q, r)
@@ -136,7 +136,7 @@ def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_me
         gain[i] /= variance
         for j in range(n):
             left[i, j] -= gain[i] * C[j]
-    return F, C, gain, variance, characteristic(multiply(F, left)), forgets
+    return F, C, gain, variance, characteristic(multiply(F, left)), noise_denominator
 
 
 @njit(**INTERNAL)
@@ -248,7 +248,7 @@ def convolve(a, b):
 
 
 @njit(nogil=True, **FROM_PYTHON)
-def misfit(noise, kind, h, moved, poles, forgets, e, spans, kept, shown):
+def misfit(noise, kind, h, moved, denominator, noise_denominator, e, spans, kept, shown):
     """Sum of squares over their variance, its logarithm, and the number of those that count.
 
     Of innovations e (n,) of one run under a noise (5,).
@@ -258,16 +258,16 @@ def misfit(noise, kind, h, moved, poles, forgets, e, spans, kept, shown):
         kind: what is read.
         h: period of the readings, s.
         moved: transition (3, 3) over h, see `AxisMotion.over`.
-        poles: of the filter that e was found with.
-        forgets: likewise.
+        denominator: of the filter that e was found with.
+        noise_denominator: likewise.
         e: innovations.
         spans: first and last + 1 (s, 2) of each.
         kept: which of them count (n,).
         shown: which are there at all (n,).
     """
-    _, _, _, variance, own_poles, own_forgets = solve_steady_state(
+    _, _, _, variance, own, own_noise = solve_steady_state(
         kind, h, moved, noise[0], noise[1], noise[2], noise[3], noise[4]
     )
-    b, a = convolve(own_forgets, poles), convolve(forgets, own_poles)
+    b, a = convolve(own_noise, denominator), convolve(noise_denominator, own)
     squares, count = sum_of_squares(b, a, e, spans, kept, shown)
     return squares / variance, np.log(variance), count

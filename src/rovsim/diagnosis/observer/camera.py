@@ -81,13 +81,13 @@ def _cost(spectra: Sequence[Spectrum], kind: Kind, cutoff: float | None) -> floa
 
 
 def _price(spectra: Sequence[Spectrum], kind: Kind) -> float:
-    return sum(one.price(kind) for one in spectra)
+    return sum(one.penalty(kind) for one in spectra)
 
 
 def _refine(
     spectra: Sequence[Spectrum], kind: Kind, tried: Array, costs: Array
 ) -> tuple[float, float, float]:
-    """Cost, price paid, of the likeliest cutoff near the best of those tried (t,); it, its std."""
+    """Cost, with its penalty, of the likeliest cutoff near the best tried (t,); it, its std."""
 
     def cost(x: float) -> float:
         return _cost(spectra, kind, float(np.exp(x)))

@@ -87,7 +87,7 @@ class Spectrum:
         low, high = np.full(len(others), np.log(NOTHING)), np.log(most)
         return 2.0 * self.count * least_misfit(self.power, white, np.array(others), low, high)
 
-    def price(self, kind: Kind) -> float:
+    def penalty(self, kind: Kind) -> float:
         """What its sizes cost beyond those of white noise (Schwarz 1978)."""
         sizes = (kind.memory is not None) + kind.bridged
         return float(np.log(self.count * self.power.shape[1]) * sizes * len(self.power))

@@ -55,16 +55,16 @@ class AxisNoise(NamedTuple):
 class AxisFilter:
     """Filter of one axis: `F` (n, n), `C` and `gain` (n,), variance of its innovations.
 
-    `poles` (n + 1,): its characteristic polynomial, highest power first; `forgets`: that of the
-    disturbance and of a slow error of the readings, which other filters do not share.
+    `denominator` (n + 1,): its characteristic polynomial, highest power first; `noise_denominator`:
+    that of the disturbance and of a slow error of the readings, which other filters do not share.
     """
 
     F: Array
     C: Array
     gain: Array
     variance: float
-    poles: Array
-    forgets: Array
+    denominator: Array
+    noise_denominator: Array
 
     @property
     def decay(self) -> float:
@@ -74,7 +74,10 @@ class AxisFilter:
 
     def whitening(self, old: "AxisFilter") -> tuple[Array, Array]:
         """Rational filter (b, a) that turns innovations of the filter `old` into this one's."""
-        return np.convolve(self.forgets, old.poles), np.convolve(old.forgets, self.poles)
+        return (
+            np.convolve(self.noise_denominator, old.denominator),
+            np.convolve(old.noise_denominator, self.denominator),
+        )
 
     @cached_property
     def response(self) -> tuple[Array, Array]:
@@ -89,9 +92,8 @@ class AxisFilter:
             B[0] = self.F[0, 1]
         else:
             B[:2] = self.F[:2, 2]
-        return (characteristic(A - np.outer(B, self.C)) - self.poles) / np.sqrt(
-            self.variance
-        ), self.poles
+        b = characteristic(A - np.outer(B, self.C)) - self.denominator
+        return b / np.sqrt(self.variance), self.denominator
 
 
 def design_filter(kind: int, h: float, motion: AxisMotion, noise: AxisNoise) -> AxisFilter:

@@ -59,31 +59,31 @@ def solve_bounded(H: Array, b: Array, offset: float, low: Array, high: Array) ->
     return Gain(float(-2.0 * b @ x - x @ H @ x) - offset, tuple(range(len(b))), x)
 
 
-def select_columns(H: Array, b: Array, price: float) -> Gain:
-    """The columns that are worth their price each, added one by one, then pruned."""
+def select_columns(H: Array, b: Array, penalty: float) -> Gain:
+    """The columns that are worth their penalty each, added one by one, then pruned."""
     chosen: list[int] = []
     while len(chosen) < min(len(b), MOST):
         left = [j for j in range(len(b)) if j not in chosen]
         worth = _worth(H, b, chosen)
         best = max(left, key=lambda j: worth[j])
-        if worth[best] < price and chosen:
+        if worth[best] < penalty and chosen:
             break
         chosen.append(best)
-        if worth[best] < price:
+        if worth[best] < penalty:
             break
     while len(chosen) > 1:
         x = solve(H[np.ix_(chosen, chosen)], b[chosen])
         variance = np.diag(solve(H[np.ix_(chosen, chosen)], np.eye(len(chosen))))
         weakest = int(np.argmin(x**2 / variance))
-        if x[weakest] ** 2 / variance[weakest] >= price:
+        if x[weakest] ** 2 / variance[weakest] >= penalty:
             break
         chosen.pop(weakest)
     x = -solve(H[np.ix_(chosen, chosen)], b[chosen])
     return Gain(float(-b[chosen] @ x), tuple(chosen), x)
 
 
-def eliminate_columns(H: Array, b: Array, price: float) -> Gain:
-    """The columns that are worth their price beside each other: from all of them, down.
+def eliminate_columns(H: Array, b: Array, penalty: float) -> Gain:
+    """The columns that are worth their penalty beside each other: from all of them, down.
 
     Two of opposite sign (linear and quadratic drag of one axis) are found, though neither explains
     anything alone.
@@ -94,7 +94,7 @@ def eliminate_columns(H: Array, b: Array, price: float) -> Gain:
         x, variance = solve(own, b[chosen]), np.diag(solve(own, np.eye(len(chosen))))
         worth = x**2 / variance
         weakest = int(np.argmin(worth))
-        if worth[weakest] >= price:
+        if worth[weakest] >= penalty:
             return Gain(float(b[chosen] @ x), tuple(chosen), -x)
         chosen.pop(weakest)
     return Gain(0.0, (), np.empty(0))

@@ -130,8 +130,8 @@ class _AxisInnovations:
     def _of_run(self, run: ObservedRun, old: AxisFilter, e: Array) -> tuple:
         i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])
         return (
-            kind, h, self.motion.over(h, kind), old.poles, old.forgets, e, run.rows, run.settled,
-            run.shown[:, i],
+            kind, h, self.motion.over(h, kind), old.denominator, old.noise_denominator,
+            e, run.rows, run.settled, run.shown[:, i],
         )  # fmt: skip
 
 

@@ -43,7 +43,7 @@ def list_unsure(found: Fit, workspace: SearchWorkspace) -> list[int]:
         most = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
             judged = term.vanishes and 0 < len(own) <= most
-            if judged and as_blocks_see.distance(own) < workspace.price * term.choices:
+            if judged and as_blocks_see.distance(own) < workspace.penalty * term.choices:
                 unsure.add(i)
     return sorted(unsure)
 

@@ -97,7 +97,7 @@ def contest(
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_challengers(workspace, term, rest, trials):
-            deficit, trial = rest.loss - workspace.price * term.choices - p.gain, None
+            deficit, trial = rest.loss - workspace.penalty * term.choices - p.gain, None
             if deficit < 0.0 or _explains(workspace, p) > PROMISING * rest.loss:
                 start, deficit = rest.hypothesis.with_term(p.term), HOPELESS
                 trial = workspace.challenge(start, current, workspace.score(current))
@@ -120,7 +120,7 @@ def find_challengers(
 
     All that promise nearly as much as it did are among them: loops about three angles were third in
     the place of weak sticks and drag, and likelier once refitted. Where a term itself is hardly
-    worth its price, a rival need not be: the two share the evidence.
+    worth its penalty, a rival need not be: the two share the evidence.
     """
     others = [p for p in rest.others if p.term.id != term.id]
     trials = max(trials, sum(p.gain > LEVEL * rest.loss for p in others))
@@ -129,8 +129,8 @@ def find_challengers(
 
 
 def _explains(workspace: SearchWorkspace, proposal: Proposal) -> float:
-    """Decrease of the sum of squares, its price not paid."""
-    return proposal.gain + workspace.price * proposal.term.choices
+    """Decrease of the sum of squares, without its penalty."""
+    return proposal.gain + workspace.penalty * proposal.term.choices
 
 
 def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:

@@ -70,13 +70,13 @@ def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Searc
 
 
 def _prune_together(workspace: SearchWorkspace, found: Fit) -> Fit:
-    """Without all parameters that are not worth their price, until all are.
+    """Without all parameters that are not worth their penalty, until all are.
 
     Where thrust, inertia and drag are known to one factor only, none of them is sure and all are
     needed: then the file's gain is taken, and the others tell what they differ by.
     """
     while True:
-        weak = _find_weak(found, workspace.price)
+        weak = _find_weak(found, workspace.penalty)
         for fewer in (weak, weak & mark_gain(found.hypothesis)):
             smaller = _do_without(workspace, found, fewer)
             if smaller is not None:
@@ -94,10 +94,10 @@ def _do_without(workspace: SearchWorkspace, found: Fit, weak: Array) -> Fit | No
     return smaller if workspace.score(smaller) >= workspace.score(found) else None
 
 
-def _find_weak(found: Fit, price: float) -> Array:
-    """Which free parameters (k,) are not worth their price; those of a loop only together."""
+def _find_weak(found: Fit, penalty: float) -> Array:
+    """Which free parameters (k,) are not worth their penalty; those of a loop only together."""
     h = found.hypothesis
-    weak = ((h.x - h.absence) / np.maximum(found.std, 1e-12)) ** 2 < price
+    weak = ((h.x - h.absence) / np.maximum(found.std, 1e-12)) ** 2 < penalty
     for term, own in zip(h.terms, h.columns, strict=True):
         if not term.vanishes:
             weak[own] = weak[own].all()

@@ -1,4 +1,4 @@
-"""Without free parameters that are not worth their price."""
+"""Without free parameters that are not worth their penalty."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 
 def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """Without free parameters that are not worth their price, one at a time.
+    """Without free parameters that are not worth their penalty, one at a time.
 
     A hypothesis that could not be fitted stays: nothing is known of what its parameters are worth.
     """
@@ -34,7 +34,7 @@ def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None
         if own and not term.vanishes:  # it would go as a whole
             certain[own] = np.max(certain[own])
     weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
-    if not certain[weakest] < 2.0 * workspace.price:
+    if not certain[weakest] < 2.0 * workspace.penalty:
         return None
     return drop_parameters(h, np.arange(len(certain)) == weakest)
 

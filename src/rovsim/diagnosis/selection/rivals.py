@@ -16,8 +16,8 @@ SURE = 6.0  # twice a log likelihood: odds of 20 to 1
 class Rival:
     """An effect that could stand in for a selected one, and by how much it is less likely.
 
-    `deficit` is in twice the log likelihood, prices paid: 6 are odds of 20 to 1; at least that much
-    where its fit was given up. `fit` with it in the other's place, where it was refitted.
+    `deficit` is in twice the log likelihood, with penalties: 6 are odds of 20 to 1; at least that
+    much where its fit was given up. `fit` with it in the other's place, where it was refitted.
     """
 
     effect: str
@@ -52,7 +52,7 @@ class Selection:
         return self.workspace.challenge(start, current, score, self.reach)
 
     def prune(self, workspace: SearchWorkspace, found: Fit) -> Fit:
-        """Without what is not worth its price to a fit of the selection.
+        """Without what is not worth its penalty to a fit of the selection.
 
         What was fitted at once stays: none of it is sure by itself, and all is needed.
         """

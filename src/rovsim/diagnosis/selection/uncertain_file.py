@@ -1,8 +1,8 @@
 """A special effect beside a vehicle file that may be off everywhere.
 
 Where several effects that the file states were selected, it is off elsewhere too, mostly by too
-little to be found: a dozen such numbers, none of them worth its price, may explain together what a
-special effect seems to. So there it is judged with all of the file free, as far as such files are
+little to be found: a dozen such numbers, none of them worth its penalty, may explain together what
+a special effect seems to. So there it is judged with all of the file free, as far as such files are
 off (`nominal_terms.py`), and to first order. Where the file explains it, its numbers are sought
 together: linear and quadratic drag of opposite sign look like friction, and neither alone explains
 anything.
@@ -96,7 +96,7 @@ def measure_loss(workspace: SearchWorkspace, found: Fit, term: Term) -> float:
 
 def find_limit(workspace: SearchWorkspace, term: Term) -> float:
     """What a term must take away beside a loose file; nothing if it is of the file."""
-    return 0.0 if term.id in STATED else workspace.price * term.choices + FILE_ODDS
+    return 0.0 if term.id in STATED else workspace.penalty * term.choices + FILE_ODDS
 
 
 def explains(workspace: SearchWorkspace, found: Fit, name: str) -> bool:
@@ -123,14 +123,14 @@ def weigh(
 
 
 def propose_file(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
-    """With all numbers of the file that are worth their price beside each other; None: nothing.
+    """With all numbers of the file that are worth their penalty beside each other; None: nothing.
 
     To first order. Without the gain of the thrusters: any other number left out would seem to fix
     the common scale, and the gain would follow it away from what the file says.
     """
     numbers = [n for n in list_numbers(workspace) if n.candidate.effect is not ThrusterGain]
     own, M = [number.row for number in numbers], workspace.columns.products(current.seen)
-    gain = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.price)
+    gain = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.penalty)
     found = current.hypothesis
     for j, x in zip(gain.chosen, gain.x, strict=True):
         term = numbers[j].candidate.term([numbers[j].parameter])

@@ -34,9 +34,9 @@ def _is_as_good(workspace: SearchWorkspace, fewer: Fit, current: Fit, term: Term
 def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     """From where to search on, if the file is likelier to be off everywhere than right.
 
-    Where each number of a file is a little off, none may be worth its price beside a special effect
-    that takes what several of them would explain together. So the file as a whole competes with all
-    special effects that it explains.
+    Where each number of a file is a little off, none may be worth its penalty beside a special
+    effect that takes what several of them would explain together. So the file as a whole competes
+    with all special effects that it explains.
     """
     if is_off(current.hypothesis):
         return current
@@ -62,7 +62,7 @@ def _find_explained(workspace: SearchWorkspace, found: Fit) -> Term | None:
 
 
 def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """With all that the vehicle file states and that is worth its price."""
+    """With all that the vehicle file states and that is worth its penalty."""
     wanted = uncertain_file.propose_file(workspace, current)
     if wanted is None:
         return current

@@ -1,6 +1,6 @@
 """The workspace of a search: the evidence, what it has fitted, and what looks worth trying next.
 
-The price of a parameter is 2 log P for P columns to choose from (risk inflation criterion, Foster
+The penalty of a parameter is 2 log P for P columns to choose from (risk inflation criterion, Foster
 & George 1994): chance alone rarely pays it, so a family of many members is not favoured over a
 single number.
 """
@@ -101,11 +101,11 @@ class SearchWorkspace:
         return SearchWorkspace(WhiteColumns(bank, fresh, noise), self.settings)
 
     def look_at(self, bank: FilterBank, noise: Noise) -> "SearchWorkspace":
-        """The same prices, for fits to other runs; candidates are still judged by its own."""
+        """The same penalties, for fits to other runs; candidates are still judged by its own."""
         return SearchWorkspace(WhiteColumns(bank, self.sensitivities, noise), self.settings)
 
     @cached_property
-    def price(self) -> float:
+    def penalty(self) -> float:
         """What a free parameter costs, in twice the log likelihood."""
         return 2.0 * float(np.log(self.sensitivities.count))
 
@@ -138,12 +138,12 @@ class SearchWorkspace:
         return (start.key, np.inf) in self._fitted
 
     def score(self, found: Fit) -> float:
-        """Twice the log likelihood, the price of the free parameters paid, and an odd gain."""
+        """Twice the log likelihood, less the penalty of the free parameters, and an odd gain."""
         return found.likelihood - self._ask(found.hypothesis)
 
     def _ask(self, at: Hypothesis) -> float:
         """What a hypothesis costs, in twice the log likelihood."""
-        return self.price * sum(t.choices for t in at.terms) + doubt_gain(at)
+        return self.penalty * sum(t.choices for t in at.terms) + doubt_gain(at)
 
     def remove_each(self, current: Fit) -> list[Removed]:
         """The current hypothesis without each of its terms, the others refitted to first order.
@@ -199,7 +199,7 @@ class SearchWorkspace:
         """All candidates, best first; none where the observer cannot hold the model."""
         if not np.isfinite(products).all():
             return []
-        return rank_proposals(products, self.sensitivities.blocks, self.price)
+        return rank_proposals(products, self.sensitivities.blocks, self.penalty)
 
     def list_modes(self, term: Term) -> list[Term]:
         """Starts of the same effect, if it has modes, with the same free values."""
@@ -226,7 +226,7 @@ class SearchWorkspace:
     def chance_limit(self, current: Fit, seed: int) -> float:
         """What the best of all candidates gains by chance, but for the false alarms allowed."""
         gains = draw_chance_gains(
-            self.columns.products(current.seen)[1:, 1:], self.sensitivities.blocks, self.price,
+            self.columns.products(current.seen)[1:, 1:], self.sensitivities.blocks, self.penalty,
             self.settings.draws, seed,
         )  # fmt: skip
         return max(0.0, float(np.quantile(gains, 1.0 - self.settings.false_alarm)))

@@ -82,7 +82,7 @@ def memory_push(body, memory):
 @internal
 def push_over_step(x, memory, h, body):
     """The same at the middle of a step that begins at x; held, it is of second order."""
-    ahead = lagged(memory, through_water(x, body), 0.5 * h * body.forgets)
+    ahead = lagged(memory, through_water(x, body), 0.5 * h * body.memory_decay)
     return memory_push(body, ahead)
 
 
@@ -90,7 +90,7 @@ def push_over_step(x, memory, h, body):
 def memory_after(memory, x, after, h, body):
     """Memory after a step from one state to another."""
     mean = add6(through_water(x, body), 1.0, through_water(after, body))
-    return lagged(memory, add6(ZERO6, 0.5, mean), h * body.forgets)
+    return lagged(memory, add6(ZERO6, 0.5, mean), h * body.memory_decay)
 
 
 @inline_anew
@@ -109,7 +109,7 @@ def constants_of(bodies, m):
         matrix6(bodies.M_RB[m]), matrix6(bodies.M_A[m]), matrix6(bodies.M_inv[m]),
         vector6(bodies.linear[m]), vector6(bodies.quadratic[m]), bodies.heaviness[m],
         vector3(bodies.righting[m]), vector3(bodies.current[m]), bodies.advance[m],
-        bodies.coupled[m], bodies.coupling[m], vector6(bodies.memory[m]), bodies.forgets[m],
+        bodies.coupled[m], bodies.coupling[m], vector6(bodies.memory[m]), bodies.memory_decay[m],
         bodies.B[m], bodies.directions,
         bodies.further[m], vector3(bodies.waterplane[m]), bodies.products[m], bodies.factors,
         bodies.surfaces, bodies.lifting[m], vector6(bodies.free[m]), bodies.places,
@@ -168,13 +168,13 @@ def site_of(site):
 def stepped(extra, t, x, memory, h, body, own, step, ramp, data, place, features, a_res):
     """State and memory one step later; a learned residual is held over the step."""
     push = ZERO6
-    if body.forgets != 0.0:
+    if body.memory_decay != 0.0:
         push = push_over_step(x, memory, h, body)
     if data is not None:
         a_learned = learned(extra, t, x, body, own, step, push, data, place, features, a_res)
         push = add6(push, 1.0, a_learned)
     after, _ = runge_kutta(extra, t, x, h, body, own, step, push, ramp, place)
-    if body.forgets != 0.0:
+    if body.memory_decay != 0.0:
         memory = memory_after(memory, x, after, h, body)
     return after, memory
 
@@ -237,13 +237,13 @@ def heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out)
             push = add6(push, 1.0, a_learned)
         k1 = slope(extra, now, x, body, own, step, add6(push, 1.0, memory_push(body, m)), place)
         m1 = add6(through_water(x, body), -1.0, m)
-        x1, ahead = moved(x, h, k1), add6(m, h * body.forgets, m1)
+        x1, ahead = moved(x, h, k1), add6(m, h * body.memory_decay, m1)
         k2 = slope(
             extra, now + h, x1, body, own, step, add6(push, 1.0, memory_push(body, ahead)), place
         )
         m2 = add6(through_water(x1, body), -1.0, ahead)
         x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
-        m = add6(m, 0.5 * h * body.forgets, add6(m1, 1.0, m2))
+        m = add6(m, 0.5 * h * body.memory_decay, add6(m1, 1.0, m2))
         store(x, out[n])
     for i in range(6):
         memory[i] = m[i]

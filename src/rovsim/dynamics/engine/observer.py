@@ -152,12 +152,12 @@ def observe(
             mean, lasts = ZERO6, time[ends[k]] - time[n]
             while n < ends[k]:
                 t, h, before, push = time[n], time[n + 1] - time[n], x, a
-                if body.forgets != 0.0:
+                if body.memory_decay != 0.0:
                     push = add6(a, 1.0, push_over_step(x, memory, h, body))
                 step = step_of(inputs, inputs.row[m], n)
                 ramp = ramp_of(inputs, inputs.row[m], n, body)
                 x, average = runge_kutta(extra, t, x, h, body, own, step, push, ramp, place)
-                if body.forgets != 0.0:
+                if body.memory_decay != 0.0:
                     memory = memory_after(memory, before, x, h, body)
                 mean = add6(mean, h / lasts, average)
                 a, n = each6(vector6(decay[n]), a), n + 1

@@ -60,11 +60,12 @@ class Constants(NamedTuple):
     `M_RB`, `M_A`, `M_inv` (m, 6, 6); `linear`, `quadratic` (m, 6); `heaviness` (m,) weight minus
     buoyancy in N; `righting` (m, 3) weight at CG minus buoyancy at CB in N m; `current` (m, 3) NED;
     `advance` (m,) s/m; `coupling` (m, 2, 6, 6) linear and quadratic damping between axes, read only
-    where `coupled` (m,) is not 0; `memory` (m, 6) force per remembered velocity, `forgets` (m,) 1/s
-    (0: nothing is remembered); `B` (m, 6, n) thruster allocation; `directions` (n, 3) of positive
-    thrust. Read only where `further` (m,) is not 0, as in `Body`: `waterplane` (m, 3), `products`
-    (m, t) and their `factors` (t, 4), `surfaces` (s, 15), `lifting` (m, s). `free` (m, 6) is 1 for
-    axes that move, 0 where they are held; `places` (n + s, 3) of thrusters, then surfaces.
+    where `coupled` (m,) is not 0; `memory` (m, 6) force per remembered velocity, `memory_decay`
+    (m,) 1/s (0: nothing is remembered); `B` (m, 6, n) thruster allocation; `directions` (n, 3) of
+    positive thrust. Read only where `further` (m,) is not 0, as in `Body`: `waterplane` (m, 3),
+    `products` (m, t) and their `factors` (t, 4), `surfaces` (s, 15), `lifting` (m, s). `free`
+    (m, 6) is 1 for axes that move, 0 where they are held; `places` (n + s, 3) of thrusters, then
+    surfaces.
     """
 
     M_RB: Array
@@ -79,7 +80,7 @@ class Constants(NamedTuple):
     coupled: Array
     coupling: Array
     memory: Array
-    forgets: Array
+    memory_decay: Array
     B: Array
     directions: Array
     further: Array
