@@ -156,7 +156,7 @@ def _path(model: str, motion: dict[str, Any], rng: np.random.Generator) -> np.nd
 
 
 def metrics(level: float, rng: np.random.Generator) -> dict[str, Any]:
-    """One M of the contract, section 3."""
+    """Errors of one replay."""
 
     def axes(scale: float) -> dict[str, float]:
         return {a: float(scale * level * rng.uniform(0.7, 1.3)) for a in AXES}

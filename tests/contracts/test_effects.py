@@ -12,7 +12,7 @@ from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 
-# contract, sections 2 and 6
+# the names of docs/catalogue.md
 PUBLIC = {
     "net_buoyancy", "buoyancy_center", "payload", "constant_wrench", "linear_damping",
     "quadratic_damping", "coupled_damping", "added_mass", "added_mass_coupling", "lift",

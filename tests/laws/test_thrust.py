@@ -155,7 +155,7 @@ def test_a_bent_curve_keeps_its_ends_and_its_sign(exponent):
     nominal = path.thrusters.static_force(command)
     found, full = path.static(command, np.zeros(21), 1.0), nominal[-1]
     np.testing.assert_allclose(found[[0, 10, -1]], [-full, 0.0 * full, full], atol=1e-12)
-    # contract, section 6, written out
+    # the equation of docs/catalogue.md, written out
     by_hand = np.sign(nominal) * full * (np.abs(nominal) / full) ** exponent
     np.testing.assert_allclose(found, by_hand, atol=1e-9)
 

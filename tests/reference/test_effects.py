@@ -27,7 +27,7 @@ from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion
 
-# parameters of contract, sections 2 and 6, where they are not one per axis; `rate` of voltage_sag
+# parameters of docs/catalogue.md, where they are not one per axis; `rate` of voltage_sag
 # and `latency` of pose_filter are ours, and change nothing unless given
 NAMES = {
     "net_buoyancy": ["force"],

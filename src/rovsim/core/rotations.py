@@ -16,7 +16,7 @@ from numpy import ndarray as Array
 WorldAxes = Literal["z_up", "ned", "y_up"]
 BodyAxes = Literal["flu", "frd", "fur"]
 
-# A half turn about x: z-up <-> NED and FLU <-> FRD (contract, section 2).
+# A half turn about x: z-up <-> NED and FLU <-> FRD (docs/formats.md).
 HALF_TURN_X = np.array([1.0, -1.0, -1.0])
 
 

@@ -4,12 +4,15 @@ filter bank     the base model runs along the train runs, corrected by a filter
 camera          does the software of the motion capture smooth what it reports?
 sensitivities   how each candidate would change what the filter could not foresee
 search          add, refit, swap, prune; against what chance gives to the best of all candidates
-held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows
+held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows;
+                where a velocity is not measured, few blocks must not make it sure
 gate            it must replay stretches well that took no part in choosing
 structure       what is left, and no candidate explains; then those too that nobody would notice
-common scale    does a factor of all forces stay open?
 joint fit       where there is some: all that could be wrong together, pruned; it competes
+wandering       where what seems a current that wanders depends on the place: again, without one
 replay fit      where there is some: values that replay best, rather than foresee the next reading
+whole file      where there is none, and the vehicle file is off: all of it, fitted with the rest
+common scale    does a factor of all forces stay open?
 equation        where there is some: a law for it, if one holds; if not, the force in time
 test runs       opened once, for the errors that are reported
 """

@@ -111,7 +111,7 @@ def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
 
 
 def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
-    """Errors of contract section 3; None where there is nothing to score."""
+    """Errors in windows of 2 s (docs/signals.md); None where there is nothing to score."""
     errors = [rounded(step.windows_2s) for step in ladder.models]
     return DiagnosisErrors(
         nominal=errors[0], with_effects=errors[selected], noise_floor=rounded(ladder.noise_floor)

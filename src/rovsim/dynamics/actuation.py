@@ -1,6 +1,6 @@
 """The thrust path: logged commands to the mean force of each thruster over each step.
 
-Order (contract, section 2): clock -> mixer (demands only) -> deadband -> force curve -> gain,
+Order (docs/simulator.md): clock -> mixer (demands only) -> deadband -> force curve -> gain,
 asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happens in the engine.
 """
 

@@ -113,7 +113,7 @@ class Sums:
         return root_mean(self.nu_squared, self.samples)
 
     def metrics(self) -> Metrics:
-        """The metrics of contract section 3; None where the model left the finite numbers."""
+        """The metrics (docs/formats.md); None where the model left the finite numbers."""
         return Metrics(
             acceleration_rmse=ByAxis.of(root_mean(self.nu_dot_squared, self.accelerated)),
             velocity_mae=ByAxis.of(_mean(self.nu_absolute, self.samples)),

@@ -27,7 +27,7 @@ from rovsim.results.quality import (
 )
 
 GAP = 0.05  # s; shorter ones are bridged by any resampling
-SHORTEST_RUN = 2.0  # s; one scoring window (contract, section 3)
+SHORTEST_RUN = 2.0  # s; one scoring window
 # A body at rest stays well inside these: MoCap noise spreads over a few mm and about 0.01 rad, a
 # manoeuvring vehicle over decimetres within seconds.
 STILL_POSITION, STILL_ATTITUDE = 0.01, 0.02  # m, rad

@@ -8,7 +8,7 @@ from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
 
 OPEN_LOOP = "open_loop"
-WINDOW = 2.0  # s, the windows that ladder, figures and summaries are of (contract, section 3)
+WINDOW = 2.0  # s, the windows that ladder, figures and summaries are of
 HORIZON = f"{WINDOW:g}"  # the same, as replays name them
 
 

@@ -12,7 +12,7 @@ class ReplaySettings(Section):
 
     step: PositiveFloat = 0.01  # RK4's error is below 1e-6 m/s here (tests/laws/test_replay.py)
     commands: Between = "held"  # what an autopilot does with a set-point
-    horizons: tuple[PositiveFloat, ...] = (0.5, WINDOW, 5.0)  # s, contract section 3
+    horizons: tuple[PositiveFloat, ...] = (0.5, WINDOW, 5.0)  # s (docs/signals.md)
 
     def only(self, *horizons: float) -> "ReplaySettings":
         """The same with these windows, perhaps none."""

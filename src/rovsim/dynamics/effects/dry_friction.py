@@ -6,7 +6,7 @@ from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.effects.parameters import Signature, per_axis
 from rovsim.dynamics.engine.compiled import inlined
 
-SMOOTH = 0.01  # m/s or rad/s, contract, section 6
+SMOOTH = 0.01  # m/s or rad/s: a convention of model files, as its equation says
 
 
 @inlined

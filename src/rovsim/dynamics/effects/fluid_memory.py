@@ -6,7 +6,7 @@ from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
-ARM = 0.02  # kappa, m2: square of the arm at which rotation meets the water (contract, section 2)
+ARM = 0.02  # kappa, m2: square of the arm at which rotation meets the water; a convention
 WEIGHTS = np.array([1.0, 1.0, 1.0, ARM, ARM, ARM])
 
 

@@ -11,7 +11,7 @@ from rovsim.dynamics.engine.vectors import cross, dot3, into_body
 
 ATTACHMENT = tuple(
     Parameter(f"attachment_{axis}", "m", f"{axis}_t", default=x, scale=0.1, fitted=False)
-    for axis, x in zip("xyz", (-0.2, 0.0, 0.0), strict=True)  # contract, section 2
+    for axis, x in zip("xyz", (-0.2, 0.0, 0.0), strict=True)  # aft, as a convention
 )
 
 

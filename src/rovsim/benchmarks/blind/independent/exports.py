@@ -46,7 +46,7 @@ def write_poses(
 
 
 def _sense(places: Array, attitudes: Rotation, hidden: Hidden) -> tuple[Array, Rotation]:
-    """Another body point, other body axes, a world that is not level (contract, section 2)."""
+    """Another body point, other body axes, a world that is not level."""
     offset, turn = hidden.get("marker_offset", {}), hidden.get("marker_misalignment", {})
     tilt = hidden.get("world_tilt", {})
     level = Rotation.from_rotvec([tilt.get("roll", 0.0), tilt.get("pitch", 0.0), 0.0])

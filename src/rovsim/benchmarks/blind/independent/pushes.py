@@ -13,7 +13,7 @@ from numpy import ndarray as Array
 from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Constants, Hidden
 
 Given = Mapping[str, float]
-CREEP = 0.01  # m/s, rad/s: within it dry friction has its sign (contract, section 6)
+CREEP = 0.01  # m/s, rad/s: within it dry friction has its sign (docs/catalogue.md)
 ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  # kappa, m2, of the water's memory (section 2)
 
 
@@ -113,7 +113,7 @@ def _axes(given: Given) -> Array:
 
 
 def _attachment(given: Given) -> Array:
-    default = {"x": -0.2, "y": 0.0, "z": 0.0}  # contract, section 2
+    default = {"x": -0.2, "y": 0.0, "z": 0.0}  # docs/catalogue.md
     return np.array([given.get(f"attachment_{k}", v) for k, v in default.items()])
 
 

@@ -1,4 +1,4 @@
-"""From a logged command to the static force of each thruster (contract, section 2: the order)."""
+"""From a logged command to the static force of each thruster (order: docs/simulator.md)."""
 
 from typing import Any, Mapping
 
