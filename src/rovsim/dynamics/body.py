@@ -136,6 +136,15 @@ class Body:
         return found
 
     @property
+    def stated(self) -> dict[str, Array]:
+        """Coefficients (6,) of the vehicle file, by the effect whose values are changes of them."""
+        return {
+            "linear_damping": self.linear,
+            "quadratic_damping": self.quadratic,
+            "added_mass": np.diag(self.M_A),
+        }
+
+    @property
     def goes_further(self) -> bool:
         """Whether it has a waterplane, products of velocities or surfaces."""
         return bool(self.waterplane.any() or self.products.size or self.lifting.size)

@@ -1,20 +1,10 @@
 """What a coefficient comes to: that of the base, the change, and whether such a vehicle brakes."""
 
-from typing import Callable, NamedTuple
-
-import numpy as np
-from numpy import ndarray as Array
+from typing import NamedTuple
 
 from rovsim import AXES
 from rovsim.dynamics.body import Body
 from rovsim.reporting.wording import significant
-
-# Effects whose values are changes of a coefficient of the vehicle file, one an axis.
-TOTALS: dict[str, Callable[[Body], Array]] = {
-    "linear_damping": lambda body: body.linear,
-    "quadratic_damping": lambda body: body.quadratic,
-    "added_mass": lambda body: np.diag(body.M_A),
-}
 
 
 class Total(NamedTuple):
@@ -26,9 +16,9 @@ class Total(NamedTuple):
 
 def tell_total(body: Body, effect: str, parameter: str, value: float, unit: str = "") -> Total:
     """The sum of what the base has and a change of it; nothing where there is no sum."""
-    if effect not in TOTALS or parameter not in AXES:
+    if effect not in body.stated or parameter not in AXES:
         return Total("", "")
-    before = float(TOTALS[effect](body)[AXES.index(parameter)])
+    before = float(body.stated[effect][AXES.index(parameter)])
     sign = "+" if value >= 0.0 else "−"
     total = significant(before + value)
     told = f"in all {significant(before)} {sign} {significant(abs(value))} = {total} {unit}"
@@ -46,6 +36,6 @@ def list_totals(body: Body) -> dict[tuple[str, str], float]:
     """What each coefficient of a body comes to, by effect and axis."""
     return {
         (effect, axis): float(value)
-        for effect, read in TOTALS.items()
-        for axis, value in zip(AXES, read(body), strict=True)
+        for effect, six in body.stated.items()
+        for axis, value in zip(AXES, six, strict=True)
     }

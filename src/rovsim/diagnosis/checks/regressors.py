@@ -21,11 +21,16 @@ MEMORIES = (0.5, 2.0)  # s
 INDEPENDENT = 1e-6  # of a column's power: less is what was fitted already
 
 
-def tabulate(run: ObservedRun) -> dict[str, Array]:
-    """Functions (n,) of state, place and time at the readings of one run, by their names."""
+def earlier_states(run: ObservedRun) -> Array:
+    """States (n, 13) as measured a little before each reading; zero where nothing was measured."""
     past = max(1, round(EARLIER / run.period))
     at = np.clip(run.index - past, 0, len(run.motion.time) - 1)
-    state = np.nan_to_num(run.motion.state[at])
+    return np.nan_to_num(run.motion.state[at])
+
+
+def tabulate(run: ObservedRun) -> dict[str, Array]:
+    """Functions (n,) of state, place and time at the readings of one run, by their names."""
+    state = earlier_states(run)
     nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
     t = 2.0 * run.time / max(run.time[-1], 1e-9) - 1.0 if len(run.time) else run.time
     found = {"nothing (a constant)": np.ones(len(t)), "time": t, "time squared": t**2}

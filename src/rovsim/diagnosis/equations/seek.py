@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from scipy.stats import chi2
 
 from rovsim import AXES
+from rovsim.diagnosis.checks.residual import FALSE_ALARM
 from rovsim.diagnosis.equations.action import find_action, is_half
 from rovsim.diagnosis.equations.form import Form, get_law
 from rovsim.diagnosis.equations.products.as_effect import (
@@ -43,7 +44,6 @@ TRIED = 5  # terms that are fitted before one is added
 BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
 SURELY = 2.0  # times what chance allows: no fit to all runs brings so much below it
 PULLED, NEAR = 4, 0.5  # so many laws of the thrust are fitted, if they may gain half of products'
-FALSE_ALARM = 0.002  # of all terms together, as of every kind of structure
 
 Key = TypeVar("Key")
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.checks.regressors import EARLIER
+from rovsim.diagnosis.checks.regressors import earlier_states
 from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.library import Columns
@@ -103,11 +103,9 @@ def push_thrust(
     terms: Sequence[ThrustTerm], run: ObservedRun, model: Model, middle: Array
 ) -> Array:
     """Wrench (c, n, 6) of terms with a coefficient of 1 at the readings of a run."""
-    past = max(1, round(EARLIER / run.period))
-    state = run.motion.state[np.clip(run.index - past, 0, len(run.motion.time) - 1)]
     step = np.minimum(run.at[run.index], len(run.grid) - 2)
     force = run.replay_drives.of([model])[0].force[step]
-    return push_at(terms, np.nan_to_num(state[:, 7:]), force @ model.body.B.T)
+    return push_at(terms, earlier_states(run)[:, 7:], force @ model.body.B.T)
 
 
 def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:

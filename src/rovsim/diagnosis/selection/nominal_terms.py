@@ -85,15 +85,9 @@ def free_terms(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple
 
 def _physical_bounds(base: Model) -> dict[str, dict[str, Bounds]]:
     """Of each change of drag or added mass: it leaves none below zero."""
-    body = base.body
-    total = {
-        "linear_damping": body.linear,
-        "quadratic_damping": body.quadratic,
-        "added_mass": np.diag(body.M_A),
-    }
     return {
         name: {a: Bounds(float(-x), np.inf) for a, x in zip(AXES, own, strict=True)}
-        for name, own in total.items()
+        for name, own in base.body.stated.items()
     }
 
 

@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 from scipy.signal import lfilter
 
 from rovsim.core.rotations import matrix
-from rovsim.diagnosis.checks.regressors import EARLIER
+from rovsim.diagnosis.checks.regressors import earlier_states
 from rovsim.diagnosis.equations.products.variables import (
     DEEP,
     DIRECTION,
@@ -158,9 +158,7 @@ def push(terms: Sequence[LawTerm], run: ObservedRun, model: Model, middle: Array
 
     `middle`: place (3,) NED m and width m of terms that have none of their own.
     """
-    past = max(1, round(EARLIER / run.period))
-    at = np.clip(run.index - past, 0, len(run.motion.time) - 1)
-    return push_at(terms, np.nan_to_num(run.motion.state[at]), model, middle)
+    return push_at(terms, earlier_states(run), model, middle)
 
 
 def push_at(terms: Sequence[LawTerm], state: Array, model: Model, middle: Array) -> Array:
