@@ -69,8 +69,8 @@ def test_a_filter_is_stable_and_its_poles_are_its_eigenvalues(noise):
     f = design_filter(noise[0], H, AxisMotion(noise[1]), AxisNoise(*noise[2:]))
     A = f.F @ (np.eye(len(f.C)) - np.outer(f.gain, f.C))
     assert np.abs(np.linalg.eigvals(A)).max() < 1.0
-    np.testing.assert_allclose(f.poles, np.poly(A), atol=1e-9)
-    np.testing.assert_allclose(characteristic(A), f.poles, atol=1e-12)
+    np.testing.assert_allclose(f.denominator, np.poly(A), atol=1e-9)
+    np.testing.assert_allclose(characteristic(A), f.denominator, atol=1e-12)
 
 
 @given(st.floats(0.0, 20.0), st.floats(-5.0, 40.0), st.floats(0.005, 0.4))
