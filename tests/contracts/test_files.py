@@ -12,6 +12,7 @@ import yaml
 
 from fuzz.hostile import TEXTS
 from rovsim.application.settings import CommandSettings
+from rovsim.apps.cli.main import main
 from rovsim.apps.cli.output import choose_folder
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
@@ -19,6 +20,7 @@ from rovsim.core.files import appearing, read_json, write_json
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.measurement.signals.chain import SignalSettings
+from synthetic_study import several_effects
 
 
 class Evil:
@@ -157,3 +159,24 @@ def test_a_typo_in_one_of_several_kinds_names_that_kinds_key():
     content = {"filter": {"kind": "savgol", "windw": 0.3}}
     with pytest.raises(BadInput, match="Did you mean 'window'"):
         checked(SignalSettings, content, "conf")
+
+
+@pytest.mark.parametrize("result", ["add", "export"])
+def test_a_result_replaces_an_older_one_and_no_other_file(tmp_path, monkeypatch, capsys, result):
+    monkeypatch.chdir(tmp_path)
+    several_effects().write(tmp_path / "diagnosis.json")
+    words = {"add": ["diagnosis=diagnosis.json", "model={}"], "export": ["to=gz", "out={}"]}
+    own, recording = tmp_path / "own.yaml", tmp_path / "campaign.yaml"
+    recording.write_text("name: mine\n")
+
+    def write(path):
+        main([result, *(word.format(path.name) for word in words[result]), "--quiet"])
+
+    write(own)
+    first = own.read_text()
+    write(own)
+    assert own.read_text() == first
+    with pytest.raises(SystemExit, match="2"):
+        write(recording)
+    assert recording.read_text() == "name: mine\n"
+    assert "which rovsim did not write" in " ".join(capsys.readouterr().err.split())

@@ -16,6 +16,7 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 
+MARKED = 1 << 16  # bytes in which a result says what it is
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # while a file is written
 
 
@@ -188,6 +189,25 @@ def read_json(path: Path) -> Any:
         expected="a JSON file",
         remedy="Write the file again with the command that made it.",
     )
+
+
+def require_replaceable(path: Path, mark: str) -> None:
+    """Refuse a file that a result would replace although it holds no `mark` of such results.
+
+    Raises:
+        BadInput: there is such a file.
+    """
+    if not path.is_file():
+        return
+    with path.open("rb") as file:
+        start = file.read(MARKED)
+    if start and mark.encode() not in start:
+        raise BadInput(
+            "another file is there, which rovsim did not write",
+            where=path,
+            expected="a name that is free, or an older result of the same kind",
+            remedy="Give another name, or move that file away.",
+        )
 
 
 def read_text(path: Path) -> str:

@@ -10,11 +10,12 @@ from rovsim.application.export.holding import Left, leave_out
 from rovsim.application.export.sizes import Sized, size_all
 from rovsim.application.export.targets import Target
 from rovsim.core.errors import BadInput
-from rovsim.core.files import write_text
+from rovsim.core.files import require_replaceable, write_text
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion
 
 TYPICAL = "a typical flight of a minute"
+WRITTEN = "written by rovsim for"  # stands in every file
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +67,7 @@ def export_model(
     """
     held, left = represent(model, target)
     sized = size_all(left, flights()) if left else []
-    notes = [f"{model.name}, written by rovsim for {target.title}.", f"Model: {origin}"]
+    notes = [f"{model.name}, {WRITTEN} {target.title}.", f"Model: {origin}"]
     notes += [f"Format: {target.source}.", target.takes, *_listed(sized, over)]
     return Export(target.text(Equation(held), notes), tuple(sized))
 
@@ -78,7 +79,12 @@ def model_parts(model: Model) -> str:
 
 
 def write_export(export: Export, out: Path) -> None:
-    """Write the file, whole or not at all."""
+    """Write the file, whole or not at all.
+
+    Raises:
+        BadInput: another file of the user's is there.
+    """
+    require_replaceable(out, WRITTEN)
     write_text(out, export.text)
 
 

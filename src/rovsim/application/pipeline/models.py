@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.core.errors import BadInput
+from rovsim.core.files import require_replaceable
 from rovsim.diagnosis import apply
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
@@ -83,7 +84,7 @@ def add_effects(
         story: what else its provenance tells.
 
     Raises:
-        BadInput: no such diagnosis, effect or model, or `out` is the diagnosis.
+        BadInput: no such diagnosis, effect or model, or `out` is another file of the user's.
     """
     if out.resolve() == diagnosis.resolve():
         raise BadInput(
@@ -92,6 +93,7 @@ def add_effects(
             expected="another file for the model",
             remedy="For example model=NEW.yaml.",
         )
+    require_replaceable(out, "rovsim.model/")
     found = Diagnosis.read(diagnosis)
     wanted = list(effects) if effects else None
     added = apply.add_effects(found, diagnosis, base, wanted, catalogue)
