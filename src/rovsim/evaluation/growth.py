@@ -5,7 +5,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.evaluation.scores import root_mean
-from rovsim.measurement.signals.measured import find_measured
+from rovsim.measurement.signals.measured import blank, find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import or_none
 from rovsim.results.growth import Curve
@@ -31,11 +31,11 @@ class GrowthScore:
         known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
         member = np.digitize(age, self._edges) - 1
         known &= (member >= 0) & (member < BINS)
-        axes = find_measured(motion.measured)
-        self._count += np.bincount(member[known], minlength=BINS)[:, None] * axes
+        count = np.bincount(member[known], minlength=BINS)
+        self._count += count[:, None] * find_measured(motion.measured)
         with np.errstate(over="ignore"):  # of a model that diverged: infinite
             squares = np.square((prediction.nu - motion.nu)[known])
-        np.add.at(self._squares, member[known], np.where(axes, squares, 0.0))
+        np.add.at(self._squares, member[known], blank(motion.measured, squares, 0.0))
 
     @property
     def curve(self) -> Curve:

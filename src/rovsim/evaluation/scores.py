@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.quality import EXCITED
-from rovsim.measurement.signals.measured import Measured, find_measured
+from rovsim.measurement.signals.measured import Measured, blank, find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis, or_none
 from rovsim.results.comparison import Metrics
@@ -39,15 +39,14 @@ def subtract(motion: Motion, prediction: Prediction) -> Errors:
     moved = both & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
     with np.errstate(invalid="ignore"):
         turn = log(multiply(conjugate(motion.eta[both, 3:]), prediction.eta[both, 3:]))
-    axes = find_measured(motion.measured)
     placed, turned = _find_posed(motion.measured)
     apart = np.linalg.norm(prediction.eta[both, :3] - motion.eta[both, :3], axis=1)
     return Errors(
-        np.where(axes, prediction.nu[both] - motion.nu[both], np.nan),
-        np.where(axes, prediction.nu_dot[moved] - motion.nu_dot[moved], np.nan),
+        blank(motion.measured, prediction.nu[both] - motion.nu[both], np.nan),
+        blank(motion.measured, prediction.nu_dot[moved] - motion.nu_dot[moved], np.nan),
         np.where(placed, apart, np.nan),
         np.where(turned, np.linalg.norm(turn, axis=1), np.nan),
-        axes,
+        find_measured(motion.measured),
         placed,
         turned,
     )
@@ -133,10 +132,13 @@ def root_mean(total: Array | float, count: Array | int) -> Array:
     return np.asarray(np.sqrt(_mean(total, count)))
 
 
-def rms(x: Array) -> Array:
-    """Root mean square over the first axis; NaN where there is nothing."""
+def rms(x: Array, count: Array | None = None) -> Array:
+    """Root mean square over the first axis; NaN where there is nothing.
+
+    `count` (...): so many were measured, where the others are zero.
+    """
     with np.errstate(over="ignore"):  # of a model that diverged: infinite
-        return root_mean(np.square(x).sum(axis=0), len(x))
+        return root_mean(np.square(x).sum(axis=0), len(x) if count is None else count)
 
 
 def summarize(errors: Errors) -> Metrics:

@@ -64,7 +64,7 @@ def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
     costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in tried] for kind in KINDS])
     likely = [_refine(spectra, kind, tried, own) for kind, own in zip(KINDS, costs, strict=True)]
     least, cutoff, std = min(likely)
-    gain = min(_cost(spectra, kind, None) + _price(spectra, kind) for kind in KINDS) - least
+    gain = min(_cost(spectra, kind, None) + _penalty(spectra, kind) for kind in KINDS) - least
     # far below what is looked at a filter only makes the motion fall off more steeply, as it does
     # by itself where a vehicle tumbles: its cutoff is then hardly known
     if gain < SURE or cutoff > 0.98 * highest or not std < KNOWN * cutoff:
@@ -80,7 +80,7 @@ def _cost(spectra: Sequence[Spectrum], kind: Kind, cutoff: float | None) -> floa
     return sum(one.cost(kind, cutoff) for one in spectra)
 
 
-def _price(spectra: Sequence[Spectrum], kind: Kind) -> float:
+def _penalty(spectra: Sequence[Spectrum], kind: Kind) -> float:
     return sum(one.penalty(kind) for one in spectra)
 
 
@@ -99,4 +99,4 @@ def _refine(
     bend = 0.5 * (cost(x + STEP) + cost(x - STEP) - 2.0 * least) / STEP**2
     cutoff = float(np.exp(x))
     std = cutoff / np.sqrt(bend) if bend > 0.0 else np.inf
-    return least + _price(spectra, kind), cutoff, float(std)
+    return least + _penalty(spectra, kind), cutoff, float(std)

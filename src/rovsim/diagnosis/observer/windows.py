@@ -43,12 +43,10 @@ def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Windo
     able = [m for m in models if m.possible]
     parts = [Windows(run).compare(able) for run in runs]
     rmse = np.full((len(models), 6), np.nan)
-    rmse[[m.possible for m in models]] = [
-        rms(np.concatenate([p[k] for p in parts])) for k in range(len(able))
-    ]
-    every = sum(part.shape[1] for part in parts)
     known = sum(part.shape[1] * run.axes for part, run in zip(parts, runs, strict=True))
-    rmse *= np.sqrt(every / np.maximum(known, 1))  # zeros stand where nothing was measured
+    rmse[[m.possible for m in models]] = [
+        rms(np.concatenate([p[k] for p in parts]), np.maximum(known, 1)) for k in range(len(able))
+    ]
     spread = measured_spread(run.motion for run in runs)
     return WindowErrors(rmse, [normalize(spread, row) for row in rmse])
 

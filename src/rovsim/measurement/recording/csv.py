@@ -81,7 +81,6 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     columns = Columns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
     check_plausible(path, columns.time, columns.values)
     notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
-    notes += doubt_order(columns.of(QUATERNION))
     return _export(columns, mocap, {"cut_lines": cut}, notes)
 
 
@@ -110,7 +109,9 @@ def _export(
     columns: Columns, mocap: Mocap, counts: dict[str, int], notes: tuple[str, ...]
 ) -> Export:
     position, nu = columns.of(POSITION), columns.of([*LINEAR, *ANGULAR])
-    angles = columns.of(QUATERNION if "qw" in columns.values else EULER)
+    quaternions = "qw" in columns.values
+    angles = columns.of(QUATERNION if quaternions else EULER)
+    notes += doubt_order(angles) if quaternions else ()
     posed = finite_rows(position, angles)
     other = {kind: measured(columns.time, columns.of(names)) for kind, names in EXTRA.items()}
     partly = np.isfinite(np.hstack([position, angles])).any(axis=1)

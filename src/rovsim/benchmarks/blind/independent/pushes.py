@@ -14,7 +14,7 @@ from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Constants, Hidde
 
 Given = Mapping[str, float]
 CREEP = 0.01  # m/s, rad/s: within it dry friction has its sign (docs/catalogue.md)
-ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  # kappa, m2, of the water's memory (section 2)
+ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  # kappa, m2, of the water (docs/catalogue.md)
 
 
 @dataclass(frozen=True, eq=False)
