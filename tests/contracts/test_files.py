@@ -180,3 +180,14 @@ def test_a_result_replaces_an_older_one_and_no_other_file(tmp_path, monkeypatch,
         write(recording)
     assert recording.read_text() == "name: mine\n"
     assert "which rovsim did not write" in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_model_does_not_replace_another_diagnosis(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = several_effects()
+    for name in ("diagnosis.json", "other.json"):
+        found.write(tmp_path / name)
+    assert "rovsim.model/" in (tmp_path / "other.json").read_text()  # of the base
+    with pytest.raises(SystemExit, match="2"):
+        main(["add", "diagnosis=diagnosis.json", "model=other.json", "--quiet"])
+    assert (tmp_path / "other.json").read_bytes() == (tmp_path / "diagnosis.json").read_bytes()

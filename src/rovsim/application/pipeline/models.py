@@ -8,7 +8,7 @@ from rovsim.core.files import require_replaceable
 from rovsim.diagnosis import apply
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import load_model, write_model
+from rovsim.dynamics.model_file import SCHEMA, load_model, write_model
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.results.diagnosis import Diagnosis
 
@@ -93,7 +93,7 @@ def add_effects(
             expected="another file for the model",
             remedy="For example model=NEW.yaml.",
         )
-    require_replaceable(out, "rovsim.model/")
+    require_replaceable(out, f"schema: {SCHEMA}")  # not as a diagnosis has it, of its base
     found = Diagnosis.read(diagnosis)
     wanted = list(effects) if effects else None
     added = apply.add_effects(found, diagnosis, base, wanted, catalogue)
