@@ -9,5 +9,6 @@ force_balance     the same from measured accelerations: every effect's share
 coverage          do bands hold what they promise?
 latency           how long one prediction takes
 error_conditions  where a model fails: its error by axis and condition
+commanded_motion  does a vehicle do what was commanded?
 held_out          each run held out once, beside others' published errors
 """

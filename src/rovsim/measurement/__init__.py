@@ -8,6 +8,7 @@ recording      raw exports in, recordings in NED and FRD out
 signals        from poses to velocities and accelerations
 quality        how good a recording is
 remarks        the same in sentences
+held_out       test runs that repeat train runs
 runs           the usable runs of a campaign
 survey         what is in files that nobody has described yet
 """

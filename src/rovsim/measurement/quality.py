@@ -1,5 +1,7 @@
 """How good a recording is: rate, gaps, repairs, excitation, noise, and what to do about it."""
 
+from typing import Sequence
+
 import numpy as np
 from numpy import ndarray as Array
 
@@ -11,7 +13,7 @@ from rovsim.measurement.recording.channels import KINDS
 from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
-from rovsim.measurement.remarks import remark
+from rovsim.measurement.remarks import doubt, remark
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
 from rovsim.measurement.signals.resample import Linear
@@ -38,14 +40,25 @@ READINGS = 3.0  # of the slowest channel in a block: fewer are its noise
 EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard deviation
 
 
-def report_quality(recording: Recording, anomalies: Anomalies, settings: Outliers) -> Quality:
-    """What `quality/RUN.json` holds; outliers of binned velocities are not looked for."""
+def report_quality(
+    recording: Recording, anomalies: Anomalies, settings: Outliers, doubts: Sequence[str] = ()
+) -> Quality:
+    """What `quality/RUN.json` holds; outliers of binned velocities are not looked for.
+
+    `doubts`: what is known to speak against the run beside what is seen here.
+    """
     if recording.nu is not None or not recording.posed:
-        return assess(recording, anomalies)
-    return assess(recording, anomalies, int(find_outliers(recording, settings).sum()))
+        return assess(recording, anomalies, doubts=doubts)
+    count = int(find_outliers(recording, settings).sum())
+    return assess(recording, anomalies, count, doubts)
 
 
-def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = None) -> Quality:
+def assess(
+    recording: Recording,
+    anomalies: Anomalies,
+    outliers: int | None = None,
+    doubts: Sequence[str] = (),
+) -> Quality:
     """Describe a recording.
 
     `outliers` is the number of frames that the outlier rejection refused, None when not looked for.
@@ -71,8 +84,9 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         unusable=usable_reason(recording),
         channels=_describe_channels(recording),
     )
-    remarks = [*remark(report), *anomalies.notes]
-    return report.model_copy(update={"remarks": tuple(remarks)})
+    known = (*doubt(report), *doubts)
+    remarks = (*known, *remark(report), *anomalies.notes)
+    return report.model_copy(update={"doubts": known, "remarks": remarks})
 
 
 def usable_reason(recording: Recording) -> str | None:

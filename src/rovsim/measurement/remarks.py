@@ -11,14 +11,21 @@ NOISY_POSITION, NOISY_ATTITUDE = 0.003, 0.015  # m, rad: three times a usual und
 SLOW = 20.0  # Hz; below it thruster lag and added mass are hard to see
 
 
-def remark(report: Quality) -> list[str]:
-    """Sentences about a recording, most important first."""
-    return [*_use(report), *_frames(report), *_commands(report), *_repairs(report)]
-
-
-def _use(report: Quality) -> Iterator[str]:
+def doubt(report: Quality) -> Iterator[str]:
+    """Sentences about what keeps a recording from being used as it was meant."""
     if report.unusable:
         yield f"This run cannot be used ({report.unusable}). Record it again or remove it."
+    if report.commands is not None and not report.commands.varies:
+        yield "The commands never change: check 'commands.columns', or that the log was running."
+
+
+def remark(report: Quality) -> list[str]:
+    """Further sentences about a recording, most important first."""
+    return [*_motion(report), *_frames(report), *_commands(report), *_repairs(report)]
+
+
+def _motion(report: Quality) -> Iterator[str]:
+    if report.unusable:
         return
     quiet = [axis for axis, e in report.excitation.items() if not e.excited]
     if quiet:
@@ -61,8 +68,6 @@ def _commands(report: Quality) -> Iterator[str]:
     commands, repairs = report.commands, report.repairs
     if commands is None:
         return
-    if not commands.varies:
-        yield "The commands never change: check 'commands.columns', or that the log was running."
     if repairs["command_long_steps"]:
         yield (
             f"{repairs['command_long_steps']} command steps are longer than usual (up to "

@@ -5,8 +5,6 @@ names       what their names say: runs, and which files belong together
 together    files of one run that hold different sensors
 bodies      which body or topic is the vehicle, where a file holds several
 vehicles    which vehicle files fit the commands
-predicted   which velocity commands ought to cause
-likeness    how alike a commanded and a measured motion are, along which axes, how late
 motions     all motions and logs beside each other, for each vehicle that may be it
 pairing     which commands belong to which motion: by name, by clock, by what they cause
 choice      which of the vehicles the motion is like

@@ -6,8 +6,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.intake.pairing import AHEAD, ALIKE
 from rovsim.core.rotations import matrix
+from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE
 from rovsim.measurement.survey.contents import Track
 
 # Columns: forward, starboard, down in the file's body axes.

@@ -5,8 +5,8 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from rovsim.application.intake.pairing import AHEAD, ALIKE
 from rovsim.core.errors import BadInput
+from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE
 from rovsim.measurement.quality import STILL_POSITION
 from rovsim.measurement.survey.contents import Contents, Track
 

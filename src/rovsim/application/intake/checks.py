@@ -7,22 +7,19 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.intake.choice import Choice
-from rovsim.application.intake.likeness import orientations
 from rovsim.application.intake.motions import Log, Motion
-from rovsim.application.intake.pairing import ALIKE
-from rovsim.application.intake.predicted import held, respond, wrench
 from rovsim.application.intake.vehicles import Fit, as_logged
 from rovsim.core.rotations import unrotate
 from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.evaluation.commanded_motion.clocks import tell_clocks
+from rovsim.evaluation.commanded_motion.likeness import ALIKE, orientations
+from rovsim.evaluation.commanded_motion.predicted import held, respond, wrench
 from rovsim.measurement.quality import EXCITED, usable_reason
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.survey.grid import even_poses, slopes
 
-# A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
-# of the likeness is known to about a tenth of a second.
-EARLIEST, LATEST = -0.25, 0.6  # s
 BETTER = 0.12  # likeness by which another order or sign must be better to be told
 
 
@@ -41,19 +38,14 @@ def unusable(motion: Motion) -> str | None:
 def check_clocks(choice: Choice, axes: Array, names: Sequence[str]) -> Iterator[str]:
     """Runs in which the motion comes too late or too early after its commands."""
     for k, one in choice.runs.items():
-        score, lag = one.best(axes)
+        score = one.best(axes)[0]
         if score < ALIKE:
             yield (
                 f"{names[k]}: the motion hardly follows its commands (likeness {score:.2f}): "
                 "another log, another vehicle, a tether that pulls?"
             )
-        elif not EARLIEST <= lag <= LATEST:
-            how = "after" if lag > 0 else "before"
-            yield (
-                f"{names[k]}: the motion comes {abs(lag):.2f} s {how} its commands (likeness "
-                f"{score:.2f}): the clocks differ. Add {lag:+.2f} s to the times of the commands, "
-                "or let the effect input_delay find it"
-            )
+        elif said := tell_clocks(one, axes):
+            yield f"{names[k]}: {said}"
 
 
 def check_mirror(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) -> str:

@@ -6,11 +6,11 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.intake.likeness import Likeness
 from rovsim.application.intake.motions import alike, turned
-from rovsim.application.intake.pairing import AHEAD, ALIKE, Pair
+from rovsim.application.intake.pairing import Pair
 from rovsim.application.intake.vehicles import Fit
 from rovsim.dynamics.vehicle import default_vehicle
+from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE, Likeness
 
 SAME = 0.03  # likeness by which vehicles of one hull differ
 

@@ -8,9 +8,9 @@ from typing import Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.intake.likeness import REACH, Likeness, likeness, rotations
-from rovsim.application.intake.predicted import velocity
 from rovsim.application.intake.vehicles import Fit, as_logged
+from rovsim.evaluation.commanded_motion.likeness import REACH, Likeness, likeness, rotations
+from rovsim.evaluation.commanded_motion.predicted import velocity
 from rovsim.measurement.survey.contents import Drive, Track
 from rovsim.measurement.survey.grid import STEP, Velocities, velocities
 

@@ -9,11 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.application.intake.motions import Log, Motion
 from rovsim.application.intake.names import run_key, sensor_key
-
-# Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
-# most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).
-ALIKE = 0.38
-AHEAD = 1.3  # times the likeness of the next best
+from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,10 @@
 """Raw exports in, recordings and quality reports out."""
 
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
+from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
-from rovsim.measurement.quality import report_quality
+from rovsim.measurement.held_out import doubt_test_run
+from rovsim.measurement.quality import report_quality, usable_reason
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.outliers import Outliers
@@ -21,6 +23,10 @@ def read_recording(campaign: Campaign, run: str, outliers: Outliers) -> tuple[Re
     Raises:
         BadInput: it cannot be read.
     """
-    known = mark_angles(campaign, load_campaign_vehicle(campaign))
+    vehicle = load_campaign_vehicle(campaign)
+    known = mark_angles(campaign, vehicle)
     recording, anomalies = read_run(known, run)
-    return recording, report_quality(recording, anomalies, outliers)
+    doubts: list[str] = []
+    if usable_reason(recording) is None:
+        doubts += [*find_doubts(recording, vehicle), *doubt_test_run(campaign, campaign.run(run))]
+    return recording, report_quality(recording, anomalies, outliers, doubts)

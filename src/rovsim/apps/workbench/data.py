@@ -13,6 +13,7 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_text, write_text
 from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.reporting.words.sentences import doubt_sentences
 from rovsim.results.quality import Quality
 
 NOTES = "notes.md"
@@ -23,15 +24,14 @@ async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
     heading(TITLE, QUESTION)
     quality = bench.data.quality
-    for run, report in quality.items():
-        if report.unusable:
-            text(f"Run {run} is not used: {report.unusable}.", "warning")
+    for doubt in doubt_sentences(quality):
+        text(doubt, "warning")
     _recordings(quality)
     _gaps(quality)
     _excitation(quality)
     section("Remarks")
     for run, report in quality.items():
-        for remark in report.remarks:
+        for remark in report.remarks[len(report.doubts) :]:
             text(f"{run}: {remark}")
     if not any(report.remarks for report in quality.values()):
         text("Nothing to remark on.", "soft")

@@ -13,6 +13,7 @@ from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.csv_checks import (
+    POSITION,
     check_plausible,
     doubt_order,
     without_fillers,
@@ -32,7 +33,6 @@ from rovsim.measurement.recording.table import (
     without_cut_line,
 )
 
-POSITION = ["x_m", "y_m", "z_m"]
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
 QUATERNION = ["qw", "qx", "qy", "qz"]
 LINEAR, ANGULAR = ["u_m_s", "v_m_s", "w_m_s"], ["p_rad_s", "q_rad_s", "r_rad_s"]

@@ -10,6 +10,9 @@ from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.table import find_filler
 
 LONGEST_STEP = 5.0  # s between two lines of any recording
+POSITION = ["x_m", "y_m", "z_m"]
+FASTEST = 30.0  # m/s: 58 kn, the fastest ship (HSC Francisco, 2013)
+APART = 1.0  # s between two positions: far beyond what noise of readings makes of a speed
 TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and hardly any counts on
 ABOVE, SHARE = -0.1, 0.95  # m: a zero of the sensor that is off; of the lines
 DEEP = 0.5  # m
@@ -30,7 +33,7 @@ def without_fillers(names: Sequence[str], values: Array) -> tuple[Array, tuple[s
 
 
 def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> None:
-    """Refuse times that are no seconds, angles that are no rad, and heights for depths.
+    """Refuse times that are no s, positions no m, angles no rad, and heights for depths.
 
     Raises:
         BadInput: says which column, and how to say what it holds.
@@ -39,6 +42,11 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
     if step > LONGEST_STEP:
         raise _refused(path, "time_s", f"steps of {step:.3g} s: ms, us or ns?", "seconds",
                        RENAME.format("time_ms", "s"))  # fmt: skip
+    if values.keys() >= set(POSITION):
+        speed = _median_speed(time, np.stack([values[name] for name in POSITION], axis=1))
+        if speed > FASTEST:
+            raise _refused(path, "x_m", f"a vehicle that moves at {speed:.3g} m/s: mm or cm?", "m",
+                           RENAME.format("x_mm", "m"))  # fmt: skip
     pitch = np.abs(values.get("pitch_rad", np.zeros(0)))
     if np.nanmax(pitch, initial=0.0) > TURNED:
         raise _refused(path, "pitch_rad", f"angles up to {np.nanmax(pitch):.3g}: degrees?",
@@ -49,6 +57,19 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
         raise _refused(path, "depth_m", f"depths from {low:.3g} to {high:.3g} m: heights?",
                        "m, positive down", "Turn the sign of the column; `rovsim init` does so in "
                        "a copy.")  # fmt: skip
+
+
+def _median_speed(time: Array, position: Array) -> float:
+    """Median of the speeds in m/s over steps of about a second; 0 where nothing is known."""
+    known = np.isfinite(position).all(axis=1) & np.isfinite(time)
+    order = np.argsort(time[known], kind="stable")
+    time, position = time[known][order], position[known][order]
+    later = np.searchsorted(time, time + APART)
+    inside = later < len(time)
+    if not inside.any():
+        return 0.0
+    moved = np.linalg.norm(position[later[inside]] - position[inside], axis=1)
+    return float(np.median(moved / np.maximum(time[later[inside]] - time[inside], APART)))
 
 
 def doubt_order(quaternion: Array) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap, Run
 from rovsim.measurement.recording import channels
 from rovsim.measurement.recording.channels import Channels
+from rovsim.measurement.recording.csv_checks import LONGEST_STEP
 from rovsim.measurement.recording.joined import join
 from rovsim.measurement.recording.readers import (
     KIND,
@@ -27,6 +28,7 @@ from rovsim.measurement.recording.tidying import measured_rate, tidy_commands, t
 
 # Times beyond this are dates (seconds since 1970 or since the machine was started); a day is none.
 LATE = 1e5  # s
+LONGER = 100.0  # times the recording: no log of the same run in the same unit
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     export, counts = tidy_export(join({path: read(path, mocap) for path in paths}), paths[0])
     commands, command_counts, notes = _read_commands(campaign, run)
     if run.commanded:
-        _check_overlap(export.time, commands.time, campaign.commands_path(run))
+        _check_clocks(export.time, commands.time, campaign.commands_path(run))
     export, commands = _from_zero(export, _with_battery(commands, export.channels))
     export, left_out = _use(export, run)
     info = RunInfo(run.id, run.control, run.split)
@@ -187,11 +189,23 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
     )
 
 
-def _check_overlap(measured: Array, commands: Array, path: Path) -> None:
+def _check_clocks(measured: Array, commands: Array, path: Path) -> None:
+    """Refuse commands in other units of time than the recording, or on a clock that never meets."""
+    span = (
+        f"the commands run from {commands[0]:.10g} to {commands[-1]:.10g} s, "
+        f"what was measured from {measured[0]:.10g} to {measured[-1]:.10g} s"
+    )
+    longer = float(np.ptp(commands)) > LONGER * float(np.ptp(measured))
+    if len(commands) > 1 and longer and np.median(np.diff(commands)) > LONGEST_STEP:
+        raise BadInput(
+            f"{span}: ms, us or ns?",
+            where=path,
+            expected="times of the commands in seconds",
+            remedy="Divide them, or let `rovsim init` make a copy in s.",
+        )
     if commands[0] >= measured[-1] or commands[-1] <= measured[0]:
         raise BadInput(
-            f"the commands run from {commands[0]:.10g} to {commands[-1]:.10g} s, "
-            f"what was measured from {measured[0]:.10g} to {measured[-1]:.10g} s",
+            span,
             where=path,
             expected="commands on the clock of the motion capture",
             remedy="Shift the command times to that clock.",

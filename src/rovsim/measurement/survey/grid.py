@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
 from rovsim.measurement.recording.channels import Channel, Channels
 from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.clock import time_step
 
 # A vehicle's speed answers within tenths of a second; a median over a step rejects single outliers.
@@ -35,7 +36,7 @@ class Velocities:
     nu: Array
 
 
-def even_poses(export: Export) -> Poses:
+def even_poses(export: Export | Recording) -> Poses:
     """Found poses as medians over steps of the even clock; short gaps are bridged."""
     seen = export.found
     time, position, attitude = (
@@ -75,7 +76,7 @@ def _far(clock: Array, time: Array) -> Array:
     return time[after] - time[after - 1] > max(BRIDGED, 2.0 * step)
 
 
-def velocities(export: Export) -> Velocities:
+def velocities(export: Export | Recording) -> Velocities:
     """Body velocities by slopes of full poses, or of the channels that were measured."""
     if export.nu is not None:
         return _exported(export)
@@ -86,7 +87,7 @@ def velocities(export: Export) -> Velocities:
     return Velocities(poses.time, np.hstack([linear, _rates(poses.time, poses.attitude)]))
 
 
-def _exported(export: Export) -> Velocities:
+def _exported(export: Export | Recording) -> Velocities:
     seen, clock = export.found, even_clock(export.time[export.found])
     assert export.nu is not None
     nu = _interpolated(clock, export.time[seen], export.nu[seen])

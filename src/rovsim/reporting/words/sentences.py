@@ -11,7 +11,15 @@ from rovsim.reporting.figures.palette import RESIDUALS, family
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import ERROR, FLOOR_COUNTS_ALL, STEP, listed, significant, title
+from rovsim.reporting.wording import (
+    ERROR,
+    FLOOR_COUNTS_ALL,
+    STEP,
+    listed,
+    several,
+    significant,
+    title,
+)
 from rovsim.reporting.words.speed import timing_sentences
 from rovsim.reporting.words.verdict import leaves_unexplained
 from rovsim.results.bands import Bands, ModelBands
@@ -71,15 +79,23 @@ def scores(ladder: Ladder) -> dict[str, float]:
 
 
 def runs_sentences(quality: Mapping[str, Quality]) -> list[str]:
-    """Say how many runs there are and which cannot be used."""
+    """Say how many runs there are and what speaks against them."""
     if not quality:
         return []
     held = [run for run, report in quality.items() if report.split == "test"]
-    unusable = {run: r.unusable for run, r in quality.items() if r.unusable}
     text = (
         f"The campaign has {_count(len(quality), 'run')}, {len(held)} of them held out for tests."
     )
-    return [text, *(f"Run {run} is not used: {why}." for run, why in unusable.items())]
+    return [text, *doubt_sentences(quality)]
+
+
+def doubt_sentences(quality: Mapping[str, Quality]) -> list[str]:
+    """Say what can make results wrong, once each, behind the runs of which it is true."""
+    runs: dict[str, list[str]] = {}
+    for run, report in quality.items():
+        for doubt in report.doubts:
+            runs.setdefault(doubt, []).append(run)
+    return [f"{several(found)}: {doubt}" for doubt, found in runs.items()]
 
 
 def nominal_sentences(errors: DataFrame) -> list[str]:

@@ -5,13 +5,14 @@ from typing import Mapping, Sequence
 from rovsim.core.columns import fold
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.wording import ERROR_MEANING, LEAST, fit, minus, several, significant, title
-from rovsim.reporting.words.sentences import band_sentences
+from rovsim.reporting.words.sentences import band_sentences, doubt_sentences
 from rovsim.reporting.words.verdict import NO_TEST, Missing, explain
 from rovsim.results.bands import Bands
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.fitted import FittedEffect
+from rovsim.results.quality import Quality
 
 BAR = 24  # letters
 MOST = 6  # findings printed; the report has them all
@@ -47,6 +48,16 @@ def _told(error: float | None) -> str:
     return significant(or_nan(error)) + (
         f", fit {minus(f'{fit(error):.0f}')} %" if error is not None else ""
     )
+
+
+def tell_doubts(quality: Mapping[str, Quality]) -> str:
+    """What to check of the recordings before anything is believed; nothing where all is well."""
+    said = doubt_sentences(quality)
+    told, rest = said[:MOST], len(said) - MOST
+    lines = ["", "", "check the recordings first", ""] if said else []
+    for one in told:
+        lines += fold(one, "  - ", "    ")
+    return "\n".join([*lines, f"  … and {rest} more in the report"] if rest > 0 else lines)
 
 
 def _findings(where: ErrorConditions) -> list[str]:

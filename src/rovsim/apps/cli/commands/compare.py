@@ -16,7 +16,7 @@ from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.files import appearing_together
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.words.terminal import tell_comparison
+from rovsim.reporting.words.terminal import tell_comparison, tell_doubts
 
 
 class Settings(CampaignSettings):
@@ -48,4 +48,4 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     errors = {step.model: step.windows_2s for step in found.steps}
     text = tell_comparison(errors, found.where, bool(data.runs.of("test")), found.coverage)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
-    say(settings, f"{text}\n\n{files}", found.comparison.to_json())
+    say(settings, f"{text}{tell_doubts(data.quality)}\n\n{files}", found.comparison.to_json())

@@ -73,10 +73,10 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         )
         draw(shown)
 
-        from rovsim.reporting.words.terminal import tell_diagnosis
+        from rovsim.reporting.words.terminal import tell_diagnosis, tell_doubts
 
         files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
-        text = tell_diagnosis(found.diagnosis, catalogue)
+        text = tell_diagnosis(found.diagnosis, catalogue) + tell_doubts(data.quality)
         say(settings, f"{text}\n\n{files}", found.diagnosis.to_json())
         drawn = [future.result() for future in counted(list(drawing.values()), "drawing")]
         origin = provenance(settings, catalogue, data.campaign)

@@ -46,20 +46,26 @@ def held(time: Array, value: Array, at: Array) -> Array:
     return np.where(last[:, None] >= 0, value[np.maximum(last, 0)], 0.0)
 
 
+def righting(vehicle: Vehicle) -> Array:
+    """Restoring stiffness (6,) of a vehicle at rest: N/m, N m/rad."""
+    dry = vehicle.rigid_body
+    center = dry.center_of_buoyancy or dry.center_of_gravity
+    arm = dry.center_of_gravity[2] - center[2]
+    weight = dry.mass * vehicle.fluid.gravity
+    stiffness = weight * arm * np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0])
+    if vehicle.waterplane is not None:
+        plane = vehicle.waterplane
+        stiffness += [0.0, 0.0, plane.heave, plane.roll, plane.pitch, 0.0]
+    return np.asarray(stiffness)
+
+
 def _diagonals(vehicle: Vehicle) -> tuple[Array, Array, Array, Array]:
     """Inertia, drag by speed and by its square, and restoring stiffness, (6,) each."""
     dry, water = vehicle.rigid_body, vehicle.hydrodynamics
     moments = [getattr(dry.inertia, name) or 1.0 for name in ("Ixx", "Iyy", "Izz")]
     inertia = np.array([dry.mass] * 3 + moments) + np.diag(matrix(water.added_mass))
-    weight = dry.mass * vehicle.fluid.gravity
-    center = dry.center_of_buoyancy or dry.center_of_gravity
-    righting = weight * (dry.center_of_gravity[2] - center[2])
-    stiffness = np.array([0.0, 0.0, 0.0, righting, righting, 0.0])
-    if vehicle.waterplane is not None:
-        plane = vehicle.waterplane
-        stiffness += [0.0, 0.0, plane.heave, plane.roll, plane.pitch, 0.0]
     linear, quadratic = (
         np.diag(matrix(water.linear_damping)),
         np.diag(matrix(water.quadratic_damping)),
     )
-    return inertia, linear, quadratic, np.maximum(stiffness, 0.0)
+    return inertia, linear, quadratic, np.maximum(righting(vehicle), 0.0)

@@ -17,6 +17,10 @@ REACH = 10.0  # s by which clocks that share a start may differ
 OVERLAP = 0.5  # share of the shorter recording that must lie beside the other
 AFTER = 2.0  # s for which a motion goes on after its last command
 SPARSE = 1e-9
+# Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
+# most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).
+ALIKE = 0.38
+AHEAD = 1.3  # times the likeness of the next best
 
 
 @dataclass(frozen=True, eq=False)

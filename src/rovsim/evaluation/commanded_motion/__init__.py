@@ -1,0 +1,7 @@
+"""Does a vehicle do what was commanded? Rough, and without any replay.
+
+predicted  which velocity commands ought to cause
+likeness   how alike a commanded and a measured motion are: along which axes, how late
+clocks     a motion that comes too late or too early after its commands
+doubts     what speaks against a run as its campaign describes it
+"""

@@ -1,0 +1,128 @@
+"""What speaks against a run as its campaign describes it: axes, tank, commands, clocks."""
+
+from typing import Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import matrix
+from rovsim.dynamics.vehicle import Vehicle
+from rovsim.evaluation.commanded_motion.clocks import tell_clocks
+from rovsim.evaluation.commanded_motion.likeness import (
+    AHEAD,
+    ALIKE,
+    Likeness,
+    likeness,
+    orientations,
+)
+from rovsim.evaluation.commanded_motion.predicted import righting, velocity
+from rovsim.measurement.recording import Recording
+from rovsim.measurement.survey.grid import STEP, velocities
+
+LONGEST = 120.0  # s of commands that are looked at
+SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
+BEFORE, AFTER = 1.0, 3.0  # s around the commands
+HANGS = -0.5  # cosine of the tilt: 120 degrees
+OUTSIDE, SHARE = 0.5, 0.5  # m beyond a wall, of the frames: no error of a calibration
+STOPPED, OFTEN = 2.0, 5.0  # s after a log that had a line each step: of its longest step
+MOVES = ("surge", "sway", "heave")
+
+
+def find_doubts(recording: Recording, vehicle: Vehicle) -> tuple[str, ...]:
+    """Sentences about a run that can be used; none where nothing speaks against it."""
+    upside_down = list(_upside_down(recording, vehicle))
+    found = [] if upside_down else list(_unlike(recording, vehicle))
+    return (*upside_down, *found, *_out_of_tank(recording), *_log_that_ends(recording))
+
+
+def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
+    if not recording.found.any() or not righting(vehicle)[3] > 0.0:
+        return
+    upright = matrix(recording.attitude[recording.found])[:, 2, 2]
+    if np.median(upright) < HANGS:
+        yield (
+            "The vehicle hangs upside down most of the time, which its own weight would right: "
+            "check 'mocap.body_axes' and 'mocap.world_axes'."
+        )
+
+
+def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
+    found = _compared(recording, vehicle)
+    if found is None or not found.excited.any():
+        return
+    own = found.best(np.eye(3))[0]
+    best, axes = max(((found.best(a := np.array(o))[0], a) for o in orientations()), key=_first)
+    if best >= ALIKE and best > AHEAD * own:
+        yield (
+            f"The vehicle moves along other axes than those commanded: {_told(axes)} (likeness "
+            f"{best:.2f}; as described {own:.2f}). Check 'mocap.body_axes', 'mocap.world_axes' and "
+            "the order and signs of 'commands.columns'."
+        )
+    elif own < ALIKE:
+        yield (
+            f"The motion hardly follows its commands (likeness {own:.2f}): the log of another run, "
+            "another vehicle, a tether that pulls?"
+        )
+    elif said := tell_clocks(found, np.eye(3)):
+        yield said[0].upper() + said[1:]
+
+
+def _first(pair: tuple[float, Array]) -> float:
+    return pair[0]
+
+
+def _compared(recording: Recording, vehicle: Vehicle) -> Likeness | None:
+    """How alike the run and what its commands would cause are; None where there is too little."""
+    commands = recording.commands
+    if len(commands.time) < 2 or np.ptp(recording.time) < SHORTEST:
+        return None
+    measured = velocities(recording)
+    if not np.isfinite(measured.nu).any():
+        return None
+    begin = max(float(commands.time[0]), float(measured.time[0]))
+    time = np.arange(begin - BEFORE, min(commands.time[-1], begin + LONGEST) + AFTER, STEP)
+    return likeness(measured, time, velocity(vehicle, commands, time))
+
+
+def _told(axes: Array) -> str:
+    """What each commanded direction shows as, where it is another."""
+    seen = []
+    for name, column in zip(MOVES, axes.T, strict=True):
+        k = int(np.argmax(np.abs(column)))
+        shown = f"{'−' if column[k] < 0 else ''}{MOVES[k]}"
+        if shown != name:
+            seen.append(f"{name} shows as {shown}")
+    return ", ".join(seen)
+
+
+def _out_of_tank(recording: Recording) -> Iterator[str]:
+    position, walls = recording.position[recording.found], recording.site.tank
+    if not len(position):
+        return
+    low, high = position < walls[:, 0] - OUTSIDE, position > walls[:, 1] + OUTSIDE
+    share = np.mean(low | high, axis=0)
+    k = int(np.argmax(share))
+    if share[k] > SHARE:
+        sign = recording.site.axes[k]
+        reach, tank = (
+            sorted((sign * values).tolist())
+            for values in (np.percentile(position[:, k], [1.0, 99.0]), walls[k])
+        )
+        yield (
+            f"Most of the path lies outside of the tank: {'xyz'[k]} from {reach[0]:.2f} to "
+            f"{reach[1]:.2f} m, 'tank' says {tank[0]:g} to {tank[1]:g}. Check it, and "
+            "'mocap.world_axes'."
+        )
+
+
+def _log_that_ends(recording: Recording) -> Iterator[str]:
+    """Remark commands that stop before the recording does, unless they rest or come rarely."""
+    time, end = recording.commands.time, float(recording.time[-1])
+    if len(time) < 2 or not np.any(recording.commands.value[-1]):
+        return
+    left = end - float(time[-1])
+    if left > max(STOPPED, OFTEN * float(np.diff(time).max())):
+        yield (
+            f"The log of commands ends {left:.1f} s before the recording; its last line is held "
+            "until then. Leave that part out with 'use', or complete the log."
+        )

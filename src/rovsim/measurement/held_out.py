@@ -1,0 +1,36 @@
+"""Test runs that are train runs under another name: what they hold out was seen."""
+
+import filecmp
+from pathlib import Path
+from typing import Iterator
+
+from rovsim.measurement.campaign import Campaign
+from rovsim.measurement.campaign_file import Run
+
+
+def doubt_test_run(campaign: Campaign, run: Run) -> Iterator[str]:
+    """Name the train runs that a test run repeats, file by file."""
+    if run.split != "test":
+        return
+    own = campaign.mocap_paths(run)
+    for other in campaign.runs:
+        theirs = campaign.mocap_paths(other)
+        if other.split == "train" and _overlap(run, other) and _equal(own, theirs):
+            yield (
+                f"This test run holds the recording of train run {other.id}: its errors say "
+                "nothing of a run that nobody has seen. Hold another run out."
+            )
+
+
+def _overlap(run: Run, other: Run) -> bool:
+    """Whether the spans that are used have something in common."""
+    if run.use is None or other.use is None:
+        return True
+    return any(a < d and c < b for a, b in run.use for c, d in other.use)
+
+
+def _equal(own: list[Path], theirs: list[Path]) -> bool:
+    return len(own) == len(theirs) and all(
+        a == b or (a.is_file() and b.is_file() and filecmp.cmp(a, b, shallow=False))
+        for a, b in zip(own, theirs, strict=True)
+    )

@@ -1,0 +1,132 @@
+"""What speaks against a campaign that was described by hand is said; nothing where all is well."""
+
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rovsim.application.pipeline.reading import read_recording
+from rovsim.apps.cli.main import main
+from rovsim.core.errors import BadInput
+from rovsim.core.yaml_files import read_yaml, write_yaml
+from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.signals.outliers import KeepAll
+from said import unfolded
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """A synthetic campaign as it should be."""
+    out = tmp_path_factory.mktemp("tank") / "sound"
+    main(["tank", "tank=tiny", "tank.duration=20", f"out={out}"])
+    return out
+
+
+@pytest.fixture
+def campaign(sound, tmp_path):
+    """A copy of it to spoil."""
+    return Path(shutil.copytree(sound, tmp_path / "campaign"))
+
+
+def doubts(folder: Path, place: int = 0) -> str:
+    """What is said against one of its runs."""
+    campaign = load_campaign(folder)
+    quality = read_recording(campaign, campaign.runs[place].id, KeepAll(kind="none"))[1]
+    assert quality.remarks[: len(quality.doubts)] == quality.doubts
+    return " ".join(quality.doubts)
+
+
+def described(folder: Path, change) -> str:
+    """What is said after a change of the campaign's description."""
+    content = read_yaml(folder / "campaign.yaml")
+    change(content)
+    write_yaml(folder / "campaign.yaml", content)
+    return doubts(folder)
+
+
+def rewritten(folder: Path, change) -> str:
+    """What is said after a change of the table of commands (m, 1 + c) of the first run."""
+    path = folder / load_campaign(folder).runs[0].commands
+    head = path.read_text().splitlines()[0]
+    table = change(np.loadtxt(path, delimiter=",", skiprows=1))
+    np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.6g")
+    return doubts(folder)
+
+
+def test_nothing_is_said_against_a_sound_campaign(sound):
+    for place in range(len(load_campaign(sound).runs)):
+        assert doubts(sound, place) == ""
+
+
+def test_wrong_body_axes_hang_the_vehicle_upside_down(campaign):
+    said = described(campaign, lambda c: c["mocap"].update(body_axes="frd"))
+    assert "upside down" in said
+    assert "'mocap.body_axes'" in said
+
+
+def test_both_axes_wrong_leave_it_upright_and_moving_the_other_way(campaign):
+    said = described(campaign, lambda c: c["mocap"].update(body_axes="frd", world_axes="ned"))
+    assert "upside down" not in said
+    assert "sway shows as −sway" in said
+
+
+def test_the_log_of_another_run_is_not_followed(campaign):
+    rng = np.random.default_rng(1)
+
+    def shuffle(table):
+        blocks = np.array_split(table[:, 1:], len(table) // 5)
+        order = rng.permutation(len(blocks))
+        return np.column_stack([table[:, 0], np.vstack([blocks[k] for k in order])])
+
+    assert re.search("hardly follows its commands|along other axes", rewritten(campaign, shuffle))
+
+
+@pytest.mark.parametrize("late", [3.0, -2.0])
+def test_a_clock_that_differs_is_put_right_by_what_is_said(campaign, late):
+    def shift(table):
+        return np.column_stack([table[:, 0] - late, table[:, 1:]])
+
+    said = rewritten(campaign, shift)
+    found = re.search(r"add ([-+]\d+\.\d) s to the times of the commands", said)
+    assert float(found.group(1)) == pytest.approx(late, abs=0.25)
+    assert "let `input_delay` find it" not in said
+
+
+def test_times_of_commands_in_ms_are_refused(campaign):
+    with pytest.raises(BadInput, match="ms, us or ns"):
+        rewritten(campaign, lambda table: table * np.array([1e3, *[1.0] * (table.shape[1] - 1)]))
+
+
+def test_a_log_that_ends_while_pushing_is_told(campaign):
+    assert "ends" in rewritten(campaign, lambda table: table[: len(table) // 2])
+
+
+def test_a_tank_that_is_too_small_is_told(campaign):
+    said = described(campaign, lambda c: c.update(tank={"z": [4.0, 5.0]}))
+    assert "outside of the tank: z from" in said
+
+
+def test_a_test_run_that_was_trained_on_is_told_at_the_end_of_compare(
+    campaign, few_figures, tmp_path, capsys
+):
+    content = read_yaml(campaign / "campaign.yaml")
+    train = next(run for run in content["runs"] if run["split"] == "train")
+    shutil.copy(campaign / train["mocap"], campaign / "again.tsv")
+    content["runs"] = [train, {**train, "id": "again", "split": "test", "mocap": "again.tsv"}]
+    write_yaml(campaign / "campaign.yaml", content)
+    main(["compare", f"campaign={campaign}", f"out={tmp_path / 'out'}"])
+    said = unfolded(capsys.readouterr().out)
+    assert "check the recordings first" in said
+    assert f"again: This test run holds the recording of train run {train['id']}" in said
+
+
+def test_millimetres_in_a_column_of_metres_are_refused(tmp_path):
+    from rovsim.measurement.recording.csv_checks import check_plausible
+
+    time = np.arange(0.0, 20.0, 0.05)
+    swim = {name: 0.5 * np.sin(0.5 * time + k) for k, name in enumerate(("x_m", "y_m", "z_m"))}
+    check_plausible(tmp_path, time, swim)
+    with pytest.raises(BadInput, match="mm or cm"):
+        check_plausible(tmp_path, time, {name: 1e3 * x for name, x in swim.items()})
