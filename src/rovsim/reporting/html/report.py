@@ -23,7 +23,7 @@ from rovsim.reporting.tables import (
 )
 from rovsim.reporting.wording import explain_model, listed, several, short, significant, title
 from rovsim.reporting.words.published_errors import tell_pitfalls, tell_standings
-from rovsim.reporting.words.sentences import summarize
+from rovsim.reporting.words.sentences import doubt_sentences, summarize
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
@@ -68,6 +68,7 @@ def render(report: Report) -> str:
             subtitle=_subtitle(data),
             made=report.made,
             verdict=explain(data.diagnosis, report.catalogue) if data.diagnosis else None,
+            doubts=doubt_sentences(data.quality),
             summary=summarize(data),
             where=data.where.models if data.where else {},
             errors=_errors(data.comparison) if data.comparison else [],

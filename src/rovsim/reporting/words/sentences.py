@@ -79,14 +79,12 @@ def scores(ladder: Ladder) -> dict[str, float]:
 
 
 def runs_sentences(quality: Mapping[str, Quality]) -> list[str]:
-    """Say how many runs there are and what speaks against them."""
+    """Say how many runs there are, and how many of them are held out."""
     if not quality:
         return []
     held = [run for run, report in quality.items() if report.split == "test"]
-    text = (
-        f"The campaign has {_count(len(quality), 'run')}, {len(held)} of them held out for tests."
-    )
-    return [text, *doubt_sentences(quality)]
+    count = _count(len(quality), "run")
+    return [f"The campaign has {count}, {len(held)} of them held out for tests."]
 
 
 def doubt_sentences(quality: Mapping[str, Quality]) -> list[str]:
