@@ -121,7 +121,7 @@ def test_numbers_below_zero_have_a_minus_sign():
 def test_a_finding_says_where_the_error_is_largest_and_what_explains_it(content):
     said = " ".join(s for model in content["where"].models.values() for s in model.sentences)
     assert "The error is largest, " in said
-    assert re.search(r" explains \d+ % of the squared error\.", said)
+    assert re.search(r" explains \d+ % of the squared error[.,]", said)
     assert "varies with it" not in said
 
 

@@ -72,6 +72,18 @@ def test_a_planted_cause_is_the_first_finding(cause, seed):
     assert first.share().share_of_error == pytest.approx(first.share_of_error, abs=1e-3)
 
 
+def test_what_a_constant_alone_would_explain_is_told_beside_it():
+    """The figure takes a constant out: the sentence must hold both numbers."""
+    explanation = explain(planted(lambda u, t: 0.1 + 0.6 * u * np.abs(u)))
+    first, said = explanation.findings[0], summarize(explanation)[0]
+    assert first.condition == "surge speed"
+    throughout = explanation.tables["surge"]["throughout"].share
+    assert throughout > 0.1
+    assert f", a constant alone {100 * throughout:.0f} %." in said
+    pure = summarize(explain(planted(lambda u, t: u - u.mean())))[0]
+    assert "a constant alone" not in pure
+
+
 def test_two_causes_are_told_one_after_the_other():
     world = planted(lambda u, t: u * np.abs(u) - 0.02 * t)
     conditions = [f.condition for f in explain(world).findings]

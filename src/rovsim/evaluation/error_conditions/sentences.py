@@ -3,7 +3,7 @@
 import numpy as np
 
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
-from rovsim.evaluation.error_conditions.findings import Explanation, Finding
+from rovsim.evaluation.error_conditions.findings import SMALLEST, Explanation, Finding
 
 UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
 POSITIVE = {
@@ -141,6 +141,8 @@ def _share(found: Finding) -> str:
     if at.kind == THROUGHOUT:
         return f"{share} of the squared error is constant."
     text = f"{_begin(at.name)} explains {share} of the squared error."
+    if found.constant > SMALLEST:
+        text = f"{text[:-1]}, a constant alone {100 * found.constant:.0f} %."
     others = [c.name for c in found.alike[:2]]
     if not others:
         return text
