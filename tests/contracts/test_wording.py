@@ -27,6 +27,7 @@ from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
 from rovsim.results.diagnosis import Proposal
 from rovsim.results.fitted import FittedEffect, FittedValue
+from rovsim.results.ladder import Ladder, Step
 from synthetic_study import study
 
 FUNCTIONS = "exp|max|tanh|min|to|cdot|le|leftrightarrow|quad|sqrt|sim|pi|top"
@@ -155,7 +156,9 @@ def test_a_verdict_tells_a_probability_as_tables_do(content, probability):
 
 
 def test_the_ladder_says_which_rows_build_on_each_other(content):
-    assert LADDER in tabulate_ladder(content["ladder"]).caption
+    steps = (Step(model="nominal", windows_2s=0.2), Step(model="+lift", windows_2s=0.1))
+    assert LADDER in tabulate_ladder(Ladder(steps=steps)).caption
+    assert LADDER not in tabulate_ladder(Ladder(steps=steps[:1])).caption
 
 
 def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
@@ -167,6 +170,18 @@ def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
     assert not any("effects alone" in sentence for sentence in said)
     law = {"nominal": 1.0, "+lift": 0.75, "+proposed_effect": 0.25, "effects+gp_6dof": 0.8}
     assert "But the effects alone lower it by 25\u202f%." in residual_sentences(errors, law)
+    own = {"nominal": 1.0, "my_tether": 0.5, "knn_6dof": 0.9}
+    told = "But my tether, which has no residual, lowers it by 50\u202f%."
+    assert told in " ".join(residual_sentences(errors, own)).replace("_", " ")
+
+
+def test_a_comparison_shows_the_error_that_ranks_without_a_ladder(content):
+    steps = (Step(model="nominal", windows_2s=0.2), Step(model="mine", windows_2s=0.1))
+    data = ReportData(comparison=content["comparison"], steps=steps)
+    page = report.render(report.Report("x", data))
+    assert "<h2>2 s error</h2>" in page
+    assert "The lowest 2 s error is 0.100, that of mine; nominal has 0.200." in page
+    assert "noise floor is a bound" not in page
 
 
 @pytest.mark.parametrize(

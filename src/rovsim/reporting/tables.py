@@ -13,7 +13,7 @@ from rovsim.core.files import write_text
 from rovsim.evaluation.held_out.published_errors import METRICS
 from rovsim.reporting.figures.pooled import name_horizon, pool
 from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
-from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, fit, significant, title
+from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, fit, significant, title
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import HORIZON, Comparison
 from rovsim.results.ladder import NOISE_FLOOR, Ladder
@@ -165,10 +165,11 @@ def tabulate_ladder(ladder: Ladder) -> Table:
         ]
         for step in ladder.steps
     }  # fmt: skip
+    built_up = f" {LADDER}" if any(STEP.fullmatch(step.model) for step in ladder.steps) else ""
+    bound = "; the noise floor is a bound, not a model" if ladder.noise_floor is not None else ""
     return Table(
-        caption=f"Models on the test runs. {LADDER} {ERROR_MEANING}. Fit: 1 minus this. Per "
-        "axis: acceleration RMSE. Best of each column in bold, ties too; the noise floor is a "
-        "bound, not a model.",
+        caption=f"Models on the test runs, all samples alike.{built_up} {ERROR_MEANING}. Fit: 1 "
+        f"minus this. Per axis: acceleration RMSE. Best of each column in bold, ties too{bound}.",
         label="tab:ladder",
         columns=columns,
         frame=_frame(rows, columns),

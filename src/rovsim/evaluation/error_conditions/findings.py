@@ -37,9 +37,10 @@ FEWEST = 8  # stretches without which nothing is said
 class Finding:
     """What explains part of the error of one axis.
 
-    `share_of_error` of its squared error, of which `constant` varies with nothing; `table` of the error that was left when it was found;
-    `alike` conditions that explain it nearly as well; `chance` of such a share by accident;
-    `after` the conditions that were taken out of the error before this one was sought.
+    `share_of_error` of its squared error, of which `constant` varies with nothing; `table` of the
+    error that was left when it was found; `alike` conditions that explain it nearly as well;
+    `chance` of such a share by accident; `after` the conditions that were taken out of the error
+    before this one was sought.
     """
 
     axis: str
@@ -130,7 +131,9 @@ def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
     best, chance = (simplest or close)[0]
     alike = () if simplest else tuple(t.binning.condition for t, _ in close[1:])
     name = best.binning.condition.name
-    constant = next((t.share * scale for t in tables if t.binning.condition.name == THROUGHOUT), 0.0)
+    constant = next(
+        (t.share * scale for t in tables if t.binning.condition.name == THROUGHOUT), 0.0
+    )
     return Finding(axis, name, best.share * scale, chance, best, alike, constant=constant)
 
 

@@ -27,6 +27,7 @@ from rovsim.reporting.words.sentences import doubt_sentences, summarize
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
+from rovsim.results.ladder import Ladder
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import RATES
 
@@ -60,6 +61,8 @@ class Report:
 def render(report: Report) -> str:
     """Return the report as HTML: no script, nothing from the network, every name escaped."""
     data = report.data
+    if data.ladder is None and data.steps:
+        data = replace(data, ladder=Ladder(steps=data.steps))
     return (
         _environment()
         .get_template("report.html")
@@ -73,6 +76,7 @@ def render(report: Report) -> str:
             where=data.where.models if data.where else {},
             errors=_errors(data.comparison) if data.comparison else [],
             ladder=tabulate_ladder(data.ladder) if data.ladder else None,
+            step_by_step=report.data.ladder is not None,
             published=_published(data.published_errors) if data.published_errors else None,
             pitfalls=tell_pitfalls(data.pitfalls) if data.pitfalls else [],
             models=_explained(data),

@@ -25,7 +25,7 @@ from rovsim.reporting.words.verdict import leaves_unexplained
 from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.comparison import HORIZON
 from rovsim.results.diagnosis import PROPOSED
-from rovsim.results.ladder import NOISE_FLOOR, Ladder
+from rovsim.results.ladder import EFFECTS, NOISE_FLOOR, Ladder
 from rovsim.results.quality import Quality
 
 EQUAL = 0.01  # share: a smaller change is called none
@@ -191,9 +191,17 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
 def _effects_alone(ratios: Mapping[str, float], learned: float) -> list[str]:
     """That physics without a residual does better, where it does."""
     # a ladder has the effects one by one, the last of them on top of all others; then an equation
-    steps = {name: r for name, r in ratios.items() if name == "effects" or STEP.fullmatch(name)}
+    steps = {name: r for name, r in ratios.items() if name == EFFECTS or STEP.fullmatch(name)}
     alone = [r for name, r in steps.items() if name != f"+{PROPOSED}"][-1:]
-    return [f"But the effects alone lower it by {_percent(1 - r)}." for r in alone if r < learned]
+    if alone:
+        return [
+            f"But the effects alone lower it by {_percent(1 - r)}." for r in alone if r < learned
+        ]
+    own = {name: r for name, r in ratios.items() if family(name) == EFFECTS}  # files of users
+    best = min(own, key=lambda name: own[name], default=None)
+    if best is None or not own[best] < learned:
+        return []
+    return [f"But {title(best)}, which has no residual, lowers it by {_percent(1 - own[best])}."]
 
 
 def _per_axis(row: Series) -> list[str]:
@@ -225,7 +233,7 @@ def ladder_sentences(steps: Mapping[str, float], unexplained: bool) -> list[str]
     if len(models) < 2:
         return []
     best = min(models, key=lambda name: models[name])
-    text = f"On the ladder {title(best)} has the lowest {ERROR}, {significant(models[best])}"
+    text = f"The lowest {ERROR} is {significant(models[best])}, that of {title(best)}"
     others = [f"{title(n)} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
               if n in models and n != best]  # fmt: skip
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]
