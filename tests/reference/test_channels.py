@@ -20,7 +20,7 @@ from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.quality import report_quality, usable_reason
+from rovsim.measurement.quality import assess, report_quality, usable_reason
 from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.channels import KINDS, Channel, to_ned
 from rovsim.measurement.signals.chain import SignalSettings, clean
@@ -297,6 +297,10 @@ def test_what_lies_outside_of_the_used_spans_is_left_out_and_counted(tmp_path, p
         assert len(times) == len(whole.time) - counts.left_out
         assert all(np.isin(c.time, times).all() for c in recording.channels.values())
     assert np.all(((times >= 0.5) & (times <= 1.5)) | ((times >= 2.0) & (times <= 2.5)))
+    report = assess(recording, counts)
+    assert report.not_found == 0
+    assert report.gaps == ()
+    assert not any("was not found" in remark for remark in report.remarks)
 
 
 @pytest.mark.parametrize(

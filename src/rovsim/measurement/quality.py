@@ -64,7 +64,7 @@ def assess(
     `outliers` is the number of frames that the outlier rejection refused, None when not looked for.
     """
     time, found = recording.time, recording.found
-    gaps = find_gaps(recording)
+    gaps = find_gaps(recording, anomalies.used)
     report = Quality(
         run=recording.run.id,
         split=recording.run.split,
@@ -72,9 +72,11 @@ def assess(
         rate_hz=Rate(nominal=recording.rate, median=measured_rate(time)),
         duration_s=float(time[-1] - time[0]),
         frames=len(time),
-        not_found=int(np.sum(~found)) if recording.posed else 0,
+        # what is left out counts as not found in a recording, and is no fault of the cameras
+        not_found=int(np.sum(~found)) - anomalies.left_out if recording.posed else 0,
         longest_gap_s=max((gap.duration_s for gap in gaps), default=0.0),
         gaps=tuple(gaps),
+        used=anomalies.used,
         outliers=outliers,
         repairs=anomalies.counts,
         commands=_describe_commands(recording),
@@ -112,16 +114,22 @@ def usable_reason(recording: Recording) -> str | None:
     return None
 
 
-def find_gaps(recording: Recording) -> list[Gap]:
+def find_gaps(recording: Recording, used: Sequence[tuple[float, float]] = ()) -> list[Gap]:
     """Stretches without a pose, from the last found frame to the next, longer than 0.05 s.
 
-    On a slow export (bins) a step is a gap when it is more than twice the usual one.
+    On a slow export (bins) a step is a gap when it is more than twice the usual one. Of a recording
+    of which only spans are `used`, those within one of them.
     """
     time = recording.time[recording.found]
     steps = np.diff(time)
     limit = max(GAP, 2.0 * float(np.median(np.diff(recording.time))))
     long = np.flatnonzero(steps > limit * (1.0 + 1e-9))
-    return [Gap(start_s=float(time[k]), duration_s=float(steps[k])) for k in long]
+    gaps = [Gap(start_s=float(time[k]), duration_s=float(steps[k])) for k in long]
+    return [gap for gap in gaps if not used or any(_within(gap, span) for span in used)]
+
+
+def _within(gap: Gap, span: tuple[float, float]) -> bool:
+    return span[0] <= gap.start_s and gap.start_s + gap.duration_s <= span[1]
 
 
 def measure_excitation(recording: Recording) -> dict[str, Excitation]:

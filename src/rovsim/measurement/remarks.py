@@ -36,7 +36,7 @@ def _frames(report: Quality) -> Iterator[str]:
     if not report.posed:
         yield _held_channels(report)
         return
-    share = report.not_found / report.frames
+    share = report.not_found / max(report.frames - report.repairs["left_out"], 1)
     if share > MANY_MISSING:
         yield f"The body was not found in {share:.0%} of the frames: check markers and cameras."
     if report.longest_gap_s > 0.5:

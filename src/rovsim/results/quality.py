@@ -65,7 +65,8 @@ class Quality(Result):
     `repairs` counts what was mended, by kind; `outliers` is None when not looked for; `commands`
     None where nothing was commanded; `posed` whether full poses were measured, `channels` what was
     beside or instead of them; `excitation` of the measured axes; `unusable` says why a run cannot
-    be used; `remarks` are sentences its owner can act on, of which `doubts` can make results wrong.
+    be used; `used`: the spans in s that alone are, empty where all is; `remarks` are sentences its
+    owner can act on, of which `doubts` can make results wrong.
     """
 
     noun: ClassVar[str] = "quality report"
@@ -89,6 +90,7 @@ class Quality(Result):
     noise: PoseNoise
     unusable: str | None
     channels: dict[str, MeasuredChannel] = Field(default_factory=dict)
+    used: tuple[tuple[float, float], ...] = ()
     doubts: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
 

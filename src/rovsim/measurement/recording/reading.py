@@ -35,7 +35,8 @@ LONGER = 100.0  # times the recording: no log of the same run in the same unit
 class Anomalies:
     """How much of the raw files had to be repaired or left out, in lines.
 
-    `notes` are sentences of the readers about their files.
+    `used`: the only spans in s that are to be used; empty where all is. `notes` are sentences of
+    the readers about their files.
     """
 
     duplicates: int = 0
@@ -50,12 +51,13 @@ class Anomalies:
     command_clipped: int = 0
     command_long_steps: int = 0
     left_out: int = 0  # outside of what is to be used
+    used: tuple[tuple[float, float], ...] = ()
     notes: tuple[str, ...] = ()
 
     @property
     def counts(self) -> dict[str, int]:
-        """All but the notes."""
-        return {name: count for name, count in vars(self).items() if name != "notes"}
+        """All but spans and notes."""
+        return {name: count for name, count in vars(self).items() if isinstance(count, int)}
 
 
 def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
@@ -76,7 +78,10 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     info = RunInfo(run.id, run.control, run.split)
     recording = to_ned(export, mocap, info, site(campaign), commands)
     notes = tuple(dict.fromkeys([*export.notes, *notes]))
-    return recording, Anomalies(**counts, **command_counts, left_out=left_out, notes=notes)
+    used = tuple((begin, end) for begin, end in run.use or ())
+    return recording, Anomalies(
+        **counts, **command_counts, left_out=left_out, used=used, notes=notes
+    )
 
 
 def site(campaign: Campaign) -> Site:

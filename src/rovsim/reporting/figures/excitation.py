@@ -17,7 +17,8 @@ from rovsim.results.quality import Excitation, Quality
 SECTION = "quality"
 CAPTION = (
     "Per run: standard deviation of the body velocity on each axis (an axis that hardly moved "
-    "cannot be judged), and the stretches in which the motion capture lost the vehicle."
+    "cannot be judged), and the stretches in which the motion capture lost the vehicle. An empty "
+    "stretch was left out of the campaign."
 )
 MOST = 40  # runs: what fits on a page
 EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", VERMILION
@@ -76,7 +77,10 @@ def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> N
 
 
 def _seen(axes: Axes, y: float, report: Quality) -> None:
-    axes.barh(y, report.duration_s, 0.5, facecolor=SEEN)
+    whole = ((0.0, report.duration_s),)
+    used = [(begin, end - begin) for begin, end in report.used or whole]
+    axes.barh(y, report.duration_s, 0.5, facecolor=STILL, edgecolor=SEEN, linewidth=0.5)
+    axes.broken_barh(used, (y - 0.25, 0.5), facecolor=SEEN)
     spans = [(gap.start_s, gap.duration_s) for gap in report.gaps]
     # a gap narrower than a hair would vanish on paper: the edge keeps it visible
     axes.broken_barh(spans, (y - 0.25, 0.5), facecolor=GAP, edgecolor=GAP, linewidth=0.4)
