@@ -110,6 +110,9 @@ def test_a_key_given_twice_and_a_wrong_unit_are_refused(tmp_path):
     path.write_text(f"{HEAVY}effects: [{lag}]")
     with pytest.raises(BadInput, match="unit 'ms'"):
         read_model(path, built_in())
+    path.write_text(f"{HEAVY}effects: [{lag.replace('ms', 's')}, {lag.replace('ms', 's')}]")
+    with pytest.raises(BadInput, match="each effect once"):
+        read_model(path, built_in())
     for wrong in ("true", "'0.2'", ".nan"):
         path.write_text(f"{HEAVY}effects: [{{effect: lift, parameters: {{coefficient: {wrong}}}}}]")
         with pytest.raises(BadInput, match="coefficient"):

@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Iterable, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import plain
@@ -98,6 +98,14 @@ class ModelFile(Section):
     residual: dict[str, Any] | None = None
     uncertainty: UncertaintyEntry | None = None
     provenance: dict[str, Any] | None = None
+
+    @field_validator("effects")
+    @classmethod
+    def _each_once(cls, effects: tuple[EffectEntry, ...]) -> tuple[EffectEntry, ...]:
+        for place, one in enumerate(effects):
+            if one in effects[:place]:
+                raise ValueError(f"each effect once ('{one.effect}' has the same values twice)")
+        return effects
 
 
 def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:

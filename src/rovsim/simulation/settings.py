@@ -1,6 +1,6 @@
 """How runs are replayed."""
 
-from pydantic import PositiveFloat, field_validator
+from pydantic import Field, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section
 from rovsim.dynamics.actuation import Between
@@ -10,7 +10,9 @@ from rovsim.results.comparison import WINDOW
 class ReplaySettings(Section):
     """`step` s is the longest integration step; `commands` between two logged lines."""
 
-    step: PositiveFloat = 0.01  # RK4's error is below 1e-6 m/s here (tests/laws/test_replay.py)
+    # RK4's error is below 1e-6 m/s at 0.01 s (tests/laws/test_replay.py); above 0.14 s it leaves a
+    # thruster whose time constant is 0.05 s unstable (2.79 of them)
+    step: float = Field(0.01, gt=0.0, le=0.1)
     commands: Between = "held"  # what an autopilot does with a set-point
     horizons: tuple[PositiveFloat, ...] = (0.5, WINDOW, 5.0)  # s (docs/signals.md)
 
