@@ -56,7 +56,6 @@ PartitionName=urgent Nodes={host} MaxTime=INFINITE State=UP PriorityTier=2
 """
 
 pytestmark = [
-    pytest.mark.slow,
     pytest.mark.skipif("ROVSIM_SLURM" not in os.environ, reason="make test-slurm runs it"),
 ]
 

@@ -156,7 +156,6 @@ def snakemake(folder, overrides, **environment):
     )  # fmt: skip
 
 
-@pytest.mark.slow
 def test_the_workflow_says_it_too(tmp_path):
     done = snakemake(tmp_path, "+experiment=kth_tank_2025", ROVSIM_DATA=str(tmp_path / "nowhere"))
     assert done.returncode == 2
@@ -164,7 +163,6 @@ def test_the_workflow_says_it_too(tmp_path):
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.slow
 def test_the_workflow_plans_every_fold_with_its_learners(folder, tmp_path):
     words = [
         f"campaign={folder.name}",

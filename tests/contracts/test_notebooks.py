@@ -13,7 +13,6 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import write_model
 from worlds import model
 
-pytestmark = pytest.mark.slow
 FOLDER = Path(__file__).parents[2] / "notebooks"
 ORDER = ("tutorial", "own_effect", "thesis_chapter")  # the last goes on with the first one's tank
 SHORTER = '"tank=tiny", "tank.duration=8"'

@@ -66,7 +66,6 @@ def test_no_command_of_the_readme_writes_over_another_ones_report():
     assert len(folders) == len(set(folders)) > 2
 
 
-@pytest.mark.slow
 def test_snakemake_without_cores_takes_those_of_the_profile():
     (shown,) = re.findall(r'`snakemake (--config overrides="tank=lag")`', README.read_text())
     command = [sys.executable, "-m", "snakemake", "-n", "-q", *shown.replace('"', "").split()]

@@ -20,7 +20,7 @@ from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.engine.modules import engine
 from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import Constants, Inputs, Jobs, Place, WrenchParameters
+from rovsim.dynamics.engine.types import Constants, Inputs, Jobs, SiteArrays, WrenchParameters
 from rovsim.dynamics.model import zero_acceleration
 from rovsim.evaluation.scored import score
 from rovsim.evaluation.scores import rms, subtract
@@ -73,7 +73,7 @@ def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
         engine([]).integrate, jobs, h * np.arange(steps + 1), 1,
         Constants.stacked([packed(body) for body in bodies]), inputs,
         WrenchParameters(np.empty((len(bodies), 0))), None,
-        Place(np.full((3, 2), np.nan), np.ones(3)), out,
+        SiteArrays(np.full((3, 2), np.nan), np.ones(3)), out,
     )  # fmt: skip
     return out.reshape(-1, steps, 13)
 

@@ -11,7 +11,6 @@ from rovsim.core.yaml_files import read_yaml
 from rovsim.results.diagnosis import Diagnosis
 from worlds import SHARED, needed
 
-pytestmark = pytest.mark.slow
 PRACTICE = (
     "current", "mix-buoy-quad", "null-2", "quadratic_damping", "tether_tension", "thruster_lag",
     "unknown-pulse",

@@ -39,7 +39,6 @@ def test_a_case_is_a_job_and_is_not_asked_again(tmp_path):
     assert {job.case.id for job in jobs} - {job.case.id for job in left} == {one.case.id}
 
 
-@pytest.mark.slow
 def test_a_suite_that_is_not_there_is_one_message(tmp_path):
     done = snakemake(tmp_path, "blind.suite=hidden", "-n")
     assert done.returncode == 2

@@ -41,7 +41,6 @@ def study(tmp_path_factory):
     return folder
 
 
-@pytest.mark.slow
 def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     results = study / "results" / "tank-tiny"
     ladder = json.loads((results / "ladder.json").read_text())
@@ -133,7 +132,6 @@ def test_a_rule_depends_on_what_its_own_script_imports():
         assert name == ("simulation.synthetic_tank" if kind == "own_code" else script)
 
 
-@pytest.mark.slow
 def test_a_bad_campaign_is_one_message(tmp_path):
     folder = copy_of(ROOT, tmp_path)
     done = subprocess.run(

@@ -6,8 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[2]
 # One environment.lock for all: commands, workbench and workflow are one package.
 DECIDED = "Specify a conda environment or container for each rule."
@@ -19,7 +17,6 @@ def test_the_workflow_is_formatted():
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.slow
 def test_snakemake_has_nothing_else_to_recommend():
     overrides = "folds.leave_one_run_out=true folds.pitfalls=true"
     command = [sys.executable, "-m", "snakemake", "--lint", "--config"]

@@ -27,7 +27,6 @@ def commands() -> list[str]:
     return [line for block in blocks for line in block.splitlines()]
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("few_figures")
 def test_the_tutorial_ends_with_the_error_fallen(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

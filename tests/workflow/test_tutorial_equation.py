@@ -20,9 +20,6 @@ def blocks(kind: str) -> list[str]:
     return fenced(TUTORIAL.read_text(encoding="utf-8"), kind)
 
 
-pytestmark = pytest.mark.slow
-
-
 @pytest.fixture(scope="module")
 def lived(tmp_path_factory):
     """What the page leaves behind: `secret`, `found`, `compared`, `named`, and models."""

@@ -55,9 +55,6 @@ def commands() -> list[str]:
     return [line for block in blocks for line in block.splitlines()]
 
 
-pytestmark = pytest.mark.slow
-
-
 @pytest.fixture(scope="module")
 def designed(tmp_path_factory):
     """What the tutorial leaves behind: `before`, `found`, `plan`, `after`, `surer`."""

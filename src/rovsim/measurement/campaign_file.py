@@ -46,7 +46,7 @@ def _distinct(names: list[str]) -> list[str]:
 
 
 Text = Annotated[Name, BeforeValidator(_as_text), Field(min_length=1)]
-Place = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
+FilePath = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
 FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
 Two = Annotated[list[float], Field(min_length=2, max_length=2)]
 Interval = Annotated[Two, _rising("[low, high] with low below high, in m")]
@@ -147,8 +147,8 @@ class Run(Section):
     id: FileName
     control: Literal["3dof", "6dof"]
     split: Literal["train", "test"]
-    mocap: Annotated[list[Place], Field(min_length=1), AfterValidator(_distinct)] | Place
-    commands: Place
+    mocap: Annotated[list[FilePath], Field(min_length=1), AfterValidator(_distinct)] | FilePath
+    commands: FilePath
     use: Annotated[list[Span], Field(min_length=1)] | None = None
 
     @property
@@ -166,7 +166,7 @@ class CampaignFile(Section):
     """The keys of `campaign.yaml`."""
 
     name: FileName
-    vehicle: Place
+    vehicle: FilePath
     tank: Tank | None = None
     mocap: Mocap
     commands: CommandLog | None = None  # not needed where no run has commands

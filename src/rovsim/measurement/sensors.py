@@ -6,7 +6,7 @@ from pydantic import Field
 
 from rovsim.core.schema import Number, Section
 
-Place = Annotated[tuple[Number, Number, Number], Field()]  # m, FRD from CO
+Position = Annotated[tuple[Number, Number, Number], Field()]  # m, FRD from CO
 
 
 class Delays(Section):
@@ -28,9 +28,9 @@ class Sensors(Section):
     `surface_pressure` (Pa) and `water_density` (kg/m3) turn a logged pressure into a depth.
     """
 
-    velocity_at: Place = (0.0, 0.0, 0.0)
-    imu_at: Place = (0.0, 0.0, 0.0)
-    depth_at: Place = (0.0, 0.0, 0.0)
+    velocity_at: Position = (0.0, 0.0, 0.0)
+    imu_at: Position = (0.0, 0.0, 0.0)
+    depth_at: Position = (0.0, 0.0, 0.0)
     delay_s: Delays = Delays()
     # standard atmosphere, ISO 2533
     surface_pressure: Number = Field(default=101325.0, gt=0)

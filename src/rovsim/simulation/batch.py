@@ -22,7 +22,7 @@ from rovsim.dynamics.engine.types import (
     Constants,
     Inputs,
     Jobs,
-    Place,
+    SiteArrays,
     WrenchParameters,
 )
 from rovsim.dynamics.model import Model
@@ -111,7 +111,7 @@ class Batch:
             attached(further, sum(len(cls.channels) for cls in own)) if further else None,
         )
         self._constants = Constants.stacked([m.constants for m in models])
-        self._place = Place(
+        self._place = SiteArrays(
             np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
         )
         self.free = np.concatenate([np.ones(7), models[0].body.free])

@@ -1,5 +1,7 @@
 """How runs are replayed."""
 
+from typing import Annotated
+
 from pydantic import Field, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section
@@ -12,7 +14,7 @@ class ReplaySettings(Section):
 
     # RK4's error is below 1e-6 m/s at 0.01 s (tests/laws/test_replay.py); above 0.14 s it leaves a
     # thruster whose time constant is 0.05 s unstable (2.79 of them)
-    step: float = Field(0.01, gt=0.0, le=0.1)
+    step: Annotated[float, Field(gt=0.0, le=0.1)] = 0.01
     commands: Between = "held"  # what an autopilot does with a set-point
     horizons: tuple[PositiveFloat, ...] = (0.5, WINDOW, 5.0)  # s (docs/signals.md)
 

@@ -150,7 +150,7 @@ class Jobs(NamedTuple):
     memory: Array = NO_MEMORY
 
 
-class Place(NamedTuple):
+class SiteArrays(NamedTuple):
     """`tank` (3, 2) low and high walls in NED, `axes` (3,) signs of the MoCap axes.
 
     `level` m NED: where what floats is at rest.

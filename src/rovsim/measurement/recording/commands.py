@@ -21,14 +21,14 @@ ALLOWED = {
     "wrench": (-np.inf, np.inf, "a finite wrench in N, N m"),
 }
 
-Place = Callable[[int, int], str]  # where the value in (line, column) stands, for people
+Locate = Callable[[int, int], str]  # where the value in (line, column) stands, for people
 
 
 def as_commands(
     time: Array,
     value: Array,
     log: CommandLog,
-    place: Place,
+    locate: Locate,
     counts: dict[str, int] | None = None,
     *,
     pulses: bool = False,
@@ -44,7 +44,7 @@ def as_commands(
     """
     unit = "pwm" if pulses else log.kind
     value, beside = value[:, : len(log.names)], value[:, len(log.names) :]
-    _check_range(value, log, unit, place)
+    _check_range(value, log, unit, locate)
     whole = finite_rows(value)
     value, clipped = _normalized(value[whole], log, unit)
     counts = {**(counts or {}), "dropped": int(np.sum(~whole)), "clipped": clipped}
@@ -55,7 +55,7 @@ def as_commands(
     return CommandExport(time[whole], value, KIND[log.kind], counts, notes, auxiliary)
 
 
-def _check_range(value: Array, log: CommandLog, unit: str, place: Place) -> None:
+def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> None:
     low, high, expected = ALLOWED[unit]
     beyond = ((value < low) | (value > high)) & ~np.array(log.turned)
     bad = np.argwhere(beyond | np.isinf(value))
@@ -63,7 +63,7 @@ def _check_range(value: Array, log: CommandLog, unit: str, place: Place) -> None
         line, column = (int(k) for k in bad[0])
         raise BadInput(
             f"the value {value[line, column]:g} ({len(bad)} such cells)",
-            where=place(line, column),
+            where=locate(line, column),
             expected=f"{expected}, as 'commands.kind: {log.kind}' says",
             remedy="Correct 'commands.kind' in campaign.yaml, or that value.",
         )
