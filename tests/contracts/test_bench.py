@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rovsim.benchmarks.speed.accuracy import _left
+from rovsim.benchmarks.speed.accuracy import measure_left
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
-from rovsim.benchmarks.speed.inference import Effort, Stopwatch, _neighbours, _processes
+from rovsim.benchmarks.speed.inference import Effort, Stopwatch, time_neighbours, time_processes
 from rovsim.benchmarks.speed.tables import write_markdown, write_page
 from rovsim.reporting.pages.marked import BEGIN, END
 from rovsim.results.timing import Bench
@@ -28,8 +28,8 @@ def found():
     stopwatch = Stopwatch(pairs(), FEW)
     with pytest.MonkeyPatch.context() as patch:
         patch.delattr("os.setpriority")  # tests do not push other programs aside
-        _neighbours(stopwatch, 150, 0.05)
-        _processes(stopwatch, 150, 0.05)
+        time_neighbours(stopwatch, 150, 0.05)
+        time_processes(stopwatch, 150, 0.05)
     return stopwatch.found
 
 
@@ -63,7 +63,7 @@ def test_the_page_shows_the_results(found, tmp_path):
 
 def test_what_is_left_is_measured_where_it_was_asked():
     knn = fitted("knn", pairs().of("3dof"))
-    left = _left(knn, pairs(), "6dof")
+    left = measure_left(knn, pairs(), "6dof")
     assert 0.0 < left.mean <= left.worst
 
 

@@ -259,9 +259,11 @@ def test_a_port_in_use_is_one_message(capsys):
 
 def test_a_page_that_is_closed_while_it_asks_is_no_fault():
     def told(error):
-        return app._stayed(logging.LogRecord("", 40, "", 0, "", (), (type(error), error, None)))
+        return app.was_answered(
+            logging.LogRecord("", 40, "", 0, "", (), (type(error), error, None))
+        )
 
     assert not told(RuntimeError("No response returned."))
     assert told(RuntimeError("another"))
     assert told(ValueError("No response returned."))
-    assert app._stayed(logging.LogRecord("", 40, "", 0, "", (), None))
+    assert app.was_answered(logging.LogRecord("", 40, "", 0, "", (), None))

@@ -8,7 +8,7 @@ import pytest
 from flown import observed
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.gate import Gate, _compare, _costs, keep_apart
+from rovsim.diagnosis.selection.gate import Gate, find_sure_gain, keep_apart, surely_costs
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
@@ -33,12 +33,12 @@ def test_short_runs_are_used_whole(tmp_path):
 
 def test_only_what_is_sure_and_matters_is_less():
     error = np.linspace(0.5, 1.5, 20)
-    assert _compare(error, 0.5 * error) == pytest.approx(1.0 - np.sqrt(0.5))
-    assert _compare(error, 0.99 * error) == 0.0  # too little
+    assert find_sure_gain(error, 0.5 * error) == pytest.approx(1.0 - np.sqrt(0.5))
+    assert find_sure_gain(error, 0.99 * error) == 0.0  # too little
     uneven = error * np.where(np.arange(20) == 3, 1.0, 0.0)
-    assert _compare(error + 20.0 * uneven, error) == 0.0  # a single window
-    assert _compare(np.full(20, np.inf), error) == np.inf
-    assert _compare(error, np.full(20, np.nan)) == 0.0
+    assert find_sure_gain(error + 20.0 * uneven, error) == 0.0  # a single window
+    assert find_sure_gain(np.full(20, np.inf), error) == np.inf
+    assert find_sure_gain(error, np.full(20, np.nan)) == 0.0
 
 
 def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
@@ -69,13 +69,13 @@ def test_where_a_current_wanders_the_windows_of_one_run_are_one_sample(tmp_path)
 
 def test_where_physics_is_left_a_name_must_be_surely_worth_it():
     error = np.linspace(0.5, 1.5, 20)
-    assert _costs(1.1 * error, error, 0.02)
-    assert not _costs(1.03 * error, error, 0.02)  # a root mean square of 1.5 % more
+    assert surely_costs(1.1 * error, error, 0.02)
+    assert not surely_costs(1.03 * error, error, 0.02)  # a root mean square of 1.5 % more
     once = error + np.where(np.arange(20) == 3, 10.0, 0.0)
-    assert not _costs(once, error, 0.02)
-    assert _costs(np.full(20, np.nan), error, 0.02)
+    assert not surely_costs(once, error, 0.02)
+    assert surely_costs(np.full(20, np.nan), error, 0.02)
     lost = np.append(error[1:], 1e9 * error[0])  # to first order, in a single window
-    assert _costs(lost, error, 0.02)
+    assert surely_costs(lost, error, 0.02)
 
 
 class Workspace:

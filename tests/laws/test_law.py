@@ -7,7 +7,7 @@ from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law
 from rovsim.diagnosis.equations.products.as_effect import list_moved
-from rovsim.diagnosis.equations.products.library import Columns, LawTerm, _along_body, push_at
+from rovsim.diagnosis.equations.products.library import Columns, LawTerm, list_body_terms, push_at
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate, unit_of
@@ -105,7 +105,7 @@ def test_terms_along_the_body_turn_with_the_mirror():
     mirrored[:, 3:7] *= [1.0, -1.0, 1.0, -1.0]
     mirrored[:, 1] *= -1.0
     for i in range(6):
-        terms = list(_along_body(i, np.arange(6)))
+        terms = list(list_body_terms(i, np.arange(6)))
         one, other = (push_at(terms, s, model(), PLACE * 0.0 + 1.0) for s in (state, mirrored))
         np.testing.assert_allclose(other, one * turned, atol=1e-12)
 

@@ -3,13 +3,13 @@
 import numpy as np
 
 from flown import observed
-from rovsim.diagnosis.checks.observability import SURELY, _find_shown, list_not_observable
+from rovsim.diagnosis.checks.observability import SURELY, find_shown, list_not_observable
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.rivals import Selection
-from rovsim.diagnosis.selection.sensitivities import _measure, linearise_candidates
+from rovsim.diagnosis.selection.sensitivities import linearise_candidates, measure_columns
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
@@ -67,11 +67,11 @@ def test_what_acts_on_axes_that_nobody_reads_has_no_length(tmp_path):
     (lean,) = (c for c in listed if c.effect.id == "marker_misalignment")
     columns = bank.linearise(Hypothesis(base, (lean.term(),))).J
     in_roll = [own * (np.arange(6) == 3)[:, None] for own in columns]
-    assert (_measure(bank, in_roll) > 0.0).all()
+    assert (measure_columns(bank, in_roll) > 0.0).all()
     for run in runs:
         vars(run)["shown"] = run.shown & (np.arange(6) != 3)
-    assert not _measure(bank, in_roll).any()
-    assert (_measure(bank, columns) > 0.0).all()
+    assert not measure_columns(bank, in_roll).any()
+    assert (measure_columns(bank, columns) > 0.0).all()
 
 
 def test_of_a_larger_vehicle_more_is_worth_looking_for(tmp_path):
@@ -85,5 +85,5 @@ def test_of_a_larger_vehicle_more_is_worth_looking_for(tmp_path):
     (block,) = known.blocks
     needed = np.sqrt(PENALTY) + SURELY
     sizes = np.full(known.count, 0.1 * needed)
-    assert _find_shown(sizes, [block], PENALTY, 1.0) == {"linear_damping": False}
-    assert _find_shown(sizes, [block], PENALTY, 11.0) == {"linear_damping": True}
+    assert find_shown(sizes, [block], PENALTY, 1.0) == {"linear_damping": False}
+    assert find_shown(sizes, [block], PENALTY, 11.0) == {"linear_damping": True}

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 from rovsim.core.rotations import from_euler, matrix
-from rovsim.diagnosis.checks.regressors import _spread, tabulate
+from rovsim.diagnosis.checks.regressors import find_spread, tabulate
 
 COUNT, PERIOD = 400, 0.05
 
@@ -49,7 +49,7 @@ def shares(kept, seed, lasting):
         target = target / target.std()
         power = column @ column
         factor = column @ target / power
-        spread = _spread(column * (target - factor * column), power, blocks) if lasting else 1.0
+        spread = find_spread(column * (target - factor * column), power, blocks) if lasting else 1.0
         found.append(factor**2 * power / spread > 3.84)
     return np.mean(found)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.remaining_noise import _remainder
+from rovsim.diagnosis.selection.remaining_noise import draw_remainder
 
 
 def flatten(rows, noise):
@@ -20,7 +20,7 @@ def test_columns_take_no_noise_away_however_many_they_are(share):
     readings = 150
     e = [random.normal(size=(6, readings))]
     columns = [random.normal(size=(round(share * 6 * readings), 6, readings)).astype(np.float32)]
-    left = _remainder(SimpleNamespace(flatten=flatten), e, columns, FIRST_NOISE)
+    left = draw_remainder(SimpleNamespace(flatten=flatten), e, columns, FIRST_NOISE)
     assert np.mean(np.square(left)) == pytest.approx(1.0, abs=0.2)
 
 
@@ -28,5 +28,5 @@ def test_what_columns_explain_is_taken_away():
     random = np.random.default_rng(5)
     noise, columns = random.normal(size=(6, 400)), random.normal(size=(3, 6, 400))
     e = noise - np.tensordot([50.0, -20.0, 30.0], columns, axes=1)
-    left = _remainder(SimpleNamespace(flatten=flatten), [e], [columns], FIRST_NOISE)
+    left = draw_remainder(SimpleNamespace(flatten=flatten), [e], [columns], FIRST_NOISE)
     assert np.mean(np.square(left)) == pytest.approx(1.0, abs=0.1)

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.design.doubts import require_news
-from rovsim.design.from_train_runs import _check_fitted, widen
+from rovsim.design.from_train_runs import check_fitted, widen
 from rovsim.design.knowledge import Knowledge, Known
-from rovsim.design.worth import NOTHING, Worth, _told, surprise
+from rovsim.design.worth import NOTHING, Worth, measure_information, surprise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.onboard_control import OnboardControl
@@ -84,7 +84,7 @@ def test_a_flight_takes_no_information_away():
     own = SimpleNamespace(J=[0.1 * train, flight], at=SimpleNamespace(x=np.zeros(3)))
     known = SimpleNamespace(noise=None)
     rival = Known(None, np.eye(3) * 1e6, np.arange(3), 0.0, None, np.eye(3))
-    told = _told(bank, own, rival, known)
+    told = measure_information(bank, own, rival, known)
     assert told == pytest.approx(flight.reshape(3, -1) @ flight.reshape(3, -1).T)
     assert (rival.std(told) <= rival.std()).all()
 
@@ -102,9 +102,9 @@ def test_a_flight_that_tells_nothing_is_refused():
 
 def test_what_is_only_tried_is_refused_by_name():
     with pytest.raises(BadInput, match="first is tried, not fitted"):
-        _check_fitted("thruster_order.first", ThrusterOrder)
+        check_fitted("thruster_order.first", ThrusterOrder)
     with pytest.raises(BadInput, match=r"attitude is tried, not fitted.*gain_surge"):
-        _check_fitted("onboard_control.attitude", OnboardControl)
+        check_fitted("onboard_control.attitude", OnboardControl)
     with pytest.raises(BadInput, match=r"unknown parameter 'swai'.*'sway'"):
-        _check_fitted("linear_damping.swai", LinearDamping)
-    _check_fitted("wall_proximity.length_scale", WallProximity)  # free only when asked for
+        check_fitted("linear_damping.swai", LinearDamping)
+    check_fitted("wall_proximity.length_scale", WallProximity)  # free only when asked for

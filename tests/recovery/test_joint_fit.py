@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.gate import Gate
-from rovsim.diagnosis.selection.joint_fit import _prune_together, fit_jointly
+from rovsim.diagnosis.selection.joint_fit import fit_jointly, prune_together
 from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
@@ -62,7 +62,7 @@ def test_of_an_open_scale_the_gain_goes_and_what_differs_stays():
         Term(built_in()["thruster_gain"](all=2.0), ("all",)),
     )
     start = Hypothesis(base, terms)
-    found = _prune_together(OpenScale(), OpenScale().fit(start, np.inf))
+    found = prune_together(OpenScale(), OpenScale().fit(start, np.inf))
     assert [term.id for term in found.hypothesis.terms] == ["quadratic_damping"]
 
 

@@ -76,7 +76,7 @@ def _check_shown(name: str, candidates: Sequence[Candidate]) -> None:
     )
 
 
-def _check_fitted(name: str, effect: type[Effect]) -> None:
+def check_fitted(name: str, effect: type[Effect]) -> None:
     """Whether a parameter, `effect.parameter`, can have a standard deviation at all."""
     parameter = name.partition(".")[2]
     names = [p.name for p in effect.parameters if not p.tried]
@@ -104,7 +104,7 @@ def _free(
 ) -> Hypothesis:
     """With that parameter free as well, at the likeliest of the effect's starts."""
     effect, _, parameter = name.partition(".")
-    _check_fitted(name, next(c for c in candidates if c.effect.id == effect).effect)
+    check_fitted(name, next(c for c in candidates if c.effect.id == effect).effect)
     own = next((t for t in h.terms if t.id == effect), None)
     if own is not None:
         free = own.free if parameter in own.free else (*own.free, parameter)

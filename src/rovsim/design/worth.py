@@ -92,7 +92,7 @@ def value(
             motions = _mix_motions(run, rival, known)
         bank = _observe(run, rival, known, motions, exact)
         own = bank.linearise(rival.hypothesis if exact or alone else rival.as_it_is)
-        told.append(_told(bank, own, rival, known))
+        told.append(measure_information(bank, own, rival, known))
         if not alone:
             gains.append(_gain(bank, own, known.rivals[1 - k], known, exact))
     then = [one.std(of) for one, of in zip(known.rivals, told, strict=True)]
@@ -119,7 +119,7 @@ def _observe(
     return FilterBank(runs, motions, tunings, rival.hypothesis.model)
 
 
-def _told(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge) -> Array:
+def measure_information(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge) -> Array:
     """Information (k, k) of the flight, which is the last run of the bank: it takes none away.
 
     Filters that suit all runs together may see less of the train runs than their own did.

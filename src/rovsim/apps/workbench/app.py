@@ -227,7 +227,7 @@ def _module(name: str) -> ModuleType:
     return importlib.import_module(f"rovsim.apps.workbench.{name}")
 
 
-def _stayed(record: logging.LogRecord) -> bool:
+def was_answered(record: logging.LogRecord) -> bool:
     """Whether a record is not of a page that was closed while it asked for something.
 
     Starlette's middleware then has no answer to pass on, and says so at length.
@@ -241,7 +241,7 @@ def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     sessions = Sessions(settings, catalogue)
     server.on_startup(sessions.begin)
     server.timer(TIDY, give_back_memory, immediate=False)
-    logging.getLogger("uvicorn.error").addFilter(_stayed)
+    logging.getLogger("uvicorn.error").addFilter(was_answered)
     server.add_middleware(Gate)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
 

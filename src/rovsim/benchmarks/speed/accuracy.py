@@ -27,8 +27,8 @@ def measure_accuracy(pairs: Pairs) -> tuple[Accuracy, ...]:
             points=residual.points,
             fades=fades,
             median_us=_cost(residual, pairs),
-            seen=_left(residual, pairs, SEEN),
-            unseen=_left(residual, pairs, UNSEEN),
+            seen=measure_left(residual, pairs, SEEN),
+            unseen=measure_left(residual, pairs, UNSEEN),
         )
         for name, fades, residual in _ways(taught)
     )
@@ -55,7 +55,7 @@ def _processes(taught: Pairs) -> Iterator[tuple[str, Residual]]:
         yield "svgp", fitted("svgp", taught, inducing=inducing)
 
 
-def _left(residual: Residual, pairs: Pairs, control: str) -> Left:
+def measure_left(residual: Residual, pairs: Pairs, control: str) -> Left:
     """Root mean square of what is left over that of the residual: all axes, and the worst."""
     asked = pairs.query_control == control
     error = residual.predict(pairs.queries[asked]) - pairs.answers[asked]

@@ -101,25 +101,26 @@ def inference(pairs: Pairs, effort: Effort, sweep: float) -> tuple[dict[str, Lat
     stopwatch = Stopwatch(pairs, effort)
     stopwatch.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
     for points in (2_000, 20_000):
-        _neighbours(stopwatch, points, effort.seconds)
-    _processes(stopwatch, 2_000, effort.seconds)
+        time_neighbours(stopwatch, points, effort.seconds)
+    time_processes(stopwatch, 2_000, effort.seconds)
     _six_kernels(stopwatch, 2_000, sweep)
     _inducing(stopwatch, effort.seconds)
     for points in (500, 5_000, 50_000):
-        _neighbours(stopwatch, points, sweep)
+        time_neighbours(stopwatch, points, sweep)
     for points in (500, 1_000, 4_000):
-        _processes(stopwatch, points, sweep)
+        time_processes(stopwatch, points, sweep)
     for name, own, points in _variants(pairs):
         stopwatch.beside(name, own, points, {}, sweep)
     return stopwatch.found, stopwatch.scheduling
 
 
-def _neighbours(stopwatch: Stopwatch, points: int, seconds: float) -> None:
+def time_neighbours(stopwatch: Stopwatch, points: int, seconds: float) -> None:
+    """The nearest of that many points, by our search and by libraries."""
     knn = fitted("knn", stopwatch.pairs.first(points))
     stopwatch.beside("knn", ours(knn), points, libraries.neighbours(knn), seconds)
 
 
-def _processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
+def time_processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
     """One kernel for six outputs: mean, mean and variance, and the faded correction."""
     pairs = stopwatch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points, **GP)

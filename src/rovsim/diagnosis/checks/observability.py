@@ -39,13 +39,11 @@ def list_not_observable(
     runs = workspace.bank.runs
     blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
     larger = max(1.0, vehicle.rigid_body.mass / SCALED_FOR)
-    shown = _find_shown(
-        workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, larger
-    )
+    shown = find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, larger)
     if selection.found.hypothesis.model.thrust_path.autopilots:
         driven = [block for block in blocks if block.candidate.effect.through == "thrusters"]
         sizes = workspace.columns.sizes(selection.found.hypothesis)
-        shown |= _find_shown(sizes, driven, workspace.penalty, larger)
+        shown |= find_shown(sizes, driven, workspace.penalty, larger)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
     if not workspace.bank.shows_drift(workspace.noise):
@@ -55,7 +53,7 @@ def list_not_observable(
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
 
 
-def _find_shown(
+def find_shown(
     sizes: Array, blocks: Sequence[CandidateColumns], penalty: float, larger: float
 ) -> dict[str, bool]:
     """Of each effect, whether a column, `sizes` (c,) long at one scale, surely is worth it.

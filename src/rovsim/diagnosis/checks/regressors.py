@@ -90,13 +90,13 @@ def find_dependence(
         part = abs(factor) * size * np.sqrt(power / whole)
         statistic = factor**2 * power
         if blocks is not None:
-            spread = _spread(own * (target - factor * own), power, blocks)
+            spread = find_spread(own * (target - factor * own), power, blocks)
             if statistic <= limit * spread:
                 continue
         yield from residual.weigh(name, size=part, statistic=statistic, limit=limit)
 
 
-def _spread(products: Array, power: float, blocks: Array) -> float:
+def find_spread(products: Array, power: float, blocks: Array) -> float:
     """How much more a factor is spread than where innovations are white (Liang & Zeger 1986).
 
     Where a sensor's errors last longer than the noise model has it, all readings of some time err

@@ -86,7 +86,7 @@ class Gate:
         if not self.runs:
             return False
         errors = self._errors([model, before])
-        return _compare(errors[0], errors[1]) > 0.0
+        return find_sure_gain(errors[0], errors[1]) > 0.0
 
     def improves(self, more: Model, less: Model, share: float) -> bool:
         """Whether one model errs less than the other by that share on all runs."""
@@ -109,9 +109,9 @@ class Gate:
         if not self.runs:
             return None
         own, others = self._errors([one, other])
-        if _compare(others, own) > 0.0:
+        if find_sure_gain(others, own) > 0.0:
             return True
-        return False if _compare(own, others) > 0.0 else None
+        return False if find_sure_gain(own, others) > 0.0 else None
 
     def keep_earning(self, selection: Selection) -> Selection:
         """Where physics is left that no name explains: only what makes a difference there.
@@ -128,7 +128,7 @@ class Gate:
         found = selection.found
         while self.runs and (groups := split(found.hypothesis)):
             fewer, errors = self._do_without(selection, found, groups)
-            idle = [k for k, e in enumerate(errors[1:]) if not _costs(e, errors[0], least)]
+            idle = [k for k, e in enumerate(errors[1:]) if not surely_costs(e, errors[0], least)]
             if not idle:
                 break
             idle.sort(key=lambda k: _ratio(errors[1 + k], errors[0]))
@@ -142,7 +142,7 @@ class Gate:
     def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:
         """Without the effect whose absence helps most; None where each of them earns its place."""
         fewer, errors = self._do_without(selection, found, [(t,) for t in found.hypothesis.terms])
-        gains = [_compare(errors[0], other, len(errors) - 1) for other in errors[1:]]
+        gains = [find_sure_gain(errors[0], other, len(errors) - 1) for other in errors[1:]]
         best = int(np.argmax(gains))
         return fewer[best] if gains[best] > 0.0 else None
 
@@ -201,7 +201,7 @@ def _ratio(error: Array, other: Array) -> float:
         return float(np.sqrt(np.nan_to_num(np.mean(error) / np.mean(other), nan=np.inf)))
 
 
-def _costs(error: Array, usual: Array, least: float) -> bool:
+def surely_costs(error: Array, usual: Array, least: float) -> bool:
     """Whether an error (w,) is surely larger than the usual one, and by more than that share.
 
     Several times as large it may be because of a few windows in which a model is lost: these make
@@ -226,7 +226,7 @@ def _find_limit(windows: int, tried: int) -> float:
     return float(student.isf(chance, windows - 1) * np.sqrt(windows / (windows - 1.0)))
 
 
-def _compare(error: Array, other: Array, tried: int = 1) -> float:
+def find_sure_gain(error: Array, other: Array, tried: int = 1) -> float:
     """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure.
 
     Of so many that were `tried` the best is smaller by chance as well.

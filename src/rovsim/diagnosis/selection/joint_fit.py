@@ -39,7 +39,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
     tried = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
     tried.sort(key=lambda one: one[0].score(one[1]), reverse=True)
     best, found = tried[0]
-    found = _prune_together(best, found)
+    found = prune_together(best, found)
     named = {term.id for term in found.hypothesis.terms}
     rivals = tuple(
         Rival(term.id, own.id, best.score(found) - other.score(fit), fit)
@@ -69,7 +69,7 @@ def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Searc
     return workspace, found
 
 
-def _prune_together(workspace: SearchWorkspace, found: Fit) -> Fit:
+def prune_together(workspace: SearchWorkspace, found: Fit) -> Fit:
     """Without all parameters that are not worth their penalty, until all are.
 
     Where thrust, inertia and drag are known to one factor only, none of them is sure and all are

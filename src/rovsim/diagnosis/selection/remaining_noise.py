@@ -41,10 +41,10 @@ def fit_remaining_noise(
         e, columns = seen.e, _join(seen.J, columns)
     for _ in range(rounds - 1):
         known = noise
-        noise = bank.fit_axes(_remainder(bank, e, columns, known), known).noise
+        noise = bank.fit_axes(draw_remainder(bank, e, columns, known), known).noise
         if np.max(np.abs(np.log(noise.level / known.level))) < CLOSE:
             break
-    found = bank.fit_noise(_remainder(bank, e, columns, noise), noise, thorough=True)
+    found = bank.fit_noise(draw_remainder(bank, e, columns, noise), noise, thorough=True)
     own = _fit_own_noise(bank, at.model, found.noise)
     return (own if own.likelihood > found.likelihood + sensitivities.count else found).noise
 
@@ -72,7 +72,7 @@ def _join(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
     return [np.concatenate([own.astype(more.dtype), more]) for own, more in pairs]
 
 
-def _remainder(
+def draw_remainder(
     bank: FilterBank, e: Sequence[Array], columns: Sequence[Array], noise: Noise
 ) -> list[Array]:
     """Innovations (6, n) of each run less a likely combination of all columns (c, 6, n).

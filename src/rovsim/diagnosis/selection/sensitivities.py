@@ -126,7 +126,7 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
     In the plane a small tilt acts by its square. What that leaves of a difference is faint, but as
     random as the readings: scaled to one, it would explain all their noise.
     """
-    lengths = _measure(bank, seen.J)
+    lengths = measure_columns(bank, seen.J)
     back = {i: step_back(seen.at, i) for i in np.flatnonzero(lengths < FAINT).tolist()}
     able = {i: one for i, one in back.items() if one is not None}
     if not able or not seen.finite:
@@ -139,11 +139,11 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
         for J, e, beside in zip(seen.J, seen.e, moved, strict=True)
     ]
     shown = np.ones((len(lengths), 1, 1))
-    shown[faint, 0, 0] = _measure(bank, both) >= SLOPE * lengths[faint]
+    shown[faint, 0, 0] = measure_columns(bank, both) >= SLOPE * lengths[faint]
     return [shown * J for J in seen.J]
 
 
-def _measure(bank: FilterBank, columns: Sequence[Array]) -> Array:
+def measure_columns(bank: FilterBank, columns: Sequence[Array]) -> Array:
     """Lengths (c,) of columns (c, 6, n), in standard deviations of the innovations that are read.
 
     What turns a vehicle about an axis that is held changes innovations there, and nobody sees it.

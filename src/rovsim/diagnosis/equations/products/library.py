@@ -63,7 +63,7 @@ Known = tuple[float | None, float | None]  # m north and east of a law's place, 
 def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list[LawTerm]:
     """All candidate terms that these runs could show; at places that suit what is known of one."""
     moving = np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))
-    found = [term for i in moving for term in _along_body(int(i), moving)]
+    found = [term for i in moving for term in list_body_terms(int(i), moving)]
     if not all((run.axes | ~run.free.astype(bool)).all() for run in runs):
         return found
     n, e = known
@@ -72,7 +72,7 @@ def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list
     return [*found, *_along_world(), *(t for one in places for t in _at(one))]
 
 
-def _along_body(i: int, moving: Array) -> Iterator[LawTerm]:
+def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
     """Terms along one axis of the body that turn with the mirror as it does.
 
     But for those that the catalogue has: drags of one velocity, and linear and quadratic couplings.
