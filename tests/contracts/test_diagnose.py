@@ -3,11 +3,12 @@
 import pytest
 
 from fuzz.entries import DiagnosisJson
+from rovsim import AXES
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json
-from rovsim.core.yaml_files import read_yaml
+from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import built_in
 from rovsim.evaluation.ladder import score_step
@@ -44,6 +45,25 @@ def test_too_little_data_is_a_verdict_with_a_report(diagnosed):
     assert page.index(">Verdict<") < page.index(">Where the models fail<")
     for name in ("ranking", "ladder"):
         assert (diagnosed / "found" / "figures" / f"{name}.png").stat().st_size > 3000
+
+
+@pytest.mark.usefixtures("few_figures")
+def test_a_model_that_runs_away_is_told_so_and_not_that_there_is_no_test_run(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    drag = dict.fromkeys(AXES, -900.0)
+    bad = {"effects": [{"effect": "quadratic_damping", "parameters": drag}]}
+    write_yaml(tmp_path / "bad.yaml", {"vehicle": "bluerov2_heavy", **bad})
+    main(["diagnose", f"campaign={campaign}", "model=bad.yaml", "out=found"])
+    said = unfolded(capsys.readouterr().out)
+    found = read_json(tmp_path / "found" / "diagnosis.json")
+    assert found["error"]["nominal"] is None
+    assert found["runs_away_in"] == ["6dof-2"]
+    assert "in 6dof-2 it runs away within 2 s" in said
+    assert "No test run" not in said
+    main(["compare", f"campaign={campaign}", "model=[nominal,bad.yaml]", "out=compared"])
+    assert "No error of bad on the test runs" in unfolded(capsys.readouterr().out)
 
 
 def test_its_ladder_is_that_of_the_contract(diagnosed):

@@ -26,6 +26,11 @@ CHANNELS = (
     (("yaw",), "a heading (yaw_rad) or a turn rate (r_rad_s)"),
 )
 
+AWAY = (
+    "Correct the model first: look for a negative total drag, a wrong sign or a wrong unit in its "
+    "file, or diagnose model=nominal."
+)
+
 LOOKS_AHEAD = (
     "A negative input_delay beside a pose_filter is what software leaves that smooths forwards and "
     "backwards, and so without delay: export the poses unsmoothed, and diagnose these."
@@ -46,6 +51,8 @@ def advise(
         joint: parameters, as `effect.parameter`, that are known only together.
         catalogue: what the effects are, and what reveals each.
     """
+    if not found.enough and found.usable.lost:
+        return AWAY
     if not found.enough:
         return (
             "Record train runs of at least a minute in which the vehicle moves: "

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable
+from typing import Callable, Sequence
 
 import numpy as np
 
@@ -88,19 +88,20 @@ def diagnose_campaign(
     )
     stage("scoring")
     shares = [finding.share() for one in searched for finding in one.explanation.findings]
-    ladder = _climb(found, runs, settings, catalogue)
+    ladder, away = _climb(found, runs, settings, catalogue)
     told = report(
-        found, shares, ladder, describe_model(base), catalogue, train.looked_at, standstills
+        found, shares, ladder, describe_model(base), catalogue, train.looked_at, standstills, away
     )
     return Diagnosed(told, where, found.proposed.source if found.proposed else None)
 
 
 def _climb(
     found: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue
-) -> Ladder:
+) -> tuple[Ladder, Sequence[str]]:
     """The base, the effects one after the other, and the noise floor, on the test runs.
 
-    Where a law is proposed, it and what is beside it come last, before the noise floor.
+    Where a law is proposed, it and what is beside it come last, before the noise floor. Also the
+    test runs in which the base runs away.
     """
     models, how = _list_models(found), settings.replay.only(WINDOW)
     scores = [StepScore(model.name) for model in models]
@@ -112,7 +113,7 @@ def _climb(
             score.add(motion, subtract(motion, replayed.horizons[HORIZON]))
     steps = [score.step for score in scores]
     floor = _floor(found, runs, settings, catalogue, steps[-1].windows_2s)
-    return Ladder(steps=(*steps, Step(model=NOISE_FLOOR, windows_2s=floor)))
+    return Ladder(steps=(*steps, Step(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away
 
 
 def _list_models(found: TrainDiagnosis) -> list[Model]:

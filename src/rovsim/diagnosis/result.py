@@ -51,6 +51,7 @@ def report(
     catalogue: Catalogue,
     looked_at: LookedAt | None = None,
     standstills: Sequence[Standstill] = (),
+    away: Sequence[str] = (),
 ) -> Diagnosis:
     """What is written of a diagnosis.
 
@@ -62,6 +63,7 @@ def report(
         catalogue: what the effects are.
         looked_at: how much of the train runs.
         standstills: of train runs, where the model would move.
+        away: test runs in which the base runs away.
     """
     alike = group_indistinguishable(found.rivals)
     joint = _list_joint(found)
@@ -89,6 +91,7 @@ def report(
         posterior=_describe_posterior(found),
         looked_at=looked_at,
         not_followed_from_s={run: round(at, 1) for run, at in found.usable.lost.items()},
+        runs_away_in=tuple(away),
         standstills=tuple(standstills),
         thrusters=found.base.vehicle.thruster_names,
         base=dict(base),

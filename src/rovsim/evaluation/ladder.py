@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Iterable
 
+import numpy as np
+
 from rovsim.evaluation.scores import Errors, Moments, Sums, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import HORIZON
@@ -12,10 +14,14 @@ from rovsim.simulation.prediction import Replay
 
 @dataclass(eq=False)
 class StepScore:
-    """A model's error in 2 s windows, all runs of a split pooled as they are taken in."""
+    """A model's error in 2 s windows, all runs of a split pooled as they are taken in.
+
+    `away`: ids of the runs in which the model runs away, so that the pooled error is None.
+    """
 
     model: str
     split: str = "test"
+    away: list[str] = field(default_factory=list)
     _errors: Sums = field(default_factory=Sums.nothing)
     _measured: Moments = field(default_factory=Moments.nothing)
 
@@ -23,7 +29,10 @@ class StepScore:
         """Take in a run and the errors in its windows of 2 s; one of another split is passed by."""
         if motion.run.split != self.split:
             return
-        self._errors += Sums.of(errors)
+        sums = Sums.of(errors)
+        if not np.isfinite(sums.nu_squared).all():
+            self.away.append(motion.run.id)
+        self._errors += sums
         self._measured += Moments.of(motion)
 
     @property

@@ -176,9 +176,9 @@ class Diagnosis(Result):
     `not_excited` axes that nobody moved, `not_measured` those that nobody measured;
     `not_commanded` thrusters and surfaces by name, or axes, that stayed at rest;
     `not_observable` effects that the runs could not show, were they there; `not_followed_from_s` s
-    from which on the model runs away from a train run, by its id; `standstills` of train runs;
-    `thrusters` their names in the
-    vehicle file: the parameter `t1` of an effect is of the first.
+    from which on the model runs away from a train run, by its id; `runs_away_in`: test runs in
+    which it does so within 2 s, and has no error; `standstills` of train runs; `thrusters` their
+    names in the vehicle file: the parameter `t1` of an effect is of the first.
     """
 
     noun: ClassVar[str] = "diagnosis"
@@ -204,6 +204,7 @@ class Diagnosis(Result):
     posterior: Posterior | None = None
     looked_at: LookedAt | None = None
     not_followed_from_s: dict[str, float] = Field(default_factory=dict)
+    runs_away_in: tuple[str, ...] = ()
     standstills: tuple[Standstill, ...] = ()
     thrusters: tuple[str, ...] = ()
     base: dict[str, JsonValue]

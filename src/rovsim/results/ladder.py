@@ -23,6 +23,11 @@ class Step(Section):
     velocity_mae: ByAxis = ByAxis()
     windows_2s: float | None = None
 
+    @property
+    def scored(self) -> bool:
+        """Whether there is an error on some axis: not without a run, nor where it runs away."""
+        return any(value is not None for value in self.velocity_mae.model_dump().values())
+
 
 class Ladder(Result):
     """Steps from the first model down; the noise floor, a bound and no model, comes last."""

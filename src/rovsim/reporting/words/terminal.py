@@ -4,7 +4,16 @@ from typing import Mapping, Sequence
 
 from rovsim.core.columns import fold
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.wording import ERROR_MEANING, LEAST, fit, minus, several, significant, title
+from rovsim.reporting.wording import (
+    ERROR_MEANING,
+    LEAST,
+    fit,
+    listed,
+    minus,
+    several,
+    significant,
+    title,
+)
 from rovsim.reporting.words.sentences import band_sentences, doubt_sentences
 from rovsim.reporting.words.verdict import NO_TEST, Missing, explain
 from rovsim.results.bands import Bands
@@ -17,18 +26,24 @@ from rovsim.results.quality import Quality
 BAR = 24  # letters
 MOST = 6  # findings printed; the report has them all
 RANKED = 5  # effects of the ranking printed
+NO_ERROR = (
+    "No error of {} on the test runs: there it runs away within 2 s of the measured state. Usually "
+    "a total drag is negative, or a value has the wrong sign."
+)
 MEANING = f"{ERROR_MEANING}; here on the test runs. Fit is 100 % minus it (NRMSE fit)."
 
 
 def tell_comparison(
     errors: Mapping[str, float | None], where: ErrorConditions, tested: bool,
-    coverage: Bands | None = None,
+    coverage: Bands | None = None, away: Sequence[str] = (),
 ) -> str:  # fmt: skip
     """A table {model: normalised 2 s error}, what bands hold, the last searched model's findings.
 
-    Without a test run (`tested`) a sentence stands for the table.
+    Without a test run (`tested`) a sentence stands for the table; `away`: models that run away.
     """
     table = _errors(errors) if tested else ["", *fold(NO_TEST)]
+    if tested and away:
+        table += ["", *fold(NO_ERROR.format(listed([title(name) for name in away])))]
     said = band_sentences(coverage) if coverage else []
     bands = [line for one in said for line in ("", *fold(one))]
     return "\n".join([*table, *bands, *_findings(where)])

@@ -42,6 +42,7 @@ NO_TEST = (
     "No test run could be used, so there is no error to report. "
     "Write `split: test` for a run in campaign.yaml to hold it out."
 )
+AWAY = "The model cannot be judged: it runs away from the train runs."
 
 
 @dataclass(frozen=True)
@@ -102,9 +103,15 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         for place, one in enumerate(found.selected)
     )
     return Verdict(
-        found.verdict, VERDICTS[found.verdict], missing, _key(len(missing)), error_sentence(found),
+        found.verdict, _sentence(found), missing, _key(len(missing)), error_sentence(found),
         tuple(remarks), found.next_experiment,
     )  # fmt: skip
+
+
+def _sentence(found: Diagnosis) -> str:
+    """The verdict; where nothing could be judged as the model was lost, that it was the model."""
+    lost = found.verdict == "insufficient_data" and found.not_followed_from_s
+    return AWAY if lost and not found.ranking else VERDICTS[found.verdict]
 
 
 def _key(effects: int) -> str:
@@ -182,6 +189,8 @@ def error_sentence(found: Diagnosis) -> str:
     """The error on the test runs before and after, and what a perfect model would show."""
     error = found.error
     before, after, floor = map(or_nan, (error.nominal, error.with_effects, error.noise_floor))
+    if found.runs_away_in:
+        return _away_sentence(found.runs_away_in, after)
     if not math.isfinite(before):
         return NO_TEST
     now = f"falls from {significant(before)} to {significant(after)}"
@@ -194,6 +203,18 @@ def error_sentence(found: Diagnosis) -> str:
     else:
         text += f" A perfect model would show about {significant(floor)} (noise floor)."
     return f"{text} {ERROR_MEANING}."
+
+
+def _away_sentence(runs: Sequence[str], after: float) -> str:
+    """That the model has no error on the test runs, and why; the one with effects may have one."""
+    text = (
+        f"The model has no error on the test runs: in {listed(runs)} it runs away within 2 s of "
+        "the measured state. Usually its total drag on an axis is negative, or a value has the "
+        "wrong sign."
+    )
+    if not math.isfinite(after):
+        return text
+    return f"{text} With the effects the {ERROR} is {significant(after)}. {ERROR_MEANING}."
 
 
 def leaves_unexplained(found: Diagnosis) -> bool:

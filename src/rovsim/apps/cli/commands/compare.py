@@ -46,6 +46,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     if found.coverage is None:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
     errors = {step.model: step.windows_2s for step in found.steps}
-    text = tell_comparison(errors, found.where, bool(data.runs.of("test")), found.coverage)
+    away = [step.model for step in found.steps if not step.scored]
+    tested = bool(data.runs.of("test"))
+    text = tell_comparison(errors, found.where, tested, found.coverage, away)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
     say(settings, f"{text}{tell_doubts(data.quality)}\n\n{files}", found.comparison.to_json())
