@@ -15,7 +15,9 @@ from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import compose
 from rovsim.apps.cli import main as cli
+from rovsim.apps.cli.completion import commands
 from rovsim.apps.cli.main import listed, main, override, quoted
+from rovsim.apps.cli.untaken import require_taken
 from rovsim.core import extras
 from rovsim.core.errors import unlisted
 from rovsim.core.files import write_text
@@ -140,6 +142,29 @@ def test_mistakes_are_explained(capsys, words, message, tmp_path, monkeypatch):
 
     assert re.search(message, failing(capsys, *words))
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["diagnose", "effects=[lift]"], "does not use 'effects'. Expected keys that it takes"),
+        (["diagnose", "effects=[lift]"], "did you mean `rovsim add`?"),
+        (["compare", "search.draws=9"], "does not use 'search.draws'"),
+        (["compare", "residual=gp"], "did you mean `rovsim train`?"),
+        (["add", "filter=savgol"], "`rovsim add` does not use 'filter'"),
+        (["add", "campaign=x"], "Leave it out."),
+        (["diagnose", "-m", "effects=[lift],[drag]"], "did you mean `rovsim add`?"),
+    ],
+)
+def test_a_key_that_a_command_would_ignore_is_refused(words, said, capsys):
+    assert said in failing(capsys, *words)
+
+
+def test_what_stands_beside_any_command_is_not_refused():
+    words = ["seed=1", "+experiment=kth_tank_2025", "hydra/launcher=joblib", "tracking.name=a"]
+    for command in commands():
+        require_taken(command, [*words, "out=x", "output=quiet", "effects_file=e.py"])
+    require_taken("diagnose", ["filter=savgol", "signals.filter.kind=none", "replay.step=0.1"])
 
 
 def broken(campaign, tmp_path, change):

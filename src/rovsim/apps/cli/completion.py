@@ -172,11 +172,16 @@ def _last_item(value: str) -> tuple[str, str]:
 
 def _keys(command: str, word: str, taken: set[str]) -> list[str]:
     """Keys that the command's own help names; once something is typed, all of the configuration."""
-    source = (COMMANDS / f"{command}.py").read_text(encoding="utf-8")
-    own = re.findall(r"(?<![\w.])([a-z_]+(?:\.\w+)*)=", source.split('"""')[1])
+    own = own_keys(command)
     known = [*own, *settings()] if word else own
     ends = [key[len(word) :] for key in known if key.startswith(word) and key not in taken]
     return [word + end for end in dict.fromkeys(map(_step, ends))]
+
+
+def own_keys(command: str) -> list[str]:
+    """Keys that the command's own help names, dotted, in its order."""
+    source = (COMMANDS / f"{command}.py").read_text(encoding="utf-8")
+    return re.findall(r"(?<![\w.])([a-z_]+(?:\.\w+)*)=", source.split('"""')[1])
 
 
 def _step(end: str) -> str:

@@ -67,13 +67,22 @@ def _main(words: list[str]) -> None:
     overrides = [override(word) for word in words if word not in named]
     if named:
         overrides.append(f"{FILES[command]}=[{','.join(map(quoted, named))}]")
-    if sweep:
-        _sweep([f"command={command}", *overrides])
-    else:
-        from rovsim.application.settings import compose
-        from rovsim.apps.cli.dispatch import run_command
+    _run(command, overrides, sweep)
 
-        run_command(compose([f"command={command}", *overrides]))
+
+def _run(command: str, overrides: list[str], sweep: bool) -> None:
+    from rovsim.application.settings import compose
+    from rovsim.apps.cli.dispatch import run_command
+    from rovsim.apps.cli.untaken import require_taken
+
+    whole = [f"command={command}", *overrides]
+    if sweep:
+        require_taken(command, overrides)
+        _sweep(whole)
+        return
+    settings = compose(whole)
+    require_taken(command, overrides)
+    run_command(settings)
 
 
 def _help(names: Sequence[str]) -> str:

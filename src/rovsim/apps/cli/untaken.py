@@ -1,0 +1,51 @@
+"""Keys of the configuration that a command has no use for: it would ignore them silently."""
+
+import re
+from typing import Sequence
+
+from rovsim.application.settings import Settings
+from rovsim.apps.cli.completion import commands, own_keys
+from rovsim.core.collector import import_large
+from rovsim.core.errors import BadInput
+from rovsim.core.shipped import conf_file, conf_names
+
+# Sections that may stand beside any command: a sweep's, and what scripts give to all alike.
+EVERYWHERE = ("command", "hydra", "experiment", "seed", "tracking")
+FEW = 3  # commands that are asked for; of a key that most take, none can be meant
+
+
+def require_taken(command: str, overrides: Sequence[str]) -> None:
+    """Refuse overrides of sections that a command does not take; what none is, Hydra refuses.
+
+    Raises:
+        BadInput: there is one.
+    """
+    taken = import_large(f"rovsim.apps.cli.commands.{command}").Settings.model_fields
+    for word in overrides:
+        key = word.lstrip("+~").partition("=")[0]
+        name = section(key)
+        if name in Settings.model_fields and name not in (*taken, *EVERYWHERE):
+            raise BadInput(
+                f"`rovsim {command}` does not use '{key}'",
+                where="command line",
+                expected=f"keys that it takes (`rovsim {command} --help`)",
+                remedy=_remedy(name),
+            )
+
+
+def section(key: str) -> str:
+    """The section of the settings that an override changes; a group's file says where it goes."""
+    options = conf_names(key)
+    if options and (path := conf_file(f"{key}/{options[0]}.yaml")):
+        package = re.search(r"@package (\w+)", path.read_text(encoding="utf-8"))
+        return package[1] if package else key
+    return key.split(".")[0].split("/")[0]
+
+
+def _remedy(name: str) -> str:
+    """Who takes it, as far as their help says."""
+    users = [one for one in commands() if name in {section(key) for key in own_keys(one)}]
+    if not 0 < len(users) <= FEW:
+        return "Leave it out."
+    told = ", ".join(f"`rovsim {one}`" for one in users)
+    return f"Leave it out, or did you mean {told}?"
