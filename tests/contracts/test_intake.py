@@ -242,3 +242,41 @@ def test_pulses_of_a_radio_are_demands(tmp_path, names, columns, axes):
     assert content["commands"]["kind"] == "demand"
     assert content["commands"]["columns"] == columns
     assert content["commands"].get("axes") == axes
+
+
+def percent(names):
+    """A log of commands in percent."""
+    rows = [f"{t:.1f},{60 * np.sin(t):.1f},{-80 * np.cos(t):.1f}" for t in np.arange(0, 12, 0.1)]
+    return [f"time_s,{names}", *rows]
+
+
+def test_a_log_in_percent_that_is_left_out_is_to_be_checked(tmp_path, capsys):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    write_lines(tmp_path / "poses_commands.csv", percent("port,starboard"))
+    main(["init", str(tmp_path)])
+    for said in (told(tmp_path), unfolded(capsys.readouterr().out)):
+        assert "CHECK" in said
+        assert "not used as commands" in said
+        assert "port (-60 to 60), starboard (-80 to 80). They may be percent" in said
+        assert "'commands: none'" in said
+    assert "percent: divide them by 100" in refused(
+        capsys, tmp_path / "poses.csv", tmp_path / "poses_commands.csv", "force=true"
+    )
+
+
+def test_percent_beside_poses_and_of_axes_are_told(tmp_path):
+    poses, both, axes = (tmp_path / name for name in ("poses", "both", "axes"))
+    for folder in (poses, both, axes):
+        folder.mkdir()
+    write_poses(poses, "csv", Swim.ned(frames=1200))
+    lines = (poses / "poses.csv").read_text().splitlines()
+    own = [f"{line},{k % 90 - 40 if k else 'port'}" for k, line in enumerate(lines)]
+    write_lines(both / "run.csv", own)
+    main(["init", str(both), "-q"])
+    assert "CHECK: not used as commands: run.csv: port (-40 to 49). They may be percent" in told(
+        both
+    )
+    write_poses(axes, "csv", Swim.ned(frames=1200))
+    write_lines(axes / "poses_commands.csv", percent("surge,yaw"))
+    main(["init", str(axes), "-q"])
+    assert "beyond -1 and 1 (-80 to 80). If these are percent, divide them by 100" in told(axes)

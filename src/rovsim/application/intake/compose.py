@@ -51,14 +51,22 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"{name}: {one.motion.name}{log}, {timing}{missing(one)}"
 
 
+def _unused(facts: Facts) -> Iterator[str]:
+    """What may hold commands, and is no run's."""
+    if not facts.logs:
+        for one in facts.survey.unknown:
+            yield f"not used as commands: {one}. The runs say 'commands: none'"
+    used = [one.log for one in facts.pairs]
+    if not any(one.options for one in facts.pairs):
+        yield from (f"{log.path.name} belongs to no run" for log in facts.logs if log not in used)
+
+
 def _checked(facts: Facts) -> Iterator[str]:
     """What looks wrong."""
     for name, one in zip(facts.ids, facts.pairs, strict=True):
         if reason := checks.unusable(one.motion):
             yield f"{name} will not be used: {reason}"
-    used = [one.log for one in facts.pairs]
-    if not any(one.options for one in facts.pairs):
-        yield from (f"{log.path.name} belongs to no run" for log in facts.logs if log not in used)
+    yield from _unused(facts)
     if facts.choice.fit is None or not facts.choice.runs:
         return
     body = facts.axes.body

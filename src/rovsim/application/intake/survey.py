@@ -8,19 +8,22 @@ from rovsim.application.intake.together import put_together
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.progress import counted
 from rovsim.measurement.survey import Contents, gather, look
+from rovsim.measurement.survey.csv_files import UnknownColumns
 
 
 @dataclass(frozen=True, eq=False)
 class Survey:
     """Files with motions, files with commands alone, and why others of a folder were left out.
 
-    `apart`: files that may belong together, and why they were not taken for one run.
+    `apart`: files that may belong together, and why they were not taken for one run. `unknown`:
+    what else of columns of numbers there is, a sentence a file.
     """
 
     motions: tuple[Contents, ...]
     logs: tuple[Contents, ...]
     left_out: tuple[str, ...] = ()
     apart: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
 
 
 def survey(paths: Sequence[Path], scratch: Path) -> Survey:
@@ -50,7 +53,13 @@ def survey(paths: Sequence[Path], scratch: Path) -> Survey:
     logs = tuple(one for one in found if not one.tracks)
     _check(motions, logs, list(refused.values()), paths)
     runs, apart = put_together(motions)
-    return Survey(runs, logs, left_out, apart)
+    unknown = [f"{one.named.name}: {one.unknown}" for one in found if one.unknown]
+    unknown += [
+        f"{path}: {refused[path].found}"
+        for path in inside
+        if isinstance(refused.get(path), UnknownColumns)
+    ]
+    return Survey(runs, logs, left_out, apart, tuple(unknown))
 
 
 def _check(

@@ -21,6 +21,8 @@ ALLOWED = {
     "wrench": (-np.inf, np.inf, "a finite wrench in N, N m"),
 }
 
+PERCENT, ABOUT_REST = 105.0, 700.0  # how far percent, and pulses less 1500 us, reach
+
 Locate = Callable[[int, int], str]  # where the value in (line, column) stands, for people
 
 
@@ -65,8 +67,38 @@ def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> No
             f"the value {value[line, column]:g} ({len(bad)} such cells)",
             where=locate(line, column),
             expected=f"{expected}, as 'commands.kind: {log.kind}' says",
-            remedy="Correct 'commands.kind' in campaign.yaml, or that value.",
+            remedy=f"{_hint(value, log)}Correct 'commands.kind' in campaign.yaml, or that value.",
         )
+
+
+def _hint(value: Array, log: CommandLog) -> str:
+    """What other unit all values have by their size, in a sentence; empty where none shows."""
+    known = value[:, ~np.array(log.turned)]
+    known = known[~np.isnan(known)]
+    if not np.isfinite(known).all() or not known.size:
+        return ""
+    low, high = float(known.min()), float(known.max())
+    unit = guess_unit(low, high)
+    return f"By their size ({low:g} to {high:g}) they may be {unit}. " if unit else ""
+
+
+def guess_unit(low: float, high: float) -> str:
+    """What commands from `low` to `high` may be, and what to do with them; empty: nothing known."""
+    if low >= ALLOWED["pwm"][0] and high <= ALLOWED["pwm"][1]:
+        return "pulses in us, kind pwm"
+    size = max(-low, high)
+    if size <= ALLOWED["normalized"][1]:
+        return "shares, kind normalized or demand"
+    if size <= PERCENT:
+        return "percent: divide them by 100, then they are shares"
+    if low < 0.0 and size <= ABOUT_REST:
+        return (
+            "pulses less 1500 us: add 1500; or revolutions per minute: convert them to shares "
+            "from -1 to 1"
+        )
+    if low < 0.0:
+        return "revolutions per minute: convert them to shares from -1 to 1"
+    return ""
 
 
 def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:

@@ -94,7 +94,8 @@ class Contents:
 
     `path` is what the readers open; `original` the file that was named, another one where only a
     copy with other column names can be read. `notes` are sentences for its owner. `beside`: other
-    files of the same run, whose sensors are joined in the track.
+    files of the same run, whose sensors are joined in the track. `unknown`: columns of numbers that
+    are nothing that is known, where there are no commands.
     """
 
     path: Path
@@ -104,6 +105,7 @@ class Contents:
     original: Path | None = None
     notes: tuple[str, ...] = ()
     beside: tuple["Contents", ...] = ()
+    unknown: str = ""
 
     @property
     def files(self) -> tuple["Contents", ...]:

@@ -10,7 +10,7 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.pwm import PILOT
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.commands import ALLOWED
+from rovsim.measurement.recording.commands import ALLOWED, PERCENT, guess_unit
 from rovsim.measurement.recording.csv import KNOWN, read_csv
 from rovsim.measurement.recording.table import (
     Lines,
@@ -34,6 +34,13 @@ RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
 SOME = 0.5  # share of the lines in which a column of commands has a value
 
 
+EXPECTED = "pulses of 800 to 2200 us, shares from -1 to 1, or columns named after axes"
+
+
+class UnknownColumns(BadInput):
+    """Columns of numbers that are neither a measured channel nor commands of a known kind."""
+
+
 def look_into_csv(path: Path, scratch: Path) -> Contents:
     """Read what a csv file holds, of a copy in `scratch` where its columns have other names.
 
@@ -44,16 +51,31 @@ def look_into_csv(path: Path, scratch: Path) -> Contents:
     lines = csv_lines(place)
     known = [name for name in lines.names if name in KNOWN]
     drive = _drive(lines)
+    unknown = "" if drive else _unknown(lines)
     if not known and drive is None:
-        raise BadInput(
+        raise _nothing(path, lines, unknown)
+    tracks = (_track(place),) if known else ()
+    drives = () if drive is None else (drive,)
+    own = None if place == path else path
+    return Contents(place, "csv", tracks, drives, own, notes, unknown=unknown)
+
+
+def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
+    """The error of a file without anything that is known; `unknown` as `_unknown` tells it."""
+    if not unknown:
+        return BadInput(
             f"no measured channel and nothing like commands in the columns {_some(lines.names)}",
             where=path,
             expected="time_s with positions, angles …, or with commands (docs/formats.md)",
             remedy="Name the columns with their units, or leave the file out.",
         )
-    tracks = (_track(place),) if known else ()
-    drives = () if drive is None else (drive,)
-    return Contents(place, "csv", tracks, drives, None if place == path else path, notes)
+    return UnknownColumns(
+        f"no measured channel, and no commands that rovsim knows: {unknown}",
+        where=path,
+        expected=EXPECTED,
+        remedy="Convert them, name the columns after measurements with their units, or leave the "
+        "file out.",
+    )
 
 
 def _some(names: list[str]) -> str:
@@ -65,20 +87,39 @@ def _track(path: Path) -> Track:
     return Track("", tidy_export(read_csv(path, mocap), path)[0])
 
 
+def _other_numbers(lines: Lines) -> tuple[Array, dict[str, Array]]:
+    """Times (m,) s, and columns (m,) of numbers that are neither measured nor watched."""
+    kept = [
+        name for name in lines.names
+        if name not in (*KNOWN, "time_s") and lines.names.count(name) == 1
+        and not WATCHED.fullmatch(name)
+    ]  # fmt: skip
+    places = column_places(lines.path, lines.names, ["time_s", *kept])
+    table, _ = without_cut_line(lines, places)
+    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
+               if (v := _numbers(table, p)) is not None}  # fmt: skip
+    return times(table, places[0]), columns
+
+
+def _unknown(lines: Lines) -> str:
+    """Columns of numbers that change and are nothing that is known, with their sizes and a hint."""
+    if "time_s" not in lines.names:
+        return ""
+    _, columns = _other_numbers(lines)
+    moving = {name: v for name, v in columns.items() if np.nanmin(v) < np.nanmax(v)}
+    if not moving:
+        return ""
+    told = [f"{n} ({np.nanmin(v):.4g} to {np.nanmax(v):.4g})" for n, v in moving.items()]
+    unit = guess_unit(*_range(list(moving.values())))
+    return _some(told) + (f". They may be {unit}" if unit else "")
+
+
 def _drive(lines: Lines) -> Drive | None:
     """Columns that look like commands, if there are any."""
     if "time_s" not in lines.names:
         return None
-    named = [
-        n for n in lines.names if n not in KNOWN and n != "time_s" and lines.names.count(n) == 1
-    ]
-    kept = [name for name in named if not WATCHED.fullmatch(name)]
-    voltage = tuple(name for name in named if name == "voltage")
-    places = column_places(lines.path, lines.names, ["time_s", *kept])
-    table, _ = without_cut_line(lines, places)
-    time = times(table, places[0])
-    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
-               if (v := _numbers(table, p)) is not None}  # fmt: skip
+    voltage = ("voltage",) if lines.names.count("voltage") == 1 else ()
+    time, columns = _other_numbers(lines)
     if radio := _radio(columns):
         value = np.stack([columns[name] for name in radio.values()], axis=1)
         signed = tuple("-" * (c[0] == "-") + name for c, name in radio.items())
@@ -121,7 +162,7 @@ def _kind(columns: dict[str, Array]) -> tuple[Kind | None, list[str], str]:
                 axes,
                 "named after axes, pulses in us (-heave where long is up)",
             )
-        return "wrench", axes, "named after axes, beyond -1 and 1"
+        return "wrench", axes, _wrench([columns[name] for name in axes])
     pulses = [name for name in columns if within(columns[name], "pwm")]
     if pulses:
         low, high = _range([columns[name] for name in pulses])
@@ -152,9 +193,18 @@ def _range(values: list[Array]) -> tuple[float, float]:
     return min(float(np.nanmin(v)) for v in values), max(float(np.nanmax(v)) for v in values)
 
 
+def _wrench(values: list[Array]) -> str:
+    """How columns of axes are known to be forces and moments, and what speaks against it."""
+    low, high = _range(values)
+    said = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
+    if max(-low, high) > PERCENT:
+        return said
+    return f"guess: {said}. If these are percent, divide them by 100 and write demand"
+
+
 def _sizes(values: list[Array]) -> str:
     if not values:
         return ""
     low, high = _range(values)
-    what = "revolutions per minute? " if high > 100.0 else ""
-    return f"{what}numbers from {low:.4g} to {high:.4g}"
+    unit = guess_unit(low, high)
+    return f"numbers from {low:.4g} to {high:.4g}" + (f", perhaps {unit}" if unit else "")
