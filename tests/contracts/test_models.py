@@ -3,9 +3,10 @@
 import pytest
 import yaml
 
+from rovsim.application.pipeline.models import load_models
 from rovsim.core.errors import BadInput
 from rovsim.core.shipped import shipped
-from rovsim.core.yaml_files import read_yaml
+from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.dynamics.vehicle import load_vehicle
@@ -117,3 +118,21 @@ def test_a_key_given_twice_and_a_wrong_unit_are_refused(tmp_path):
         path.write_text(f"{HEAVY}effects: [{{effect: lift, parameters: {{coefficient: {wrong}}}}}]")
         with pytest.raises(BadInput, match="coefficient"):
             read_model(path, built_in())
+
+
+def test_files_of_the_same_name_are_told_apart_by_their_folders(tmp_path):
+    files = ["a/model.yaml", "b/model.yaml", "x/a/lag.yaml", "y/a/lag.yaml", "own.yaml"]
+    for name in files:
+        write_yaml(tmp_path / name, {"vehicle": "bluerov2_heavy"})
+    specs = ["nominal", *(str(tmp_path / name) for name in files)]
+    loaded = load_models(specs, load_vehicle("bluerov2_heavy"), built_in())
+    told = ["nominal", "a-model", "b-model", "x-a-lag", "y-a-lag", "own"]
+    assert [model.name for model in loaded] == told
+
+
+def test_one_file_by_two_names_is_refused(tmp_path):
+    path = tmp_path / "lag.yaml"
+    write_yaml(path, {"vehicle": "bluerov2_heavy"})
+    specs = [str(path), str(tmp_path / "." / ".." / tmp_path.name / "lag.yaml")]
+    with pytest.raises(BadInput, match=r"two models are called 'lag'.*Leave one of them out"):
+        load_models(specs, load_vehicle("bluerov2_heavy"), built_in())

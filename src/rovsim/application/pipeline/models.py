@@ -5,9 +5,10 @@ from typing import Mapping, Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import require_replaceable
+from rovsim.core.names import is_name
 from rovsim.diagnosis import apply
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model import Model
+from rovsim.dynamics.model import BUILT_IN, Model
 from rovsim.dynamics.model_file import SCHEMA, load_model, write_model
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.results.diagnosis import Diagnosis
@@ -16,21 +17,52 @@ from rovsim.results.diagnosis import Diagnosis
 def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> list[Model]:
     """The models that names and files stand for, each once.
 
+    A model is called by its file's stem; files that share one are called `folder-stem`, with as
+    many folders as it takes.
+
     Raises:
-        BadInput: one cannot be loaded, or two files have the same stem.
+        BadInput: one cannot be loaded, or two are of the same file.
     """
-    given = [specs] if isinstance(specs, str) else specs
-    loaded = [load_model(spec, vehicle, catalogue) for spec in dict.fromkeys(given)]
-    names = [model.name for model in loaded]
-    twice = {name for name in names if names.count(name) > 1}
-    if twice:
-        raise BadInput(
-            f"two models are called '{twice.pop()}'",
-            where="model",
-            expected="different names (a model is called by its file's stem)",
-            remedy="Rename one of the files.",
-        )
-    return loaded
+    given = list(dict.fromkeys([specs] if isinstance(specs, str) else specs))
+    loaded = [load_model(spec, vehicle, catalogue) for spec in given]
+    names = tell_apart([model.name for model in loaded], given)
+    return [model.called(name) for model, name in zip(loaded, names, strict=True)]
+
+
+def tell_apart(names: Sequence[str], specs: Sequence[str]) -> list[str]:
+    """Different names of models: those that are shared, with the folders of their files in front.
+
+    Args:
+        names: of the models, a file's stem or that of a built-in model.
+        specs: the files, or the built-in models' names.
+
+    Raises:
+        BadInput: no folder tells two of them apart.
+    """
+    files = [None if spec in BUILT_IN else Path(spec).resolve() for spec in specs]
+    deepest = max((len(file.parts) for file in files if file), default=0)
+    found = list(names)
+    for depth in range(1, deepest):
+        shared = {name for name in found if found.count(name) > 1}
+        found = [
+            _with_folders(own, file, depth) if file and name in shared else name
+            for own, name, file in zip(names, found, files, strict=True)
+        ]
+    twice = [k for k, name in enumerate(found) if found.count(name) > 1]
+    if not twice:
+        return found
+    raise BadInput(
+        f"two models are called '{names[twice[0]]}' ({', '.join(specs[k] for k in twice)})",
+        where="model",
+        expected="each model once (it is called by its file's stem, and by folders if need be)",
+        remedy="Leave one of them out, or rename its file.",
+    )
+
+
+def _with_folders(name: str, file: Path, depth: int) -> str:
+    """The name with the last `depth` folders of its file in front, as far as there are some."""
+    folders = [part for part in file.parent.parts[1:][-depth:] if is_name(part)]
+    return "-".join([*folders, name])
 
 
 def load_one_model(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> Model:
