@@ -66,6 +66,25 @@ def test_a_model_that_runs_away_is_told_so_and_not_that_there_is_no_test_run(
     assert "No error of bad on the test runs" in unfolded(capsys.readouterr().out)
 
 
+@pytest.mark.usefixtures("few_figures")
+def test_neither_of_compare_and_diagnose_loses_the_other_ones_report(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    words = [f"campaign={campaign}", "out=both"]
+    main(["compare", *words, "-q"])
+    compared = (tmp_path / "both" / "report.html").read_bytes()
+    main(["diagnose", *words])
+    said = unfolded(capsys.readouterr().out)
+    assert "was the report of compare: it is both/report_compare.html now" in said
+    assert (tmp_path / "both" / "report_compare.html").read_bytes() == compared
+    diagnosed = (tmp_path / "both" / "report.html").read_bytes()
+    for _ in range(2):
+        main(["compare", *words, "-q"])
+        assert (tmp_path / "both" / "report_diagnose.html").read_bytes() == diagnosed
+    assert 'id="compare"' in (tmp_path / "both" / "report.html").read_text()
+
+
 def test_its_ladder_is_that_of_the_contract(diagnosed):
     found = read_json(diagnosed / "found" / "diagnosis.json")
     ladder = found["ladder"]

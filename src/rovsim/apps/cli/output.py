@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from rovsim.application.settings import CommandSettings
+from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
 
 
@@ -14,6 +15,11 @@ def say(settings: CommandSettings, text: str, content: object) -> None:
         print(json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False))
     elif settings.output == "text":
         print(text)
+
+
+def join_files(text: str, files: str, kept: str) -> str:
+    """A text, the files that were written, and what became of one that was there."""
+    return "\n".join([text, "", files, *fold(kept)])
 
 
 def choose_folder(settings: CommandSettings, default: str) -> Path:

@@ -1,1 +1,7 @@
-"""The report: one HTML file that needs nothing else, of a study or of a command's results."""
+"""The report: one HTML file that needs nothing else, of a study or of a command's results.
+
+picture  figures inside the page
+report   the page
+folder   a command's figures and its page
+kept     the page of another command in that folder
+"""

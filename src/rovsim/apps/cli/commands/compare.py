@@ -5,7 +5,7 @@ rovsim compare campaign=DIR model=[nominal,FILE,…] out=OUT
 Writes OUT/comparison.json (errors per model, run, axis and horizon), OUT/where.json (under which
 conditions each model fails), OUT/budget.json (who pushes how much), figures and OUT/report.html,
 and prints a summary. Of models that `rovsim add` made also OUT/bands.json: how much of the test
-runs lies within what they leave open.
+runs lies within what they leave open. A report.html of `rovsim diagnose` there is kept beside it.
 """
 
 from rovsim.application.pipeline.comparison import compare
@@ -13,9 +13,10 @@ from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings
-from rovsim.apps.cli.output import choose_folder, say
+from rovsim.apps.cli.output import choose_folder, join_files, say
 from rovsim.core.files import appearing_together
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.reporting.html.kept import keep_other
 from rovsim.reporting.words.terminal import tell_comparison, tell_doubts
 
 
@@ -35,6 +36,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     assert found.comparison is not None
     assert found.where is not None
     assert found.forces is not None
+    kept = keep_other(out / "report.html", "compare")
     with appearing_together(out, last="comparison.json") as folder:
         found.where.write(folder / "where.json")
         found.forces.write(folder / "budget.json")
@@ -50,4 +52,5 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     tested = bool(data.runs.of("test"))
     text = tell_comparison(errors, found.where, tested, found.coverage, away)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
-    say(settings, f"{text}{tell_doubts(data.quality)}\n\n{files}", found.comparison.to_json())
+    told = join_files(text + tell_doubts(data.quality), files, kept)
+    say(settings, told, found.comparison.to_json())

@@ -17,12 +17,13 @@ from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
-from rovsim.apps.cli.output import choose_folder, say
+from rovsim.apps.cli.output import choose_folder, join_files, say
 from rovsim.core.extras import installed
 from rovsim.core.progress import counted, reported
 from rovsim.core.second_process import call, second_process
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.reporting.html.kept import keep_other
 from rovsim.reporting.report_data import ReportData
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.simulation.compiled_ahead import is_compiled
@@ -77,7 +78,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
         files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
         text = tell_diagnosis(found.diagnosis, catalogue) + tell_doubts(data.quality)
-        say(settings, f"{text}\n\n{files}", found.diagnosis.to_json())
+        kept = keep_other(out / "report.html", "diagnose")
+        told = join_files(text, files, kept)
+        say(settings, told, found.diagnosis.to_json())
         drawn = [future.result() for future in counted(list(drawing.values()), "drawing")]
         origin = provenance(settings, catalogue, data.campaign)
         last = other.submit(
