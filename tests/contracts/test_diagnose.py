@@ -1,5 +1,7 @@
 """`rovsim diagnose`: everything it writes, and nothing for input that cannot be used."""
 
+import json
+
 import pytest
 
 from fuzz.entries import DiagnosisJson
@@ -147,6 +149,21 @@ def test_nothing_is_added_twice_or_over_its_source(words, message, tmp_path, cap
     assert ended.value.code == 2
     assert message in " ".join(capsys.readouterr().err.split())
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.usefixtures("two_found")
+def test_a_drag_that_feeds_energy_in_is_told_when_it_is_added(tmp_path, capsys):
+    found = read_json(tmp_path / "diagnosis.json")
+    drag = {"effect": "quadratic_damping", "parameters": {"surge": {"value": -300.0}}}
+    found["ranking"].append(drag)
+    (tmp_path / "diagnosis.json").write_text(json.dumps(found))
+    main(["add", "diagnosis=diagnosis.json", "model=new.yaml", "effects=[quadratic_damping]"])
+    said = unfolded(capsys.readouterr().out)
+    assert "In all, quadratic_damping is below zero in surge (−159): water would push" in said
+    main(["add", "diagnosis=diagnosis.json", "model=lift.yaml", "effects=[lift]", "--json"])
+    assert json.loads(capsys.readouterr().out)["warning"] == ""
+    main(["export", "model=new.yaml", "to=fossen", "out=new.fossen.yaml"])
+    assert "quadratic_damping is below zero in surge" in unfolded(capsys.readouterr().out)
 
 
 @pytest.mark.usefixtures("two_found")

@@ -10,11 +10,11 @@ import pytest
 import synthetic_study
 from rovsim.apps.workbench.add_effects import tell_doubt
 from rovsim.apps.workbench.draft import Draft, reach
-from rovsim.apps.workbench.totals import list_totals, tell_total
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import describe_model, read_model, write_model
+from rovsim.reporting.words.totals import list_totals, tell_total
 from rovsim.results.fitted import Posterior
 from worlds import model
 

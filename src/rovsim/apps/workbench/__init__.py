@@ -12,7 +12,6 @@ workbench      the open campaign and its models; knows nothing of a browser
 kept_replays   replays and errors of models, each computed once
 runaway        replays that run away
 draft          a model being put together from effects
-totals         what a coefficient comes to
 work           long work in a process of its own
 jobs           begins it on the open campaign
 tasks          does it

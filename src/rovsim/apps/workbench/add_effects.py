@@ -7,11 +7,11 @@ from nicegui import ui
 
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.parts import Failure, Slider, alarm, text
-from rovsim.apps.workbench.totals import tell_total
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.wording import rounded, tell_probability
+from rovsim.reporting.words.totals import tell_total
 
 STEPS = 400  # of a slider
 FIRST = 5  # effects that are offered without being asked for

@@ -22,7 +22,6 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.runaway import tell_divergence
-from rovsim.apps.workbench.totals import list_totals, warn
 from rovsim.apps.workbench.traces import (
     HORIZONS,
     Span,
@@ -42,6 +41,7 @@ from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import listed, significant
+from rovsim.reporting.words.totals import list_totals, warn
 from rovsim.reporting.words.verdict import interval
 from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
 from rovsim.results.fitted import FittedValue

@@ -7,6 +7,7 @@ speed             what the timing says about control loops
 published_errors  folds beside published errors, pitfalls
 experiment        what a designed flight promises
 shown             what recordings could not show
+totals            what a coefficient of the vehicle file comes to with what was added
 symbols           what the letters of an equation stand for
 terminal          what `compare` and `diagnose` say when they are done
 """

@@ -14,8 +14,10 @@ from rovsim.application.pipeline.models import add_effects
 from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import say
+from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.reporting.words.totals import warn_totals
 
 OTHER = (
     "The diagnosis is not of {base}: its values were found beside the effects of another model. "
@@ -48,7 +50,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
-    _, names, diagnosed, one_by_one = add_effects(
+    new, names, diagnosed, one_by_one = add_effects(
         Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
     )
     text = f"{base} + {' + '.join(names)}"
@@ -58,7 +60,12 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         text += f".\n{OTHER.format(base=base)}"
     if one_by_one:
         text += f".\n{ALONE.format(model=model)}"
+    warning = warn_totals(new.body)
+    if warning:
+        text += f".\n{warning}"
     content = {
-        "model": model, "effects": names, "diagnosed": diagnosed, "one_by_one": one_by_one
+        "model": model, "effects": names, "diagnosed": diagnosed, "one_by_one": one_by_one,
+        "warning": warning,
     }  # fmt: skip
-    say(settings, f"{model}: {text}", content)
+    lines = [line for one in f"{model}: {text}".splitlines() for line in fold(one)]
+    say(settings, "\n".join(lines), content)

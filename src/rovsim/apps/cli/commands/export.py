@@ -27,6 +27,7 @@ from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.words.totals import warn_totals
 
 
 class Settings(CampaignSettings):
@@ -43,7 +44,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     over = f"the runs of {settings.campaign}" if settings.campaign else TYPICAL
     export = export_model(model, chosen, partial(_flown, settings, model), over, model_parts(model))
     write_export(export, out)
-    say(settings, _told(out, chosen, export.left, over), _content(out, chosen, export.left))
+    warning = warn_totals(model.body)
+    told = _told(out, chosen, export.left, over) + "".join(f"\n{one}" for one in fold(warning))
+    say(settings, told, _content(out, chosen, export.left) | {"warning": warning})
 
 
 def _target(settings: Settings) -> Target:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from rovsim import AXES
 from rovsim.dynamics.body import Body
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import listed, significant
 
 
 class Total(NamedTuple):
@@ -39,3 +39,18 @@ def list_totals(body: Body) -> dict[tuple[str, str], float]:
         for effect, six in body.stated.items()
         for axis, value in zip(AXES, six, strict=True)
     }
+
+
+def warn_totals(body: Body) -> str:
+    """Which coefficients of a body are below zero, and what that does; empty where none is."""
+    sentences = []
+    for effect in body.stated:
+        totals = {axis: v for (name, axis), v in list_totals(body).items() if name == effect}
+        wrong = {axis: v for axis, v in totals.items() if v < 0.0}
+        if wrong:
+            told = listed(f"{axis} ({significant(value)})" for axis, value in wrong.items())
+            reason = warn(effect, min(wrong.values()))
+            sentences.append(f"In all, {effect} is below zero in {told}: {reason}.")
+    if not sentences:
+        return ""
+    return " ".join([*sentences, "A replay of such a model may run away: check these values."])
