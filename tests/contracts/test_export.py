@@ -192,6 +192,15 @@ def test_the_file_and_the_terminal_list_what_is_left_out(tmp_path, capsys):
     assert "Nothing of the model is left out" in out.read_text()
 
 
+def test_the_terminal_says_which_model_was_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    main(["export", "to=fossen"])
+    assert "nominal.yaml: the nominal model of bluerov2_heavy" in unfolded(capsys.readouterr().out)
+    write_model(model(built_in()["lift"](coefficient=9.0)), tmp_path / "lifted.yaml")
+    main(["export", "model=lifted.yaml", "to=gz"])
+    assert "lifted.sdf: the model lifted" in unfolded(capsys.readouterr().out)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

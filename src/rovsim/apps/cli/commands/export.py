@@ -23,7 +23,7 @@ from rovsim.apps.cli.output import say
 from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model import Model
+from rovsim.dynamics.model import BUILT_IN, Model
 from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.measurement.signals.motion import Motion
@@ -45,8 +45,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     export = export_model(model, chosen, partial(_flown, settings, model), over, model_parts(model))
     write_export(export, out)
     warning = warn_totals(model.body)
-    told = _told(out, chosen, export.left, over) + "".join(f"\n{one}" for one in fold(warning))
-    say(settings, told, _content(out, chosen, export.left) | {"warning": warning})
+    told = [_told(f"{out}: {_name(model)}", chosen, export.left, over), *fold(warning)]
+    content = _content(out, chosen, export.left) | {"model": model.name, "warning": warning}
+    say(settings, "\n".join(told), content)
 
 
 def _target(settings: Settings) -> Target:
@@ -83,13 +84,22 @@ def _flown(settings: Settings, model: Model) -> list[Motion]:
     return flights(model, data.motions.values())
 
 
-def _told(out: Path, chosen: Target, left: Sequence[Sized], over: str) -> str:
+def _name(model: Model) -> str:
+    """Which model it is; of the nominal one, also how another is named."""
+    if model.name in BUILT_IN:
+        return f"the nominal model of {model.vehicle.name} (model=FILE writes one with effects)"
+    return f"the model {model.name}"
+
+
+def _told(head: str, chosen: Target, left: Sequence[Sized], over: str) -> str:
+    """`head`: the file, and what is in it."""
     if not left:
-        return "\n".join([str(out), *fold(f"{chosen.title} holds the whole model. {chosen.takes}")])
+        whole = f"{chosen.title} holds the whole model. {chosen.takes}"
+        return "\n".join([*fold(head), *fold(whole)])
     lines = fold(f"Left out for {chosen.title}, with the RMS force over {over}:")
     for one in left:
         lines += [f"  {one.name}: {_largest(one)}", *fold(one.why, " " * 6)]
-    return "\n".join([str(out), *lines, *fold(chosen.takes)])
+    return "\n".join([*fold(head), *lines, *fold(chosen.takes)])
 
 
 def _largest(one: Sized) -> str:
