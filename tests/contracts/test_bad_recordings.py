@@ -72,6 +72,10 @@ CSV = {
                    ["no column of a measured channel", "t1", "Name the columns"]),
     "some of a quaternion": (replaced("roll_rad,pitch_rad,yaw_rad", "qw,qx,qy"),
                              ["no column 'qz'", "qw"]),
+    "no unit quaternion": (
+        lambda lines: ["time_s,x_m,y_m,z_m,qw,qx,qy,qz", "0,1,1,1,0,0,0,0", "0.1,1,1,1,1.3,0,0,0",
+                       "0.2,1,1,1,1.3,0,0,0"],
+        ["line 3, columns qw, qx, qy, qz", "length 1.3 (2 of 2 have not length 1)", "divide"]),
     "nothing measured": (lambda lines: [lines[0], "0,,,,,,", "1,,,,,,"], ["no frame", "'runs'"]),
     "twice": (replaced("y_m", "x_m"), ["two columns are named 'x_m'", "Rename"]),
     "word": (cell(7, 2, "far", ","), ["line 8", "column 'y_m'", "'far'", "Correct"]),
@@ -86,6 +90,10 @@ MOTIVE = {
     "only markers": (replaced("Rigid Body", "Marker"), ["no columns of a rigid body"]),
     "an old version": (lambda lines: ["Format Version,1.1,Take Name,x", "", "frameindex,1"],
                        ["no columns of a rigid body (format version 1.1)"]),
+    "no unit quaternion": (
+        lambda lines: [*lines[:8], *(",".join([*line.split(",")[:2], "0,0,1.3,0", "1,1,1,0"])
+                                     for line in lines[8:])],
+        ["line 9", "a quaternion of length 1.3", "divide"]),
     "local": (replaced("Global", "Local"), ["line 1", "'Local'", "Global"]),
     "wrong body": (replaced("BlueROV2", "BlueROV"), ["no rigid body 'BlueROV2'", "'BlueROV'"]),
     "inches": (replaced("Millimeters", "Inches"), ["'Inches'", "millimeters"]),

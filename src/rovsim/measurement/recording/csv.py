@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import Mapping, Sequence
 
@@ -20,6 +21,7 @@ from rovsim.measurement.recording.csv_checks import (
 )
 from rovsim.measurement.recording.readers import (
     Export,
+    check_units,
     finite_rows,
     mocap_reader,
     unit_quaternions,
@@ -81,7 +83,13 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     columns = Columns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
     check_plausible(path, columns.time, columns.values)
     notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
+    if "qw" in names:
+        notes += check_units(columns.of(QUATERNION), partial(_quaternion_at, table))
     return _export(columns, mocap, {"cut_lines": cut}, notes)
+
+
+def _quaternion_at(table: Lines, row: int) -> str:
+    return f"{table.path}, line {table.numbers[row]}, columns {', '.join(QUATERNION)}"
 
 
 def _zeros(names: list[str], values: Array) -> Array:

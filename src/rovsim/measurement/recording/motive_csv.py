@@ -15,6 +15,7 @@ from rovsim.core.rotations import conjugate, multiply, rotate
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.readers import (
     Export,
+    check_units,
     choose_body,
     finite_rows,
     mocap_reader,
@@ -62,10 +63,14 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
     table, cut = without_cut_line(rows, [*turns, *places])
     time = times(table, _time_column(path, layout))
     position = numbers(table, places) * _metres(path, layout)
-    attitude, found = _attitude(path, layout, numbers(table, turns))
+    angles = numbers(table, turns)
+    attitude, found = _attitude(path, layout, angles)
+    doubts: tuple[str, ...] = ()
+    if angles.shape[1] == 4:
+        doubts = check_units(angles, lambda row: f"{path}, line {table.numbers[row]}")
     found &= finite_rows(position)
     position, attitude = _upright(position, attitude, mocap)
-    notes = () if mocap.world_axes == "y_up" else (CHECK_UP,)
+    notes = doubts if mocap.world_axes == "y_up" else (*doubts, CHECK_UP)
     return Export(
         time, position, attitude, found, _rate(layout), counts={"cut_lines": cut}, notes=notes
     )

@@ -16,8 +16,8 @@ from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.channels import Channels
 
 # A rotation matrix printed to six digits is orthonormal to about 1e-6; a cut or damaged line is
-# not. Same bound as for quaternions.
-ORTHONORMAL_WITHIN = 0.1
+# not. The same bound holds for the length of quaternions.
+ORTHONORMAL_WITHIN = UNIT_WITHIN = 0.1
 # What a kind of logged command drives.
 KIND: dict[str, CommandKind] = {
     "pwm": "thruster",
@@ -144,9 +144,39 @@ def unit_quaternions(values: Array) -> tuple[Array, Array]:
 
     Far from unit length it is none: trackers write zeros where the body was not found.
     """
-    with np.errstate(over="ignore"):
-        found = finite_rows(values) & (np.abs(np.linalg.norm(values, axis=1) - 1.0) < 0.1)
+    found = finite_rows(values) & (np.abs(_length(values) - 1.0) < UNIT_WITHIN)
     return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
+
+
+def check_units(values: Array, place: Callable[[int], str]) -> tuple[str, ...]:
+    """Sentences about quaternions (n, 4) that are none, as they have not length 1; zeros may be.
+
+    `place` says where a row stands, for people.
+
+    Raises:
+        BadInput: most of those that are not zeros are none.
+    """
+    given = finite_rows(values) & values.any(axis=1)
+    length = _length(values)
+    off = np.flatnonzero(given & ~(np.abs(length - 1.0) < UNIT_WITHIN))
+    if 2 * len(off) > given.sum():
+        raise BadInput(
+            f"a quaternion of length {length[off[0]]:.3g} ({len(off)} of {given.sum()} have not "
+            "length 1)",
+            where=place(int(off[0])),
+            expected="quaternions of length 1, or zeros where the body was not found",
+            remedy="Check which columns hold it, and that all four have the same scale; if they "
+            "are a multiple of it, divide them by their length.",
+        )
+    if not len(off):
+        return ()
+    return (f"{len(off)} lines whose quaternion has not length 1 count as not found.",)
+
+
+def _length(values: Array) -> Array:
+    """Length (n,) of rows (n, k)."""
+    with np.errstate(over="ignore"):
+        return np.linalg.norm(values, axis=1)
 
 
 def orthonormal(R: Array) -> Array:

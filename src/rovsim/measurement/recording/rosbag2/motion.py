@@ -9,6 +9,7 @@ from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.readers import (
     Export,
+    check_units,
     finite_rows,
     mocap_reader,
     unit_quaternions,
@@ -68,7 +69,9 @@ def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str,
     position = found.value[:, :3]
     attitude, seen = unit_quaternions(found.value[:, 3:])
     seen &= finite_rows(position)
-    notes = (*found.notes, *notes)
+    place = f"{bag.path}, topic {topic}"
+    doubts = check_units(found.value[:, 3:], lambda row: f"{place}, message {row + 1}")
+    notes = (*found.notes, *notes, *doubts)
     return Export(found.time, position, attitude, seen, channels=channels, notes=notes)
 
 
