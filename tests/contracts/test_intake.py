@@ -112,6 +112,8 @@ def test_recordings_elsewhere_stay_there(tmp_path):
         ("notes.txt", b"Dear diary", "text that starts with 'Dear diary'"),
         ("walk.csv", b"Trajectories\n100\n,,A\n", "an export of markers"),
         ("table.csv", b"time_s,colour\n0,red\n1,blue\n", "no measured channel"),
+        ("timeless.csv", b"Unnamed: 0,t1,t2\n0,1500,1500\n1,1510,1600\n",
+         "Did you mean 'Unnamed: 0'? If it holds the times, name it time_s"),
         ("pwm.csv", "\n".join(command_lines()).encode(), "commands alone (pwm.csv)"),
         ("euler.csv", b"t,x,y,z,roll,pitch,yaw\n" + b"".join(
             b"%g,0.1,0.2,%g,0.01,0.02,0.1\n" % (0.1 * k, 0.01 * k) for k in range(40)),

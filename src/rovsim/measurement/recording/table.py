@@ -17,6 +17,12 @@ MISSING = {"", "na", "n/a", "null", "none", "-"}  # words for "not measured", in
 # What loggers write where a sensor gave nothing; believed where no other value comes near.
 FILLERS = (-999.0, -9999.0, -99999.0, 9999.0, 99999.0)
 NEAR = 0.5  # of a filler: a column that reaches so far may mean it
+TIME = "time_s"
+# What people, loggers and pandas call a column of times; one without a name may be such.
+LIKE_TIME = re.compile(
+    r"|unnamed.*|index|t|t[\W_]+.*|.*time.*|.*stamp.*|secs?|seconds|utc.*|clock.*|elapsed.*|date.*",
+    re.IGNORECASE,
+)
 LATEST = 1e11  # s since 1970: the year 5138
 AT_ONCE = 10_000  # lines: where one of them needs a closer look, so many get it
 
@@ -135,6 +141,8 @@ def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
                 expected="every column named once",
                 remedy="Rename or remove one of them.",
             )
+        if name not in names and name == TIME:
+            raise no_time(path, names)
         if name not in names:
             others = [other for other in names if other not in wanted]
             raise BadInput(
@@ -144,6 +152,22 @@ def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
                 remedy=nearest(name, others) if others else "Export again with that column.",
             )
     return [names.index(name) for name in wanted]
+
+
+def no_time(path: Path, names: list[str]) -> BadInput:
+    """The error of a file without a column of times: which one may be it, by its name."""
+    told = [f"'{name}'" if name else f"one without a name (the {k + 1}.)" for k, name in
+            enumerate(names)]  # fmt: skip
+    likely = [one for one, name in zip(told, names, strict=True) if LIKE_TIME.fullmatch(name)]
+    remedy = f"Give the column of the times the name {TIME}."
+    if likely:
+        remedy = f"Did you mean {' or '.join(likely)}? If it holds the times, name it {TIME}."
+    return BadInput(
+        f"no column '{TIME}', but {', '.join(told)}",
+        where=f"{path}, column names",
+        expected=f"a column {TIME}: seconds, dates or times of day (ISO 8601)",
+        remedy=remedy,
+    )
 
 
 def numbers(table: Lines, columns: list[int]) -> Array:

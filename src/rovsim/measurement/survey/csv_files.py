@@ -16,6 +16,7 @@ from rovsim.measurement.recording.table import (
     Lines,
     column_places,
     csv_lines,
+    no_time,
     numbers,
     times,
     without_cut_line,
@@ -62,6 +63,8 @@ def look_into_csv(path: Path, scratch: Path) -> Contents:
 
 def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
     """The error of a file without anything that is known; `unknown` as `_unknown` tells it."""
+    if "time_s" not in lines.names:
+        return no_time(path, lines.names)
     if not unknown:
         return BadInput(
             f"no measured channel and nothing like commands in the columns {_some(lines.names)}",
