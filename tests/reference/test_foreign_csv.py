@@ -128,7 +128,16 @@ def test_a_quaternion_in_another_order_than_its_names_is_doubted(tmp_path, turns
 
 REFUSED = {
     "numbered quaternion": (with_quaternion("q0,q1,q2,q3"), "none says which is w"),
-    "dates of no norm": ([HEAD, *(f"12/05/2026 10:00:{r}" for r in ROWS)], "the cell holds '12/05"),
+    "dates of no norm": ([HEAD, *(f"12/05/2026 10:00:{r}" for r in ROWS)], "line 2.*by ISO 8601"),
+    "afternoons": (
+        [HEAD, *dated("%I:%M:%S PM")],
+        "line 2, column 'time_s': '.*PM' is a date",
+    ),
+    "spreadsheet": ([HEAD, *dated("%m/%d/%Y %I:%M PM")], "not written by ISO 8601.*yyyy-mm-dd"),
+    "afternoons of another name": (
+        [HEAD.replace("time_s", "datetime"), *dated("%Y-%m-%d %I:%M:%S PM")],
+        "run.csv, line 2, column 'datetime'",
+    ),
     "dates, then seconds": ([HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")[:9], *ROWS], "all as dates"),
     "dates of depths": (
         ["time_s,depth_m", "0.1,2026-05-12T10:00:12", "0.2,1"],

@@ -9,12 +9,19 @@ from numpy import ndarray as Array
 
 DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 TIME_OF_DAY = re.compile(r"\d\d:\d\d:\d\d")
+# As people and spreadsheets write them: 27.11.2026, 11/27/2026 1:02 PM, 1:02:03 pm.
+ANY_SPELLING = re.compile(r"\d{1,4}([/.-])\d{1,2}\1\d{1,4}\b.*|\d{1,2}:\d\d\b.*")
 DAY = 86_400.0  # s
 
 
 def is_date(cell: str) -> bool:
     """Whether a cell begins as a date with its time, or as a time of day."""
     return bool(DATE.match(cell) or TIME_OF_DAY.match(cell))
+
+
+def resembles_date(cell: str) -> bool:
+    """Whether a cell is a date or a time of day, however it is written."""
+    return bool(ANY_SPELLING.fullmatch(cell))
 
 
 def to_seconds(cells: Iterable[str]) -> Array:

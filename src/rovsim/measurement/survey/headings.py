@@ -23,6 +23,8 @@ from rovsim.measurement.recording.table import (
     dates,
     find_filler,
     numbers,
+    times,
+    without_cut_line,
 )
 from rovsim.measurement.survey.quaternions import check_quaternion
 
@@ -124,6 +126,8 @@ def _columns(lines: Lines) -> list[Column]:
         return []
     place = places["time_s"]
     dated = dates(lines, place)
+    if dated is not None:
+        times(without_cut_line(lines, [place])[0], place)  # refuses what is no date among them
     time, said = _time(lines, place, plain[place][1]) if dated is None else (1.0, " from dates")
     columns = [Column("time_s", place, time, said)]
     seconds = _values(lines, place) * time if dated is None else dated
@@ -173,7 +177,7 @@ def _time(lines: Lines, place: int, unit: str) -> tuple[float, str]:
     """Factor to seconds of the times, and how it is known."""
     value = _values(lines, place)
     if not np.isfinite(value).any():
-        return UNITS.get(unit, 1.0), ""  # no numbers: the reader says so
+        times(lines, place)  # says what they are
     step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
     named = lines.names[place] == "time_s"
     if named and step < LONGEST_STEP and not np.nanmax(np.abs(value), initial=0.0) > LATEST:
