@@ -185,6 +185,7 @@ def broken(campaign, tmp_path, change):
     [
         (lambda c: c["mocap"].update(body="vehicles"), "'vehicle'"),
         (lambda c: c.update(vehicle="bluerov"), "Did you mean 'bluerov2'"),
+        (lambda c: c.update(vehicle="bluerov"), "campaign.yaml, key 'vehicle': unknown vehicle"),
         (lambda c: c.update(tnak={}), "Did you mean 'tank'"),
         (lambda c: c["commands"].update(columns=[f"u{i}" for i in range(8)]), "u0"),
         (lambda c: c["runs"][0].update(mocap="gone.tsv"), "gone.tsv"),

@@ -24,6 +24,7 @@ HEAVY = "vehicle: bluerov2_heavy\n"
 BAD = {
     HEAVY + "efects: []": "Did you mean 'effects'",
     "vehicle: bluerov2_hevy": "Did you mean 'bluerov2_heavy'",
+    "vehicle: own/vehicle.yaml": "relative to",
     HEAVY + "effects: [{effect: lag}]": "unknown effect 'lag'",
     HEAVY + "effects: [{effect: lift, parameters: {coeficient: 1}}]": "coefficient",
     HEAVY + "effects: [{effect: payload, parameters: {mass: -1}}]": "from 0",
@@ -39,8 +40,9 @@ BAD = {
 def test_a_bad_model_file_is_explained(text, tmp_path):
     path = tmp_path / "bad.yaml"
     path.write_text(text)
-    with pytest.raises(BadInput, match=BAD[text]):
+    with pytest.raises(BadInput, match=BAD[text]) as refusal:
         read_model(path, built_in())
+    assert str(path) in refusal.value.where
 
 
 def test_a_name_that_breaks_its_line_is_refused(tmp_path):
@@ -60,7 +62,7 @@ def changed(tmp_path, change):
 
 def test_a_vehicle_can_be_a_path_or_stand_in_the_model(tmp_path):
     path = changed(tmp_path, lambda v: v["rigid_body"].update(mass=20.0))
-    assert load_vehicle("v.yaml", beside=tmp_path).rigid_body.mass == 20.0
+    assert load_vehicle("v.yaml", named_in=tmp_path / "model.yaml").rigid_body.mass == 20.0
     model = tmp_path / "m.yaml"
     model.write_text(yaml.safe_dump({"vehicle": yaml.safe_load(path.read_text())}))
     world = read_model(model, built_in())

@@ -47,7 +47,7 @@ class CampaignYaml(Text):
 
     def enter(self) -> None:
         campaign = load_campaign(self.folder)
-        load_vehicle(campaign.vehicle, beside=self.folder)
+        load_vehicle(campaign.vehicle, named_in=campaign.file)
         for run in campaign.runs:
             check_sound(read_run(campaign, run.id)[0])
 

@@ -1,7 +1,8 @@
 """Errors a user can act on: what was found, where, what was expected, what to do."""
 
+from contextlib import contextmanager
 from difflib import get_close_matches
-from typing import Iterable, Sequence
+from typing import Iterable, Iterator, Sequence
 
 LONGEST = 1000  # characters of what a message quotes
 MOST = 40  # names that a message lists
@@ -38,6 +39,22 @@ def one_line(text: str) -> str:
 
 def _rebuild(found: str, where: str, expected: str, remedy: str) -> BadInput:
     return BadInput(found, where=where, expected=expected, remedy=remedy)
+
+
+@contextmanager
+def located(file: object) -> Iterator[None]:
+    """Name the file in errors of what is inside, which say where in it they are.
+
+    Raises:
+        BadInput: one of these, its place after the file.
+    """
+    try:
+        yield
+    except BadInput as error:
+        where = error.where if str(file) in error.where else f"{file}, {error.where}"
+        raise BadInput(
+            error.found, where=where, expected=error.expected, remedy=error.remedy
+        ) from None
 
 
 def unlisted(name: str, known: Iterable[str], *, found: str, where: object) -> BadInput:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Iterable, Literal, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from rovsim.core.errors import BadInput, nearest
+from rovsim.core.errors import BadInput, located, nearest
 from rovsim.core.files import plain
 from rovsim.core.names import name_of
 from rovsim.core.schema import Number, PathText, Section, checked
@@ -197,16 +197,17 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     """
     file = checked(ModelFile, content, path)
     if isinstance(file.vehicle, str):
-        vehicle = load_vehicle(file.vehicle, beside=path.parent)
+        vehicle = load_vehicle(file.vehicle, named_in=path)
     else:
         vehicle = build_vehicle(file.vehicle, f"{path}, vehicle")
     residual = None
     if file.residual:
         residual = read_residual(file.residual, path.parent, f"{path}, residual")
     known = catalogue.on(vehicle)
-    added = build_effects(file.effects, known)
-    model = Model(name_of(path), vehicle, (*vehicle.effects(), *added), residual)
-    _ = model.M  # refuse a model that cannot move
+    with located(path):
+        added = build_effects(file.effects, known)
+        model = Model(name_of(path), vehicle, (*vehicle.effects(), *added), residual)
+        _ = model.M  # refuse a model that cannot move
     if file.uncertainty is None or residual is not None:
         return model
     return with_uncertainty(model, file.uncertainty, known, path)

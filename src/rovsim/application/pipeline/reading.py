@@ -14,7 +14,7 @@ from rovsim.simulation.command_columns import mark_angles
 
 def load_campaign_vehicle(campaign: Campaign) -> Vehicle:
     """The vehicle a campaign was recorded with."""
-    return load_vehicle(campaign.vehicle, beside=campaign.file.parent)
+    return load_vehicle(campaign.vehicle, named_in=campaign.file)
 
 
 def read_recording(campaign: Campaign, run: str, outliers: Outliers) -> tuple[Recording, Quality]:

@@ -24,30 +24,34 @@ def known_vehicle(name: str) -> Path | None:
     return conf_file(f"vehicle/{name}.yaml")
 
 
-def vehicle_file(name: str, beside: Path | None = None) -> Path:
-    """The file of a vehicle: of a name in conf/vehicle/, or a path (relative to `beside`).
+def vehicle_file(name: str, named_in: Path | None = None) -> Path:
+    """The file of a vehicle: of a name in conf/vehicle/, or a path.
+
+    `named_in`: the file that names it; a path is relative to the folder that this lies in.
 
     Raises:
         BadInput: there is none.
     """
-    path = known_vehicle(name) or (beside or Path()) / name
+    folder = named_in.parent if named_in else Path()
+    path = known_vehicle(name) or folder / name
     if not path.is_file():
         raise BadInput(
             f"unknown vehicle '{name}'",
-            where=beside or "vehicle",
-            expected="a name in conf/vehicle/ or the path of a vehicle file",
+            where=f"{named_in}, key 'vehicle'" if named_in else "vehicle",
+            expected="a name in conf/vehicle/ or the path of a vehicle file, relative to "
+            + (str(folder) if named_in else "the working folder"),
             remedy=nearest(name, conf_names("vehicle")),
         )
     return path
 
 
-def load_vehicle(name: str, beside: Path | None = None) -> Vehicle:
-    """Load a vehicle by its name in conf/vehicle/, or by a path (relative to `beside`).
+def load_vehicle(name: str, named_in: Path | None = None) -> Vehicle:
+    """Load a vehicle by its name in conf/vehicle/, or by a path (as `vehicle_file` finds it).
 
     Raises:
         BadInput: no such vehicle, or its file does not describe one.
     """
-    path = vehicle_file(name, beside)
+    path = vehicle_file(name, named_in)
     return build_vehicle(read_yaml(path), path)
 
 
