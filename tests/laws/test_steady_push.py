@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.design.doubts import doubt
+from rovsim.design.doubts import doubt, warn_of_wider
 from rovsim.design.flight import draw_chances
 from rovsim.design.from_train_runs import learn
 from rovsim.design.settings import Question
@@ -13,7 +13,9 @@ from rovsim.design.surroundings import surround
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
+from rovsim.dynamics.model import nominal
 from rovsim.dynamics.model_file import EffectEntry, Value
+from rovsim.dynamics.vehicle import load_vehicle
 
 FORCE, HEAVE = 3.0, 2
 NOISE = Noise(np.full(6, 0.02), np.ones(6), np.full(6, 1e-3))
@@ -70,3 +72,12 @@ def test_a_model_that_has_it_is_not_doubted(flown):
     found = learn(model, flown[1], QUESTION, built_in())
     assert abs(found.steady[0].mean[HEAVE]) < 0.2 * FORCE / model.M[HEAVE, HEAVE]
     assert doubt(found, QUESTION) == ()
+
+
+def test_deviations_that_a_model_file_has_wider_are_told():
+    known = NetBuoyancy(force=3.0).with_std({"force": 0.3})
+    base = nominal(load_vehicle("bluerov2_heavy")) + known
+    (said,) = warn_of_wider(base, {"net_buoyancy.force": 0.1})
+    assert "net_buoyancy.force" in said
+    assert "all forces have in common" in said
+    assert warn_of_wider(base, {"net_buoyancy.force": 0.29, "lift.coefficient": None}) == ()

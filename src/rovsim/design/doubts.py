@@ -1,6 +1,6 @@
 """Whether the model follows its own train runs well enough to be flown without looking."""
 
-from typing import Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -20,6 +20,7 @@ from rovsim.reporting.wording import minus
 from rovsim.simulation.replay import predict as replay
 from rovsim.simulation.windows import find_windows
 
+WIDER = 1.5  # times: beyond what two fits of the same runs differ by
 AFTER = 5.0  # s, the longest window of a comparison
 UNITS = ("m/s2",) * 3 + ("rad/s2",) * 3
 NARROW = "one told to stay where it is does, none that moves enough to show anything"
@@ -59,6 +60,18 @@ def warn_of_walls(paths: Array, start: Array, envelope: Envelope) -> tuple[str, 
         "campaign.yaml has no tank, so that no wall is known: the flight begins in the middle of "
         f"where the train runs swam, and leads up to {far:.1f} m away. Keep that much free, or "
         "describe the tank.",
+    )
+
+
+def warn_of_wider(model: Model, now: Mapping[str, float | None]) -> tuple[str, ...]:
+    """What a model file knows less well than the train runs alone say, by `effect.parameter`."""
+    stated = {f"{e.id}.{name}": std for e in model.added for name, std in e.std.items()}
+    wider = [name for name, std in now.items() if std and stated.get(name, 0.0) > WIDER * std]
+    if not wider:
+        return ()
+    return (
+        f"{', '.join(wider)}: the model file has larger deviations than stand here. They hold what "
+        "no flight takes away, as a factor that all forces have in common.",
     )
 
 

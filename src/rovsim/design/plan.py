@@ -77,7 +77,8 @@ def plan(
             anything.
     """
     stage("learning")
-    train = prepare_train(runs, question.replay, catalogue, model.body.free).runs
+    most = question.search.most_seconds
+    train = prepare_train(runs, question.replay, catalogue, model.body.free, most).runs
     usable = select_usable(train)
     if not usable.enough:
         raise BadInput(

@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section
+from rovsim.diagnosis.settings import SearchSettings
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings
 
@@ -48,7 +49,8 @@ class DesignSettings(Section):
 class Question(Section):
     """What is asked, on which settings of signals and replays it depends, and the seed.
 
-    `between` two effects; `know` parameters, as `effect.parameter`.
+    `between` two effects; `know` parameters, as `effect.parameter`. Of `search` only `most_seconds`
+    matters: how much of the train runs is looked at.
     """
 
     between: tuple[str, ...] = ()
@@ -57,4 +59,5 @@ class Question(Section):
     design: DesignSettings = DesignSettings()
     signals: SignalSettings = SignalSettings()
     replay: ReplaySettings = ReplaySettings()
+    search: SearchSettings = SearchSettings()
     seed: int = Field(0, ge=0)

@@ -11,6 +11,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import appearing_together, write_text
 from rovsim.core.progress import staged
 from rovsim.core.run import Commands
+from rovsim.design.doubts import warn_of_wider
 from rovsim.design.plan import STAGES, Plan, plan
 from rovsim.design.report import report
 from rovsim.design.settings import Question
@@ -58,6 +59,8 @@ def design(data: Measured, model: Model, question: Question, catalogue: Catalogu
         )
     site = next(iter(data.motions.values())).site
     experiment = report(found, model.name, question, site)
+    wider = warn_of_wider(model, {n: one.now for n, one in experiment.expects.std.items()})
+    experiment = experiment.model_copy(update={"warnings": (*experiment.warnings, *wider)})
     commands = found.flight.commands
     return Designed(experiment, format_commands(commands, log), _picture(found, commands, log))
 

@@ -18,6 +18,7 @@ from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.schema import checked
 from rovsim.design.settings import DesignSettings, Question
+from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.words.experiment import tell_experiment
 
@@ -29,6 +30,7 @@ class Settings(CampaignSettings):
     know: list[str] | None
     seconds: float
     design: DesignSettings
+    search: SearchSettings
     seed: int = Field(ge=0)
 
 
@@ -47,6 +49,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
 def _ask(settings: Settings) -> Question:
     """What is asked, checked."""
-    asked = settings.model_dump(include={"seconds", "design", "signals", "replay", "seed"})
+    asked = settings.model_dump(
+        include={"seconds", "design", "signals", "replay", "search", "seed"}
+    )
     names = {"between": settings.between or [], "know": settings.know or []}
     return checked(Question, asked | names, "command line")
