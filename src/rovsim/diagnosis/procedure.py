@@ -8,6 +8,7 @@ held out        an addition must help on blocks it was not fitted to, and matter
                 where a velocity is not measured, few blocks must not make it sure
 gate            it must replay stretches well that took no part in choosing
 structure       what is left, and no candidate explains; then those too that nobody would notice
+masked laws     where nothing is: do names stand in for a law that they resemble?
 joint fit       where there is some: all that could be wrong together, pruned; it competes
 wandering       where what seems a current that wanders depends on the place: again, without one
 replay fit      where there is some: values that replay best, rather than foresee the next reading
@@ -33,6 +34,7 @@ from rovsim.diagnosis.answer import (
 )
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
+from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
@@ -109,14 +111,14 @@ def _diagnose(
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
     gate = Gate(apart, usable.runs, wanders=selection.found.noise.drift is not None)
-    found = settle_noticed(selection, usable, gate, seed)
+    found = _unmask(settle_noticed(selection, usable, gate, seed))
     if smoothing and gate.refuses(found.fit.hypothesis.model, base):
         return _diagnose(base, usable, settings, catalogue, seed, stage, smooths=False)
     stage("checking")
     if found.lasting:
         seen = seen_through(base, smoothing)
         joint = settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
-        found = choose(found, joint, gate)
+        found = choose(found, _unmask(joint), gate)
     if found.fit.noise.drift and found.bank.varies_with_place(found.fit.seen.e, found.fit.noise):
         calm = usable.where_no_water_wanders()
         return _diagnose(base, calm, settings, catalogue, seed, stage, smooths)
@@ -143,6 +145,14 @@ def _diagnose(
         proposed=proposed,
         disturbance=None if proposed else _trace(found),
     )  # fmt: skip
+
+
+def _unmask(found: Answer) -> Answer:
+    """An answer that seems to leave nothing, beside a law that its names may stand in for."""
+    if found.lasting or found.whole is not None:
+        return found
+    masked = find_masked_laws(found.selection)
+    return replace(found, structures=(*masked, *found.structures))
 
 
 def _begin(

@@ -1,5 +1,6 @@
 """What a force nobody named might vary with, and whether the remainder does."""
 
+from dataclasses import dataclass
 from itertools import combinations, permutations, product
 from typing import Iterator, Mapping, Sequence
 
@@ -69,13 +70,35 @@ def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
     return found
 
 
+@dataclass(frozen=True)
+class Dependence:
+    """How much of what is left on an axis goes with a function of state, place or time.
+
+    `statistic`: chi-square of what it explains; `size`: RMS of that push in m/s2 or rad/s2;
+    `taken`: the share of the function's power that parameters which were fitted could have taken.
+    """
+
+    name: str
+    statistic: float
+    size: float
+    taken: float
+
+
 def find_dependence(
     residual: AxisResidual, tables: Sequence[Mapping[str, Array]]
 ) -> Iterator[Structure]:
     """Functions of state, place and time, each with one factor for all runs."""
+    limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
+    for one in list_dependences(residual, tables):
+        yield from residual.weigh(one.name, size=one.size, statistic=one.statistic, limit=limit)
+
+
+def list_dependences(
+    residual: AxisResidual, tables: Sequence[Mapping[str, Array]]
+) -> Iterator[Dependence]:
+    """The same, all of them, whether beyond chance or not."""
     target, fitted = np.concatenate(residual.white), residual.fitted
     basis = np.linalg.qr(fitted.T)[0] if len(fitted) else np.empty((len(target), 0))
-    limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
     blocks = number_blocks(residual.runs) if residual.of_channels else None
     for name in tables[0]:
         pushes = [table[name] for table in tables]
@@ -90,10 +113,8 @@ def find_dependence(
         part = abs(factor) * size * np.sqrt(power / whole)
         statistic = factor**2 * power
         if blocks is not None:
-            spread = find_spread(own * (target - factor * own), power, blocks)
-            if statistic <= limit * spread:
-                continue
-        yield from residual.weigh(name, size=part, statistic=statistic, limit=limit)
+            statistic /= find_spread(own * (target - factor * own), power, blocks)
+        yield Dependence(name, statistic, part, 1.0 - power / whole)
 
 
 def find_spread(products: Array, power: float, blocks: Array) -> float:

@@ -253,10 +253,8 @@ def seek_law(selection: Selection) -> Judged | None:
     have another clock there.
     """
     runs, found = selection.workspace.bank.runs, selection.found
-    if not all((run.shown | ~run.free.astype(bool)).all() for run in runs):
-        return None
     terms = list_terms(runs)
-    if not terms:
+    if not terms or not is_seen(selection):
         return None
     thrusts = list_thrust_terms(runs, found.hypothesis.model)
     search = LawSearch(selection, len(terms) + len(thrusts))
@@ -273,6 +271,12 @@ def seek_law(selection: Selection) -> Judged | None:
     if not finished or finished[0].score <= selection.workspace.score(found):
         return None
     return finished[0].beats(finished[1:])
+
+
+def is_seen(selection: Selection) -> bool:
+    """Whether each axis in which the vehicle can move is read at every reading."""
+    runs = selection.workspace.bank.runs
+    return all((run.shown | ~run.free.astype(bool)).all() for run in runs)
 
 
 def weigh(

@@ -1,0 +1,62 @@
+"""A law that names of the catalogue stand in for.
+
+What names leave of a law that they resemble is taken for a disturbance, and beside one of that size
+it does not stand out: a drag u^2 v that was called lift and linear damping was 20 in twice the log
+likelihood under the noise that they leave, and 900 with a noise of its own. So what nearly stands
+out is fitted as a law, with the noise and all else.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from rovsim.diagnosis.checks.regressors import list_dependences, tabulate
+from rovsim.diagnosis.checks.residual import Structure, split_by_axis
+from rovsim.diagnosis.equations.products.as_effect import Surroundings, add_term
+from rovsim.diagnosis.equations.products.library import list_terms, middle_of
+from rovsim.diagnosis.equations.products.products import Products
+from rovsim.diagnosis.equations.products.search import find_alone
+from rovsim.diagnosis.equations.seek import LawSearch, choose_kinds, is_seen, weigh
+from rovsim.diagnosis.selection.rivals import Selection
+
+# In twice the log likelihood. Of all functions of an axis one reaches 15 by chance in one campaign
+# of fifteen, 8 in most; of those that names could have taken half of there are few.
+SUSPECT, RESEMBLES, FAINT = 15.0, 0.5, 8.0
+TRIED = 3  # laws that are fitted
+
+
+def find_masked_laws(selection: Selection) -> list[Structure]:
+    """The law that stands out once it has a noise of its own; none where there is no name."""
+    names = [term for term in selection.found.hypothesis.terms if term.effect.listed]
+    suspect = _find_suspect(selection) if names and is_seen(selection) else None
+    if suspect is None:
+        return []
+    workspace, found = selection.workspace, selection.found
+    runs = workspace.bank.runs
+    terms, middle = list_terms(runs), middle_of(runs)
+    search = LawSearch(selection, len(terms))
+    columns = weigh(workspace, found, terms, middle)
+    order = np.argsort(-find_alone(columns.products), kind="stable")
+    kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
+    around, h = Surroundings.of(runs), found.hypothesis
+    laws = {k: (Products((k,)), add_term(h, (), k, columns, middle, around)) for k in kinds}
+    score = workspace.score(found)
+    for judged in search.race(laws, found).values():
+        if search.is_worth(judged, found, score):
+            return [replace(suspect, surprise=(judged.score - score) / max(search.chance, 1.0))]
+    return []
+
+
+def _find_suspect(selection: Selection) -> Structure | None:
+    """What comes nearest to standing out, of what names could have taken most of, or of all."""
+    bank = selection.workspace.bank
+    tables = [tabulate(run) for run in bank.runs]
+    near = [
+        Structure(
+            residual.axis, one.name, min(1.0, (one.size / residual.level) ** 2), one.statistic
+        )
+        for residual in split_by_axis(selection.found, bank)
+        for one in list_dependences(residual, tables)
+        if one.statistic > (FAINT if one.taken > RESEMBLES else SUSPECT)
+    ]
+    return max(near, key=lambda one: one.surprise, default=None)
