@@ -257,6 +257,25 @@ def test_a_port_in_use_is_one_message(capsys):
     assert "cannot be used" in unfolded(capsys.readouterr().err)
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["campaign=nowhere"], "nowhere: no such file or folder"),
+        (["campaign={raw}", "model=[nominal,no.yaml]"], "no.yaml: no such file"),
+        (["campaign={raw}", "diagnosis={raw}/campaign.yaml"], "not JSON"),
+    ],
+)
+def test_what_is_named_and_cannot_be_opened_is_one_message(bench, words, said, capsys):
+    raw = bench.settings.campaign
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    with pytest.raises(SystemExit) as refused:
+        main(["ui", f"port={port}", "open=false", *(word.format(raw=raw) for word in words)])
+    assert refused.value.code == 2
+    assert said in unfolded(capsys.readouterr().err)
+
+
 def test_a_page_that_is_closed_while_it_asks_is_no_fault():
     def told(error):
         return app.was_answered(

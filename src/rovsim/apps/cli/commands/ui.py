@@ -4,11 +4,12 @@ rovsim ui [campaign=DIR] [model=[nominal,FILE,…]] [diagnosis=OUT/diagnosis.jso
           [open=true]
 
 Served on this machine only, without the internet, until Ctrl+C. Without a campaign it offers those
-in this folder, and one to practise on. What it computes lies in `out` (results/CAMPAIGN/ui). Needs
-the extra rovsim[workbench].
+in this folder, and one to practise on; a campaign, model or diagnosis that cannot be opened is
+refused. What it computes lies in `out` (results/CAMPAIGN/ui). Needs the extra rovsim[workbench].
 """
 
 import socket
+from pathlib import Path
 
 from rovsim.application.settings import WorkbenchSettings
 from rovsim.apps.cli.output import say
@@ -16,6 +17,9 @@ from rovsim.apps.workbench import HOST
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.measurement.campaign import load_campaign
+from rovsim.results.diagnosis import Diagnosis
 
 
 class Settings(WorkbenchSettings):
@@ -26,11 +30,25 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     """Serve until interrupted."""
     require("workbench", by="rovsim ui")
     _free(settings.port)
+    _check(settings, catalogue)
     from rovsim.apps.workbench.app import serve
 
     address = f"http://{HOST}:{settings.port}"
     say(settings, f"The workbench is at {address} (Ctrl+C ends it)", {"address": address})
     serve(settings, catalogue)
+
+
+def _check(settings: Settings, catalogue: Catalogue) -> None:
+    """Refuse what was named and cannot be opened; recordings are read later, on the page."""
+    if settings.campaign is not None:
+        campaign = load_campaign(Path(settings.campaign))
+        vehicle = load_vehicle(campaign.vehicle, named_in=campaign.file)
+        if settings.model != "nominal":
+            from rovsim.application.pipeline.models import load_models  # a second to import
+
+            load_models(settings.model, vehicle, catalogue)
+    if settings.diagnosis is not None:
+        Diagnosis.read(Path(settings.diagnosis))
 
 
 def _free(port: int) -> None:
