@@ -1,6 +1,7 @@
 """`rovsim diagnose`: everything it writes, and nothing for input that cannot be used."""
 
 import json
+import shutil
 
 import pytest
 
@@ -85,6 +86,19 @@ def test_neither_of_compare_and_diagnose_loses_the_other_ones_report(
         main(["compare", *words, "-q"])
         assert (tmp_path / "both" / "report_diagnose.html").read_bytes() == diagnosed
     assert 'id="compare"' in (tmp_path / "both" / "report.html").read_text()
+
+
+@pytest.mark.usefixtures("few_figures")
+def test_without_a_train_run_the_role_of_each_run_is_told(campaign, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(campaign, tmp_path / "tests_alone")
+    described = tmp_path / "tests_alone" / "campaign.yaml"
+    described.write_text(described.read_text().replace("split: train", "split: test"))
+    main(["diagnose", "campaign=tests_alone", "out=found"])
+    said = unfolded(capsys.readouterr().out)
+    assert "no train run could be used" in said
+    assert "Next: Write `split: train` for a run in campaign.yaml" in said
+    assert "3dof-1: test run 6dof-1: test run" in said
 
 
 def test_its_ladder_is_that_of_the_contract(diagnosed):

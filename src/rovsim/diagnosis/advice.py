@@ -26,6 +26,11 @@ CHANNELS = (
     (("yaw",), "a heading (yaw_rad) or a turn rate (r_rad_s)"),
 )
 
+NO_TRAIN = (
+    "Write `split: train` for a run in campaign.yaml that can be used: at least a minute in which "
+    "the vehicle moves."
+)
+
 AWAY = (
     "Correct the model first: look for a negative total drag, a wrong sign or a wrong unit in its "
     "file, or diagnose model=nominal."
@@ -51,13 +56,8 @@ def advise(
         joint: parameters, as `effect.parameter`, that are known only together.
         catalogue: what the effects are, and what reveals each.
     """
-    if not found.enough and found.usable.lost:
-        return AWAY
     if not found.enough:
-        return (
-            "Record train runs of at least a minute in which the vehicle moves: "
-            f"only {found.usable.seconds:.0f} s could be used."
-        )
+        return _begin_again(found)
     parts = []
     smoothed = any(isinstance(one.term.effect, PoseFilter) for one in found.selected)
     if smoothed and any(leads(one) for one in found.selected):
@@ -85,6 +85,18 @@ def advise(
             "only with motion, from the vehicle."
         )
     return " ".join(parts) or _confirm(found)
+
+
+def _begin_again(found: TrainDiagnosis) -> str:
+    """What is needed before anything can be judged."""
+    if found.usable.lost:
+        return AWAY
+    if not found.usable.runs:
+        return NO_TRAIN
+    return (
+        "Record train runs of at least a minute in which the vehicle moves: "
+        f"only {found.usable.seconds:.0f} s could be used."
+    )
 
 
 def _show_more(found: TrainDiagnosis) -> list[str]:

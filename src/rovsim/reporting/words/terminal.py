@@ -101,6 +101,15 @@ def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> s
     return "\n".join(lines)
 
 
+def tell_roles(quality: Mapping[str, Quality]) -> str:
+    """A line for each run: whether it is a train or a test run, and why it is not used."""
+    lines = []
+    for name, one in quality.items():
+        why = f", not used: {one.unusable}" if one.unusable else ""
+        lines += fold(f"{name}: {one.split} run{why}", "  ", "    ")
+    return "\n".join(["", "", *lines])
+
+
 def _effect(share: float, words: Missing) -> list[str]:
     worth, _, sure = words.worth.partition(", ")
     values = [f"      {value}" for value in words.parameters]

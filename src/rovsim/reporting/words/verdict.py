@@ -42,6 +42,7 @@ NO_TEST = (
     "No test run could be used, so there is no error to report. "
     "Write `split: test` for a run in campaign.yaml to hold it out."
 )
+NO_TRAIN = "Nothing could be judged: no train run could be used, and only those are looked at."
 AWAY = "The model cannot be judged: it runs away from the train runs."
 
 
@@ -109,9 +110,13 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
 
 
 def _sentence(found: Diagnosis) -> str:
-    """The verdict; where nothing could be judged as the model was lost, that it was the model."""
-    lost = found.verdict == "insufficient_data" and found.not_followed_from_s
-    return AWAY if lost and not found.ranking else VERDICTS[found.verdict]
+    """The verdict; where nothing could be judged, also what there was none of, or what was lost."""
+    nothing = found.verdict == "insufficient_data" and not found.ranking
+    if nothing and found.not_followed_from_s:
+        return AWAY
+    if nothing and found.looked_at is not None and not found.looked_at.of:
+        return NO_TRAIN
+    return VERDICTS[found.verdict]
 
 
 def _key(effects: int) -> str:

@@ -74,10 +74,13 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         )
         draw(shown)
 
-        from rovsim.reporting.words.terminal import tell_diagnosis, tell_doubts
+        from rovsim.reporting.words.terminal import tell_diagnosis, tell_doubts, tell_roles
 
         files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
-        text = tell_diagnosis(found.diagnosis, catalogue) + tell_doubts(data.quality)
+        text = tell_diagnosis(found.diagnosis, catalogue)
+        if found.diagnosis.verdict == "insufficient_data":
+            text += tell_roles(data.quality)
+        text += tell_doubts(data.quality)
         kept = keep_other(out / "report.html", "diagnose")
         told = join_files(text, files, kept)
         say(settings, told, found.diagnosis.to_json())
