@@ -138,6 +138,10 @@ REFUSED = {
         [HEAD.replace("time_s", "datetime"), *dated("%Y-%m-%d %I:%M:%S PM")],
         "run.csv, line 2, column 'datetime'",
     ),
+    "a word under another name": (
+        [HEAD.replace("x_m", "x [m]"), *ROWS[:3], ROWS[3].replace(",", ",oops,", 1), *ROWS[4:]],
+        r"run.csv, line 5, column 'x \[m\]': the cell holds 'oops'",
+    ),
     "dates, then seconds": ([HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")[:9], *ROWS], "all as dates"),
     "dates of depths": (
         ["time_s,depth_m", "0.1,2026-05-12T10:00:12", "0.2,1"],

@@ -49,6 +49,20 @@ def look_into_csv(path: Path, scratch: Path) -> Contents:
         BadInput: neither a measured channel nor what looks like commands.
     """
     place, notes = rewritten(path, scratch)
+    try:
+        return _look(path, place, notes)
+    except UnknownColumns:
+        raise
+    except BadInput as error:  # of a copy that is gone when its owner reads this
+        where = error.where.replace(str(place), f"{path}, read as a copy with other columns")
+        where = error.where if place == path else where
+        raise BadInput(
+            error.found, where=where, expected=error.expected, remedy=error.remedy
+        ) from None
+
+
+def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
+    """What `place` holds, which is `path` or a copy of it."""
     lines = csv_lines(place)
     known = [name for name in lines.names if name in KNOWN]
     drive = _drive(lines)

@@ -167,8 +167,9 @@ def _values(lines: Lines, place: int) -> Array:
 
 
 def _raw(lines: Lines, place: int) -> Array:
+    whole, cut = without_cut_line(lines, [place])
     try:
-        return numbers(lines, [place])[:, 0]
+        return np.concatenate([numbers(whole, [place])[:, 0], np.full(cut, np.nan)])
     except BadInput:
         return np.full(len(lines), np.nan)
 
@@ -198,7 +199,8 @@ def _group(lines: Lines, here: dict[str, int], units: dict[int, str], time: Arra
     """Columns of one kind; those without a unit in their name get one by their size."""
     if not here:
         return []
-    names = list(here)
+    names, columns = list(here), list(here.values())
+    numbers(without_cut_line(lines, columns)[0], columns)  # refuses words, in the owner's own file
     value = np.stack([_values(lines, place) for place in here.values()], axis=1)
     if names[0] in QUATERNION:
         return [Column(n, p, 1.0, "") for n, p in here.items()]
