@@ -99,6 +99,7 @@ def test_without_a_train_run_the_role_of_each_run_is_told(campaign, tmp_path, mo
     assert "no train run could be used" in said
     assert "Next: Write `split: train` for a run in campaign.yaml" in said
     assert "3dof-1: test run 6dof-1: test run" in said
+    assert "cannot be estimated: nothing was learned of the noise" in said
 
 
 def test_its_ladder_is_that_of_the_contract(diagnosed):

@@ -90,7 +90,8 @@ def _findings(where: ErrorConditions) -> list[str]:
 def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> str:
     """The verdict, the selected effects and those most worth by themselves, with bars."""
     said = explain(found, catalogue)
-    lines = ["", *fold(f"{said.sentence} (verdict: {said.name})"), ""]
+    lines = ["", *fold(f"{said.sentence} (verdict: {said.name})")]
+    lines += [""] if said.missing else []
     for one, words in zip(found.selected, said.missing, strict=True):
         lines += _effect(one.error_reduction or 0.0, words)
     lines += ["", *fold(said.key)] if said.key else []

@@ -202,6 +202,8 @@ def error_sentence(found: Diagnosis) -> str:
     text = f"On the test runs the {ERROR} {now if found.selected else 'is ' + significant(before)}."
     if not math.isfinite(floor):
         why = "not all that is left is noise, or only parts of the pose were measured"
+        if not found.noise.disturbance:
+            why = "nothing was learned of the noise of the train runs"
         text += f" What a perfect model would show cannot be estimated: {why}."
     elif leaves_unexplained(found):
         text += f" {FLOOR_COUNTS_ALL.format(significant(floor))}"
