@@ -1,6 +1,7 @@
 """Diagnose the nominal model."""
 
 from rovsim.application.pipeline.diagnosis import diagnose
+from rovsim.application.provenance import digest_recordings
 from rovsim.application.snakemake_job import job
 from rovsim.diagnosis.settings import DiagnosisSettings
 
@@ -11,5 +12,6 @@ if __name__ == "__main__":
             base=rule.model("nominal"),
             settings=rule.section(DiagnosisSettings),
             catalogue=rule.catalogue,
+            recordings=digest_recordings(rule.campaign),
         )
         found.write(rule.output())

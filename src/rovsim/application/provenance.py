@@ -124,8 +124,17 @@ def provenance(
 
 def digest_files(campaign: Campaign) -> dict[str, str]:
     """The first 16 digits of the SHA-256 of every file of a campaign, by its path from there."""
-    files = (path for path in campaign.files if path.is_file())
-    return {relpath(path, campaign.folder): _sha256(path)[:16] for path in files}
+    return _digest_each(campaign, campaign.files)
+
+
+def digest_recordings(campaign: Campaign) -> dict[str, str]:
+    """The same of the files of its runs alone, without the campaign file."""
+    return _digest_each(campaign, [path for path in campaign.files if path != campaign.file])
+
+
+def _digest_each(campaign: Campaign, files: Sequence[Path]) -> dict[str, str]:
+    there = (path for path in files if path.is_file())
+    return {relpath(path, campaign.folder): _sha256(path)[:16] for path in there}
 
 
 def _sha256(path: Path) -> str:

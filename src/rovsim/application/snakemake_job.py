@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # a study has a hundred jobs: each imports what it uses, wher
     from rovsim.dynamics.catalogue import Catalogue
     from rovsim.dynamics.model import Model
     from rovsim.dynamics.vehicle import Vehicle
+    from rovsim.measurement.campaign import Campaign
     from rovsim.measurement.runs import Runs
     from rovsim.simulation.prediction import Replay
 
@@ -88,12 +89,18 @@ class Job:
         return ReadAgain(self.paths(name), Motion.read)
 
     @property
-    def vehicle(self) -> "Vehicle":
+    def campaign(self) -> "Campaign":
         """That of the input `campaign`."""
-        from rovsim.application.pipeline.reading import load_campaign_vehicle
         from rovsim.measurement.campaign import load_campaign
 
-        return load_campaign_vehicle(load_campaign(self.path("campaign")))
+        return load_campaign(self.path("campaign"))
+
+    @property
+    def vehicle(self) -> "Vehicle":
+        """That of the campaign."""
+        from rovsim.application.pipeline.reading import load_campaign_vehicle
+
+        return load_campaign_vehicle(self.campaign)
 
     def model(self, name: str) -> "Model":
         """The input `model`, or a built-in model, under a name."""

@@ -178,7 +178,9 @@ class Diagnosis(Result):
     `not_observable` effects that the runs could not show, were they there; `not_followed_from_s` s
     from which on the model runs away from a train run, by its id; `runs_away_in`: test runs in
     which it does so within 2 s, and has no error; `standstills` of train runs; `thrusters` their
-    names in the vehicle file: the parameter `t1` of an effect is of the first.
+    names in the vehicle file: the parameter `t1` of an effect is of the first. `recordings` that it
+    is of: the start of each file's SHA-256, by its path from the campaign; empty in files of
+    earlier versions.
     """
 
     noun: ClassVar[str] = "diagnosis"
@@ -207,6 +209,7 @@ class Diagnosis(Result):
     runs_away_in: tuple[str, ...] = ()
     standstills: tuple[Standstill, ...] = ()
     thrusters: tuple[str, ...] = ()
+    recordings: dict[str, str] = Field(default_factory=dict)
     base: dict[str, JsonValue]
     ladder: Ladder
 

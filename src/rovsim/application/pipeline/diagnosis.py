@@ -1,6 +1,7 @@
 """Which effects a model lacks."""
 
-from typing import Callable
+from dataclasses import replace
+from typing import Callable, Mapping
 
 from rovsim.application.pipeline.models import require_physics
 from rovsim.core.progress import staged
@@ -17,15 +18,20 @@ def diagnose(
     base: Model,
     settings: DiagnosisSettings,
     catalogue: Catalogue,
+    recordings: Mapping[str, str],
     failing: Callable[[ErrorConditions], None] = lambda where: None,
 ) -> Diagnosed:
     """Diagnose a model of physics: on the train runs, its worth on the test runs.
 
-    `failing` is told under which conditions the base fails, while the diagnosis goes on.
+    `recordings`: digests of the files that the runs were read from (`digest_recordings`), which the
+    diagnosis keeps. `failing` is told under which conditions the base fails, while the diagnosis
+    goes on.
 
     Raises:
         BadInput: the model has a trained residual, or no physics.
     """
     require_physics(base, "diagnose")
     with staged("diagnosing", STAGES) as stage:
-        return diagnose_campaign(runs, base, settings, catalogue, stage, failing)
+        found = diagnose_campaign(runs, base, settings, catalogue, stage, failing)
+    kept = found.diagnosis.model_copy(update={"recordings": dict(recordings)})
+    return replace(found, diagnosis=kept)

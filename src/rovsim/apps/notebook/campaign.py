@@ -22,7 +22,7 @@ from rovsim.application.pipeline.recordings import (
 )
 from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.training import train
-from rovsim.application.provenance import describe_origin, provenance
+from rovsim.application.provenance import describe_origin, digest_recordings, provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import Settings, compose, select
 from rovsim.apps.notebook import html
@@ -98,7 +98,8 @@ class Campaign:
         path = kept_diagnosis(folder, self.data.campaign, how, base, self._known)
         if not path.exists():
             with in_a_cell():
-                diagnose(self.data.runs, base, how, self.catalogue).write(path)
+                read = digest_recordings(self.data.campaign)
+                diagnose(self.data.runs, base, how, self.catalogue, read).write(path)
         return ShownDiagnosis(Diagnosis.read(path), path, self._known)
 
     def add(

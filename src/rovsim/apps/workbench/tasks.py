@@ -10,7 +10,7 @@ from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_models, load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.pipeline.training import train
-from rovsim.application.provenance import provenance
+from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, WorkbenchSettings, select
 from rovsim.core.progress import reported
@@ -29,7 +29,7 @@ def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
     data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     how = select(settings, DiagnosisSettings)
-    found = diagnose(data.runs, base, how, catalogue)
+    found = diagnose(data.runs, base, how, catalogue, digest_recordings(data.campaign))
     found.write(path)
     return found.diagnosis
 

@@ -34,6 +34,10 @@ from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.fitted import FittedEffect
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
+OF_WHICH = (
+    "An earlier version wrote this file, which does not say of which recordings it is: make sure "
+    "that these are those of this campaign."
+)
 SHOWN = 8  # effects of the ranking, unless more are likely
 
 
@@ -44,6 +48,8 @@ async def show(bench: Workbench, place: Place) -> None:
         _ask(bench)
         return
     found = bench.diagnosis
+    if bench.settings.diagnosis and not found.recordings:
+        text(OF_WHICH, "warning")
     said = explain(found, bench.catalogue)
     ui.html(
         f"<p><strong>{escape(said.sentence)}</strong> <span>({escape(said.name)})</span></p>",

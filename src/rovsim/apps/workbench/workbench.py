@@ -6,6 +6,7 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any, Sequence
 
+from rovsim.application.pipeline.given_diagnosis import read_given_diagnosis
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
 from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_flight, kept_folder
@@ -54,12 +55,13 @@ class Workbench:
         specs = [settings.model] if isinstance(settings.model, str) else settings.model
         paths = dict(zip(found, dict.fromkeys(specs), strict=True))
         bench = Workbench(settings, catalogue.on(data.vehicle), data, found, paths)
-        given = Path(settings.diagnosis) if settings.diagnosis else bench.diagnosis_path
-        if settings.diagnosis or given.exists():
-            bench.diagnosis = Diagnosis.read(given)
-        beside = given.with_name("ladder.json")
-        if settings.diagnosis and beside.exists():
-            bench.study = Ladder.read(beside)
+        if settings.diagnosis:
+            given = Path(settings.diagnosis)
+            bench.diagnosis = read_given_diagnosis(given, data.campaign)
+            beside = given.with_name("ladder.json")
+            bench.study = Ladder.read(beside) if beside.exists() else None
+        elif bench.diagnosis_path.exists():
+            bench.diagnosis = Diagnosis.read(bench.diagnosis_path)
         return bench
 
     @property

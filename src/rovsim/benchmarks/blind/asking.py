@@ -5,6 +5,7 @@ from pathlib import Path
 from rovsim.application.pipeline.bands import cover_test_runs
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.recordings import measure
+from rovsim.application.provenance import digest_recordings
 from rovsim.application.settings import compose, select
 from rovsim.core.progress import heard_by
 from rovsim.diagnosis.apply import add_effects
@@ -22,7 +23,8 @@ def diagnosis(campaign: Path, out: Path) -> Diagnosis:
     how = select(settings, DiagnosisSettings)
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
-        return diagnose(data.runs, nominal(data.vehicle), how, built_in()).diagnosis
+        base, read = nominal(data.vehicle), digest_recordings(data.campaign)
+        return diagnose(data.runs, base, how, built_in(), read).diagnosis
 
 
 def bands(campaign: Path, found: Diagnosis) -> Bands | None:

@@ -15,7 +15,7 @@ from pydantic import Field
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.recordings import measure, open_campaign
-from rovsim.application.provenance import provenance
+from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
 from rovsim.apps.cli.output import choose_folder, join_files, say
 from rovsim.core.extras import installed
@@ -64,7 +64,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             draw(ReportData(where=where, quality=data.quality))
 
         how = select(settings, DiagnosisSettings)
-        found = diagnose(data.runs, base, how, catalogue, draw_early)
+        read = digest_recordings(campaign)
+        found = diagnose(data.runs, base, how, catalogue, read, draw_early)
         found.write(out / "diagnosis.json")
         shown = ReportData(
             quality=data.quality,

@@ -1,0 +1,49 @@
+"""A diagnosis that a user gives: of the open campaign, wherever that lies now."""
+
+from pathlib import Path
+from typing import Mapping
+
+from rovsim.application.provenance import digest_recordings
+from rovsim.core.errors import BadInput
+from rovsim.measurement.campaign import Campaign
+from rovsim.reporting.wording import several
+from rovsim.results.diagnosis import Diagnosis
+
+
+def read_given_diagnosis(path: Path, campaign: Campaign) -> Diagnosis:
+    """A diagnosis of the recordings of a campaign.
+
+    Their contents count, not their names and folders. Files of earlier versions do not say which
+    recordings they are of, and are taken as they are.
+
+    Raises:
+        BadInput: the file is missing or damaged, or it is a diagnosis of other recordings.
+    """
+    found = Diagnosis.read(path)
+    if found.recordings:
+        _refuse_other(path, found.recordings, campaign)
+    return found
+
+
+def _refuse_other(path: Path, diagnosed: Mapping[str, str], campaign: Campaign) -> None:
+    here = digest_recordings(campaign)
+    gone = [name for name, content in diagnosed.items() if content not in here.values()]
+    new = [name for name, content in here.items() if content not in diagnosed.values()]
+    if len(gone) == len(diagnosed):
+        found = f"is a diagnosis of other recordings: none of the {len(gone)} files that it read "
+        found += "is in this campaign"
+    elif gone:
+        said = f"{len(gone)} of the {len(diagnosed)} files that it read are not in this campaign"
+        found = f"is a diagnosis of other recordings: {said} ({several(gone)})"
+    elif new:
+        said = f"it did not read {len(new)} of the {len(here)} files of this campaign"
+        found = f"is a diagnosis of fewer recordings: {said} ({several(new)})"
+    else:
+        return
+    raise BadInput(
+        found,
+        where=path,
+        expected=f"a diagnosis of the recordings of '{campaign.name}' in {campaign.folder}",
+        remedy="Open the campaign that was diagnosed; or leave `diagnosis=` out, and the workbench "
+        "diagnoses this one.",
+    )
