@@ -1,10 +1,13 @@
-"""Words of the terminal and the report: whole phrases, one name for one thing."""
+"""Words of the terminal, the report and the workbench: whole phrases, one name for one thing."""
 
+import ast
 import re
+from pathlib import Path
 
 import pytest
 from pandas import DataFrame
 
+from rovsim.apps import workbench
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.figures import kind
@@ -30,6 +33,7 @@ from rovsim.results.fitted import FittedEffect, FittedValue
 from rovsim.results.ladder import Ladder, Step
 from synthetic_study import study
 
+TURNED_OVER = re.compile(r"\b(dark|light|bright)er\b|\b(black|white|gr[ae]y|pale)\b", re.I)
 FUNCTIONS = "exp|max|tanh|min|to|cdot|le|leftrightarrow|quad|sqrt|sim|pi|top"
 
 
@@ -242,3 +246,20 @@ def test_the_noise_of_recordings_is_in_mm_and_mrad_and_lost_frames_are_counted(c
 def test_the_report_says_once_which_way_heave_is_positive(content):
     page = report.render(report.Report("x", ReportData(where=content["where"])))
     assert page.count("heave down") == 1
+
+
+def said_by(module: Path) -> list[str]:
+    """Sentences in a module's code, which users read; docstrings are for others."""
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    loose = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    texts = (n for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in loose)
+    said = (node.value for node in texts if isinstance(node.value, str))
+    return [one for one in said if re.search(r"\w[.:,;]? \w+ \w", one) and "{" not in one]
+
+
+def test_the_workbench_says_nothing_that_is_wrong_in_the_dark():
+    """There charts and pictures are turned over: what is black on paper is white."""
+    modules = Path(workbench.__file__).parent.glob("*.py")
+    said = [one for module in modules for one in said_by(module)]
+    assert len(said) > 200
+    assert [one for one in said if TURNED_OVER.search(one)] == []

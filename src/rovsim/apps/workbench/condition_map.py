@@ -32,8 +32,9 @@ class FieldMap:
         if not self.shown.axes:
             return
         text(
-            "Darker: more of that axis' squared error. A constant error is in the row throughout "
-            "alone. Click a field to see its bins; or use the arrow keys, and Enter.", "soft",
+            "Percent of that axis' squared error: the more, the stronger the blue. A constant "
+            "error is in the row throughout alone. Click a field to see its bins; or use the arrow "
+            "keys, and Enter.", "soft",
         )  # fmt: skip
         self.at = (0, 0)
         self.chart = chart(
@@ -79,7 +80,7 @@ class FieldMap:
 
 
 def map_chart(shown: ConditionMap) -> Options:
-    """A field for each pair, darker where more of the error varies."""
+    """A field for each pair, in a stronger blue where more of the error varies."""
     axes, conditions = list(shown.axes), list(reversed(shown.conditions))
     data = [
         [k, j, float(share)]

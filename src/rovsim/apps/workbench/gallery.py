@@ -46,7 +46,7 @@ async def entry(bench: Workbench, effect: str) -> None:
         hidden = ", ".join(f"{k} = {minus(f'{v:g}')}" for k, v in cls.signature.values.items())
         text(
             f"Hidden in a calm tank: {hidden}. Left: {_about(cls.signature)}; right: over time. "
-            "Black is what the nominal model misses, orange what the true effect adds.", "soft",
+            "Dots: what the nominal model misses; thick line: what the true effect adds.", "soft",
         )  # fmt: skip
     for title, said in (("Cause", cls.cause), ("What settles it", cls.revealed_by)):
         ui.html(f"<p><strong>{title}.</strong> {escape(said)}</p>", sanitize=False).classes("text")
