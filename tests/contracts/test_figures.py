@@ -5,6 +5,7 @@ import inspect
 import subprocess
 import sys
 from dataclasses import fields, replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -192,6 +193,52 @@ def test_curves_of_the_error_by_condition_are_the_bin_means():
     assert list(curve.get_ydata()) == pytest.approx(np.array(table.mean)[judged].tolist())
 
 
+def wandering(content):
+    """Conditions of models of which the one before the last moved three times as far in surge."""
+    models = dict(content["where"].models)
+    name = list(models)[-2]
+    wider = {
+        condition: one.model_copy(
+            update={key: [3.0 * x for x in getattr(one, key)] for key in ("center", "edges")}
+        )
+        for condition, one in models[name].axes["surge"].items()
+    }
+    models[name] = models[name].model_copy(update={"axes": models[name].axes | {"surge": wider}})
+    return ErrorConditions(models=models)
+
+
+def test_curves_of_all_models_are_inside_their_panels():
+    for axes in drawn("where", {"where": wandering(study(duration=120.0))}).axes[:3]:
+        curves = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) > 2]
+        assert axes.get_xlim()[0] < min(map(min, curves))
+        assert max(map(max, curves)) < axes.get_xlim()[1]
+
+
+@styled()
+def test_titles_of_panels_do_not_meet_however_many_models_there_are():
+    models = {
+        name: one.model_copy(
+            update={
+                "axes": {
+                    axis: {
+                        condition.replace("yaw rate", "distance to the nearest wall").replace(
+                            "surge thrust", "change of surge thrust"
+                        ): table
+                        for condition, table in tables.items()
+                    }
+                    for axis, tables in one.axes.items()
+                }
+            }
+        )
+        for name, one in study()["where"].models.items()
+    }
+    figure = drawn("where", {"where": ErrorConditions(models=models)})
+    figure.draw_without_rendering()
+    for row in np.reshape(figure.axes, (-1, 3)):
+        boxes = [axes.title.get_window_extent() for axes in row]
+        assert all(one.x1 < other.x0 for one, other in pairwise(boxes))
+
+
 def test_a_model_alone_is_not_divided_by_itself():
     comparison = study()["comparison"]
     alone = comparison.model_copy(update={"models": {"nominal": comparison.models["nominal"]}})
@@ -299,6 +346,17 @@ def test_lines_reach_from_the_lowest_to_the_highest_run():
     ends = axes.collections[list(content["comparison"].models).index("knn_6dof")].get_segments()
     np.testing.assert_allclose(ends[1][:, 1], [min(sway), max(sway)])
     assert min(sway) < max(sway)
+
+
+def test_the_whole_of_these_lines_is_inside_the_axes():
+    content = study()
+    for model in content["comparison"].models.values():
+        run = next(run for run in model.runs.values() if run.split == "test")
+        far = run.windows["2"].velocity_rmse.model_copy(update={"sway": 0.4, "yaw": 0.9})
+        run.windows["2"] = run.windows["2"].model_copy(update={"velocity_rmse": far})
+    for axes in drawn("error_by_axis", content).axes:
+        ends = [x for lines in axes.collections for one in lines.get_segments() for x in one[:, 1]]
+        assert max(ends, default=0.0) < axes.get_ylim()[1]
 
 
 def test_noise_does_not_hide_the_residual():

@@ -33,6 +33,7 @@ QUANTITIES = (
     ("acceleration_rmse", "acceleration RMSE", ACCELERATION_UNITS),
 )
 HALVES = (slice(0, 3), slice(3, 6))
+ROOM = 1.06  # above the highest whisker
 TALLEST = 2.5  # times nominal; a higher bar is cut there and its value written above it
 
 
@@ -76,7 +77,7 @@ def _bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
     axes.tick_params(axis="x", length=0)
     axes.grid(False, axis="x")
     axes.set_xlim(-0.5, len(names) - 0.5)
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(bottom=0)  # as high as the bars
     if errors.isna().all(axis=None):
         nothing(axes, "no values")
         axes.set_ylim(0, 1)
@@ -88,7 +89,8 @@ def _whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
     for k, (least, most) in enumerate(zip(low.to_numpy(), high.to_numpy(), strict=True)):
         at = np.arange(len(least)) + (k + 0.5) * width - 0.4
         axes.vlines(at, least, most, color="#222222", linewidth=0.8)
-    axes.set_ylim(bottom=0)
+    highest = float(np.nan_to_num(high.to_numpy()).max(initial=0.0))
+    axes.set_ylim(0, max(axes.get_ylim()[1], ROOM * highest))
 
 
 def _against_nominal(axes: Axes, ratios: DataFrame) -> None:

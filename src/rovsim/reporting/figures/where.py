@@ -31,7 +31,7 @@ def draw(*, where: ErrorConditions) -> Figure:
     models = dict(list(where.models.items())[-SHOWN:])
     style = looks(models)
     searched = [axis for axis in AXES if any(m.axes[axis] for m in models.values())] or AXES
-    figure = sheet(37 * len(searched))
+    figure = sheet(40 * len(searched))
     rows = figure.subplots(len(searched), COLUMNS, sharey="row", squeeze=False)
     for axis, panels in zip(searched, rows, strict=True):
         tables = {name: m.axes[axis] for name, m in models.items()}
@@ -63,13 +63,13 @@ def strongest(models: Sequence[Mapping[str, ConditionTable]]) -> list[str]:
 
 
 def _title(name: str, models: Sequence[Mapping[str, ConditionTable]]) -> str:
-    """Name and unit of a condition, and the shares that it explains, model by model."""
+    """Name and unit of a condition; below, the shares that it explains, model by model."""
     known = [tables for tables in models if name in tables]
     if not known:
         return ""
     shares = ", ".join(f"{100 * find_varying_shares(tables)[name]:.0f}" for tables in known)
     shown = name.replace("distance to the nearest", "distance to")
-    return f"{shown} ({chart_bins(known[0][name]).unit}): {shares} %"
+    return f"{shown} ({chart_bins(known[0][name]).unit})\n{shares} %"
 
 
 def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str, Look]) -> None:
@@ -78,13 +78,12 @@ def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str,
         nothing(axes, "no values")
         axes.set_xticks([])
         return
-    last = list(tables.values())[-1]
-    _counts(axes, last)
-    for order, (name, table) in enumerate(tables.items()):
-        _curve(axes, chart_bins(table), style[name], 2 + order)
+    _counts(axes, list(tables.values())[-1])
+    curves = {name: chart_bins(table) for name, table in tables.items()}
+    for order, (name, curve) in enumerate(curves.items()):
+        _curve(axes, curve, style[name], 2 + order)
     axes.locator_params(axis="x", nbins=5)
-    shown = chart_bins(last)
-    centers = shown.center[shown.seen]
+    centers = np.concatenate([curve.center[curve.seen] for curve in curves.values()])
     room = 0.08 * max(float(np.ptp(centers)), 1e-9)
     axes.set_xlim(float(centers.min()) - room, float(centers.max()) + room)
 
