@@ -5,12 +5,13 @@ from io import StringIO
 
 import numpy as np
 
-from rovsim.apps.workbench import charts, path, runaway
+from rovsim.apps.workbench import charts, ladder, path, runaway
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.traces import beside, panels
 from rovsim.core.rotations import short_way, to_euler
 from rovsim.dynamics.catalogue import built_in
+from rovsim.results.ladder import Ladder, Step
 from rovsim.simulation.bands import Band
 
 
@@ -170,3 +171,40 @@ def test_curves_are_thinned_and_keep_their_gaps():
     found = np.array(charts.points(time, values))
     assert len(found) <= 2 * charts.POINTS
     np.testing.assert_array_equal(np.isnan(found[:, 1]), found[:, 0] > 30)
+
+
+STEPS = {"zero_acceleration": 1.0, "nominal": 0.2, "+thruster_lag": 0.05, "noise_floor": 0.0442}
+
+
+def a_ladder(**errors):
+    steps = (STEPS | errors).items()
+    return Ladder(steps=tuple(Step(model=name, windows_2s=error) for name, error in steps))
+
+
+def test_the_line_of_the_noise_floor_stands_where_its_number_says():
+    line = ladder.chart_of(a_ladder())["series"][0]["markLine"]
+    assert line["data"] == [{"xAxis": 0.0442}]
+    assert line["precision"] == -1  # ECharts' own would draw it at 0.04
+    assert line["label"]["formatter"] == "noise floor 0.0442"
+
+
+def test_a_baseline_far_above_all_models_is_cut_on_the_screen_as_on_paper():
+    shown = ladder.chart_of(a_ladder())
+    assert 0.2 < shown["xAxis"]["max"] < 0.25
+    first, second, _ = shown["series"][0]["data"]
+    assert first["value"] == 1.0  # so says the CSV
+    assert (first["label"]["formatter"], first["label"]["position"]) == ("1.00 →", "insideRight")
+    assert (second["label"]["formatter"], second["label"]["position"]) == ("0.200", "right")
+    near = ladder.chart_of(a_ladder(zero_acceleration=0.3))
+    assert near["xAxis"]["max"] > 0.3
+    assert near["series"][0]["data"][0]["label"]["position"] == "right"
+
+
+def test_measures_of_the_ladder_stand_under_headings_of_their_own(monkeypatch):
+    told = []
+    monkeypatch.setattr(ladder, "table", lambda *given: told.extend(given))
+    ladder._table(a_ladder())
+    _, heads, rows, groups = told
+    assert groups == [("in standard deviations", 1), ("mean absolute error of the velocity", 6)]
+    assert heads[:3] == ["model", "2 s error", "surge (m/s)"]
+    assert [len(cells) for _, cells in rows] == [len(heads) - 1] * 4

@@ -1,7 +1,7 @@
 """What the ladder and the conditions of error show: decided here, drawn on paper and on screen."""
 
 from dataclasses import dataclass
-from typing import Mapping
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -12,9 +12,12 @@ from rovsim.reporting.figures.palette import FAMILIES, Look, family
 from rovsim.reporting.wording import title
 from rovsim.results.base import or_nan
 from rovsim.results.error_conditions import ConditionTable, ModelConditions
-from rovsim.results.ladder import Ladder
+from rovsim.results.ladder import NOISE_FLOOR, Ladder
 
 NAME = 28  # letters of a step's name
+ROOM = 1.14  # for the values behind the bars
+BASELINE = "zero_acceleration"
+FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the models can be told apart
 
 
 @dataclass(frozen=True)
@@ -29,10 +32,19 @@ class LadderBar:
 
 @dataclass(frozen=True)
 class LadderChart:
-    """Bars from the first step down, and the noise floor, a bound and no model (NaN if unknown)."""
+    """Bars from the first step down, and the noise floor, a bound and no model (NaN if unknown).
+
+    `end` of the axis; a bar that is longer is cut there.
+    """
 
     bars: tuple[LadderBar, ...]
     noise_floor: float
+    end: float
+
+    @property
+    def beyond(self) -> tuple[LadderBar, ...]:
+        """Bars that are cut."""
+        return tuple(bar for bar in self.bars if bar.value > self.end)
 
 
 def chart_ladder(ladder: Ladder) -> LadderChart:
@@ -41,7 +53,21 @@ def chart_ladder(ladder: Ladder) -> LadderChart:
         LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), FAMILIES[family(s.model)])
         for s in ladder.models
     )
-    return LadderChart(bars, or_nan(ladder.noise_floor))
+    floor = or_nan(ladder.noise_floor)
+    return LadderChart(bars, floor, _end({bar.model: bar.value for bar in bars}, floor))
+
+
+def _end(steps: Mapping[str, float], floor: float) -> float:
+    """Where the axis ends; a baseline that is far higher than all models is cut."""
+    known = {n: v for n, v in {**steps, NOISE_FLOOR: floor}.items() if np.isfinite(v)}
+    models = max((v for n, v in known.items() if n != BASELINE), default=0.0)
+    cut = 0.0 < FAR * models < known.get(BASELINE, 0.0)
+    return ROOM * (models if cut else max(known.values(), default=0.0)) or 1.0
+
+
+def tell_beyond(bars: Sequence[LadderBar]) -> str:
+    """Which bars are cut, in words."""
+    return f"The bar of {bars[0].label} is longer than the axis." if bars else ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,9 +17,9 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.reporting.charts import chart_ladder
+from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import significant, title
+from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, significant, title
 from rovsim.results.base import or_none
 from rovsim.results.ladder import Ladder
 
@@ -30,15 +30,27 @@ KINDS = {"knn": "nearest neighbours (KNN)", "gp": "Gaussian process (GP)"}
 async def show(bench: Workbench, place: Place) -> None:
     """Show the screen."""
     heading(TITLE, QUESTION)
-    text(
-        "Each step on the test runs, to which nothing was fitted: velocity error of the model, "
-        "restarted from the measured state every 2 s, in units of the measured velocity's "
-        "standard deviation."
-    )
+    text(f"Each model on the test runs, to which nothing was fitted. {ERROR_MEANING}.")
     ladder = await computed(bench.ladder)
-    about = "Error of each step, the noise floor as a line"
-    names = {"names": ("step", "error (standard deviations of the measured velocity)")}
-    chart(chart_of(ladder), about, 60 + 36 * len(ladder.steps), columns=names)
+    remarks = _remarks(ladder)
+    if remarks:
+        text(remarks, "soft")
+    about = f"{ERROR} of each model, the noise floor as a line"
+    names = {"names": ("model", "error (standard deviations of the measured velocity)")}
+    chart(chart_of(ladder), about, 80 + 36 * len(ladder.steps), columns=names)
+    _table(ladder)
+    _train(bench)
+    _report(bench)
+
+
+def _remarks(ladder: Ladder) -> str:
+    """Which rows build on each other, and which bar is cut."""
+    rows = LADDER if any(STEP.fullmatch(step.model) for step in ladder.steps) else ""
+    return " ".join(filter(None, (rows, tell_beyond(chart_ladder(ladder).beyond))))
+
+
+def _table(ladder: Ladder) -> None:
+    """The 2 s error, and beside it, under a heading of its own, what velocities err by."""
     rows = [
         (
             title(s.model),
@@ -50,10 +62,8 @@ async def show(bench: Workbench, place: Place) -> None:
         for s in ladder.steps
     ]  # fmt: skip
     heads = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
-    table("The steps, and their mean absolute velocity errors in 2 s windows",
-          ["step", "error", *heads], rows)  # fmt: skip
-    _train(bench)
-    _report(bench)
+    groups = [("in standard deviations", 1), ("mean absolute error of the velocity", len(AXES))]
+    table("Models on the test runs, restarted every 2 s", ["model", ERROR, *heads], rows, groups)
 
 
 def _train(bench: Workbench) -> None:
@@ -94,23 +104,38 @@ def chart_of(ladder: Ladder) -> Options:
     """Bars from the first step down; the noise floor is a line, for it is a bound and no model."""
     shown = chart_ladder(ladder)
     floor = or_none(shown.noise_floor)
-    bars = [{"value": or_none(b.value), "itemStyle": {"color": b.look.color}} for b in shown.bars]
+    bars = [
+        {"value": or_none(bar.value), "itemStyle": {"color": bar.look.color},
+         "label": _label(bar, cut=bar in shown.beyond)}
+        for bar in shown.bars
+    ]  # fmt: skip
     line = {
         "symbol": "none", "silent": True, "data": [{"xAxis": floor}],
+        "precision": -1,  # where the number says; of itself ECharts rounds to two decimals
         "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
         "label": {"formatter": f"noise floor {significant(shown.noise_floor)}", "position": "start",
                   "color": INK},
     }  # fmt: skip
     return {
-        "grid": {"left": 8, "right": 56, "top": 30, "bottom": 8, "containLabel": True},
-        "xAxis": {"type": "value", "min": 0, "axisLabel": {"color": SOFT},
+        "grid": {"left": 8, "right": 56, "top": 30, "bottom": 28, "containLabel": True},
+        "xAxis": {"type": "value", "min": 0, "max": shown.end,
+                  "name": f"{ERROR} (standard deviations)", "nameLocation": "middle",
+                  "nameGap": 26, "nameTextStyle": {"color": SOFT},
+                  "axisLabel": {"color": SOFT, "showMaxLabel": False},
                   "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
         "yAxis": {"type": "category", "inverse": True, "axisTick": {"show": False},
                   "data": [bar.label for bar in shown.bars], "axisLabel": {"color": INK}},
         "series": [{
             "type": "bar", "data": bars, "barMaxWidth": 22,
-            "label": {"show": True, "position": "right", "color": INK,
-                      ":formatter": "p => Number(p.value).toPrecision(3)"},
             **({"markLine": line} if floor is not None else {}),
         }],
     }  # fmt: skip
+
+
+def _label(bar: LadderBar, cut: bool) -> Options:
+    """The number of a bar behind it, or on it where the bar leaves the axis."""
+    text = significant(bar.value)
+    if cut:
+        return {"show": True, "position": "insideRight", "color": INK, "padding": [3, 4],
+                "backgroundColor": "#ffffff", "formatter": f"{text} →"}  # fmt: skip
+    return {"show": True, "position": "right", "color": INK, "formatter": text}
