@@ -1,11 +1,12 @@
 """What the workbench offers to open: folders as they are, and campaigns that were opened before."""
 
 import os
+from pathlib import Path
 
 import pytest
 
 from rovsim.apps.workbench import folders
-from rovsim.apps.workbench.folders import look, remember, shown
+from rovsim.apps.workbench.folders import look, remember, shown, tell_unopenable
 
 
 @pytest.fixture(autouse=True)
@@ -83,3 +84,19 @@ def test_where_nothing_can_be_kept_nothing_is(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "file"))
     remember(campaign(tmp_path / "c"))
     assert folders.list_recent() == []
+
+
+def test_what_cannot_be_opened_is_told_with_its_whole_path_and_what_to_do(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    described = campaign(tmp_path / "may") / "campaign.yaml"
+    (tmp_path / "run.tsv").write_text("x")
+    for place in (tmp_path, described, described.parent):
+        assert tell_unopenable(place) == ""
+    nowhere = tell_unopenable(Path("lab/june"))
+    assert nowhere.startswith(
+        f"{tmp_path}/lab/june: no such file or folder. Expected the folder of"
+    )
+    a_file = tell_unopenable(Path("run.tsv"))
+    assert "run.tsv: this is a file." in a_file
+    assert a_file.endswith(f"Open {tmp_path}.")
+    assert "Expected the folder" in tell_unopenable(Path("a\0b"))

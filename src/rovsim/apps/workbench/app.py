@@ -212,10 +212,9 @@ class Page:
         from rovsim.apps.workbench import campaigns, new_campaign
 
         if session.proposal is not None:
-            new_campaign.show(
-                session.proposal, str(session.described), session.write, session.leave
-            )
+            new_campaign.show(session.proposal, session.described, session.write, session.leave)
             return
+        session.work.trouble = ""  # of looking into a folder: said here
         typed = session.typed if session.problem else ""
         campaigns.show(session.choose, session.practise, session.problem, typed)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from platformdirs import user_state_path
 
-from rovsim.core.errors import RovsimError
+from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json, write_json
 
 MOST = 200  # folders listed of one
@@ -63,6 +63,20 @@ def look(folder: Path, part: str = "") -> Listing:
     inside = tuple(Inside(path, _holds_campaign(path)) for path in paths)
     files = sum(not is_folder for _, is_folder in seen)
     return Listing(folder, parents, inside, len(names) - len(inside), files)
+
+
+def tell_unopenable(place: Path) -> str:
+    """Why neither a campaign nor a folder of recordings lies at a place; empty if one may."""
+    found, remedy = "no such file or folder", "Check the path, or look for the folder below."
+    try:
+        if place.is_dir() or (place.suffix in (".yaml", ".yml") and place.is_file()):
+            return ""
+        if place.exists():
+            found, remedy = "this is a file", f"Open {place.absolute().parent}."
+    except (OSError, ValueError) as error:  # nobody may look, or no system takes such a name
+        found = str(error)
+    expected = "the folder of a campaign, or of recordings"
+    return str(BadInput(found, where=place.absolute(), expected=expected, remedy=remedy))
 
 
 def _is_folder(entry: os.DirEntry) -> bool:

@@ -1,19 +1,24 @@
 """Open, where nobody has described the recordings: what is in them, and what has to be asked."""
 
-from typing import Callable, Mapping
+from pathlib import Path
+from typing import Any, Callable, Mapping, Sequence
 
 from nicegui import ui
 
 from rovsim.application.intake.proposal import Proposal, Question
+from rovsim.apps.workbench.folders import DESCRIPTION, shown
 from rovsim.apps.workbench.parts import Failure, heading, section, text
 from rovsim.core.errors import RovsimError
+from rovsim.reporting.wording import listed
 
 TITLE, QUESTION = "New campaign", "What is in these recordings?"
+GUESS = "guess: "
 TOPICS = {
     "vehicle": "Vehicle",
     "mocap.body": "Body",
     "mocap.world_axes": "Axes of the world",
     "mocap.body_axes": "Axes of the rigid body",
+    "mocap.velocity": "Velocities",
     "runs": "Runs",
     "commands.kind": "Kind of commands",
     "commands.columns": "Columns of commands",
@@ -22,13 +27,16 @@ TOPICS = {
 
 def show(
     proposal: Proposal,
-    folder: str,
+    folder: Path,
     write: Callable[[Mapping[str, str]], None],
     leave: Callable[[], None],
 ) -> None:
-    """Show the screen; `write` takes answers by place, `leave` goes back to other folders."""
+    """Show the screen; `write` takes answers by place, `leave` goes back to other folders.
+
+    `folder`: an absolute path.
+    """
     heading(TITLE, QUESTION)
-    text(f"{folder} holds no campaign.yaml. This is what stands in its files.")
+    text(f"{shown(folder)} holds no campaign.yaml. This is what stands in its files.")
     with ui.column().classes("effects found"):
         for line in proposal.found:
             text(line)
@@ -42,11 +50,17 @@ def show(
             answers[question.place] = _field(question)
 
     def answered() -> None:
+        given = {place: value() for place, value in answers.items()}
+        open_still = tell_unanswered(proposal.questions, given)
+        if open_still:
+            failure.tell(open_still)
+            return
         try:
-            write({place: value() for place, value in answers.items()})
+            write(given)
         except RovsimError as error:
             failure.tell(error)
 
+    text(f"It is written as `{shown(folder / DESCRIPTION)}`, and can be edited later.", "soft")
     with ui.row().classes("controls"):
         ui.button("Write campaign.yaml and open it", on_click=answered).props("unelevated no-caps")
         ui.button("Another folder", on_click=leave).props("flat no-caps")
@@ -55,27 +69,55 @@ def show(
 
 def _guesses(proposal: Proposal) -> None:
     """What was taken for a reason that may be wrong."""
-    told = {
-        (place.partition(".")[0] if place.startswith("runs.") else place, line)
-        for place, lines in proposal.comments.items()
-        for line in lines
-        if line.startswith("guess: ")
-    }
+    told = list_guesses(proposal)
     if not told:
         return
     section("Taken, and why")
     with ui.column().classes("effects"):
-        for place, line in sorted(told):
-            reason = line.removeprefix("guess: ")
-            text(f"{TOPICS.get(place, place)}: {_value(proposal, place)}{reason}")
+        for line in told:
+            text(line)
+
+
+def list_guesses(proposal: Proposal) -> list[str]:
+    """What was taken and why, a line each: of the campaign, then run by run."""
+    guesses = [
+        (place, line.removeprefix(GUESS))
+        for place, lines in proposal.comments.items()
+        for line in lines
+        if line.startswith(GUESS)
+    ]
+    guesses.sort(key=lambda one: one[0].startswith("runs."))
+    told = [f"{_topic(proposal, at)}: {_value(proposal, at)}{why}" for at, why in guesses]
+    return list(dict.fromkeys(told))
+
+
+def tell_unanswered(questions: Sequence[Question], answers: Mapping[str, str]) -> str:
+    """Which questions have no answer by place yet, by what their fields are called."""
+    left = [q.place for q in questions if not answers.get(q.place, "").strip()]
+    names = listed([TOPICS.get(place, place) for place in left])
+    return f"No answer yet: {names}. Answer every question; no file does." if left else ""
+
+
+def _topic(proposal: Proposal, place: str) -> str:
+    """What a key is about; of a run, which one."""
+    if place.startswith("runs."):
+        return f"Run {_find(proposal, '.'.join(place.split('.')[:2]))['id']}"
+    return TOPICS.get(place, place)
+
+
+def _find(proposal: Proposal, place: str) -> Any:
+    """What campaign.yaml would hold at a place."""
+    value: Any = proposal.content
+    for part in place.split("."):
+        value = value[int(part)] if isinstance(value, list) else value[part]
+    return value
 
 
 def _value(proposal: Proposal, place: str) -> str:
-    value = proposal.content
-    for part in place.split("."):
-        value = value[part]
-    shown = ", ".join(value) if isinstance(value, list) and isinstance(value[0], str) else value
-    return f"{shown}; " if isinstance(shown, str) else ""
+    value = _find(proposal, place)
+    is_list = isinstance(value, list) and value and isinstance(value[0], str)
+    told = ", ".join(value) if is_list else value
+    return f"{told}; " if isinstance(told, str) else ""
 
 
 def _field(question: Question) -> Callable[[], str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Iterator, Mapping
 
 from rovsim.application.settings import WorkbenchSettings, compose
-from rovsim.apps.workbench.folders import remember
+from rovsim.apps.workbench.folders import DESCRIPTION, remember, tell_unopenable
 from rovsim.apps.workbench.work import LongWork, reap
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
@@ -51,8 +51,12 @@ class Session:
             self.problem = "Type a folder first, or choose one below."
             self._changes += 1
             return
-        if place.is_dir() and not (place / "campaign.yaml").exists():
-            self._look_into(place)
+        if problem := tell_unopenable(place):
+            self.problem = problem
+            self._changes += 1
+            return
+        if place.is_dir() and not (place / DESCRIPTION).exists():
+            self._look_into(place.absolute())
             return
         if self.bench is not None:
             self._before = (self.settings, self.bench)

@@ -87,8 +87,13 @@ def rewritten(path: Path, scratch: Path) -> tuple[Path, tuple[str, ...]]:
         return path, ()
     copy = scratch / f"{path.stem}.csv"
     write_text(copy, _text(lines, {c.place: c for c in found}))
-    told = [f"'{lines.names[c.place]}' is {c.ours}{c.said}" for c in changed]
+    told = [f"'{lines.names[c.place]}' is {_without_unit(c.ours)}{c.said}" for c in changed]
     return copy, (f"{path.name} is read as a copy with other columns: {'; '.join(told)}",)
+
+
+def _without_unit(ours: str) -> str:
+    """The name of a column without our unit, where the file's own is told."""
+    return re.sub(r"_(s|m|rad)(_s2?)?$", "", ours)
 
 
 def _text(lines: Lines, columns: dict[int, Column]) -> str:

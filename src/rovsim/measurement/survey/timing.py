@@ -36,7 +36,9 @@ class Timing:
     def __str__(self) -> str:
         said = f"{self.rows} rows, {self.seconds:.1f} s at {self.rate:.4g} Hz"
         if self.jitter > JITTERY:
-            said += f", steps vary by {self.jitter:.0%}"
-        if self.gaps:
+            said += f", steps vary by {100 * self.jitter:.0f} %"
+        if self.gaps == 1:
+            said += f", a gap of {self.longest:.2f} s"
+        elif self.gaps:
             said += f", {self.gaps} gaps, the longest {self.longest:.2f} s"
         return said
