@@ -26,12 +26,15 @@ def test_a_planned_flight_is_shown_with_what_it_promises_and_what_to_do(tab, pho
         assert one.numbers() == {"thruster_lag.time_constant/now": 0.02,
                                  "thruster_lag.time_constant/then": 0.005}  # fmt: skip
         assert one.page.get_by_text("over a million").count() == 1
-        assert one.page.get_by_role("listitem").all_inner_texts()[-1] == "Send experiment.csv."
+        steps = one.page.locator(".text > div > ol > li, .text > ol > li")
+        assert steps.nth(1).inner_text() == "Send experiment.csv."
+        assert steps.count() == 3  # what is done by hand stands under the third
+        assert one.page.locator("ol ul > li").all_inner_texts()[-1] == "Leave alone: sway."
         assert one.page.evaluate("document.scrollingElement.scrollWidth - innerWidth") <= 0
     tab.picture("flight", height=1250)
     with tab.page.expect_download() as log:
         tab.page.get_by_role("button", name="Commands (experiment.csv)").click()
     assert log.value.path().read_bytes() == (folder / "experiment.csv").read_bytes()
-    tab.page.get_by_role("spinbutton", name="Seconds").fill("25")
+    tab.page.get_by_role("spinbutton", name="Length (s)").fill("25")
     tab.page.get_by_role("button", name="Plan the flight").wait_for()  # another question
     tab.page.wait_for_function("location.search.includes('seconds=25')")

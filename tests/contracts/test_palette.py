@@ -70,6 +70,9 @@ def test_parts_and_libraries_of_one_panel_are_told_apart():
         assert len(set(drawn.values())) == len(drawn)
     looks = [(one.color, one.dash) for one in (*budget.KNOWN.values(), *budget.ADDED)]
     assert len(set(looks)) == len(looks)
+    for (one, dash), (other, same) in itertools.combinations(looks, 2):
+        if dash == same:
+            assert np.linalg.norm(lab(one, SEEN["all"]) - lab(other, SEEN["all"])) > 30.0
 
 
 def test_members_of_a_family_differ_by_dashes_whatever_the_base():

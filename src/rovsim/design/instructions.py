@@ -29,8 +29,8 @@ def instruct(flight: Tried, axes: Array, start: Start, limits: FlightLimits) -> 
         "0.1 m and 5 degrees.",
         "Start the recording, then send experiment.csv as it is, from a computer. No pilot and no "
         "autopilot may act beside it: what keeps the vehicle level is in the commands.",
-        "By hand instead: let an autopilot hold attitude and depth, log what the thrusters are "
-        "told, keep away from the walls, and move the sticks so:",
+        "By hand, instead of step 2: start the recording, let an autopilot hold attitude and "
+        "depth, log what the thrusters are told, keep away from the walls, and move the sticks so:",
         *(_numbers(flight, axes) if len(flight.numbers) else _usual(flight)),
         f"A full stick is what holds {limits.speed:g} m/s, {limits.turn_rate:g} rad/s or "
         f"{np.degrees(limits.tilt):.0f} degrees of tilt, or full thrust where that is less.",

@@ -4,6 +4,7 @@ import textwrap
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
+from typing import Sequence
 
 from rovsim.application.pipeline.models import require_physics
 from rovsim.application.pipeline.recordings import Measured
@@ -22,10 +23,11 @@ from rovsim.measurement.recording.commands import as_logged
 from rovsim.measurement.recording.commands_csv import format_commands
 from rovsim.reporting.figures.planned_flight import PlannedFlight, draw_flight
 from rovsim.reporting.figures.style import save
+from rovsim.reporting.words.experiment import list_steps
 from rovsim.results.experiment import Experiment
 
 WIDTH = 96  # letters of a line of instructions
-UNITS = {"pwm": "µs", "normalized": "1", "demand": "1", "wrench": "N, N m"}
+UNITS = {"pwm": "µs", "normalized": "−1 to 1", "demand": "−1 to 1", "wrench": "N, N m"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +75,24 @@ def write_flight(out: Path, found: Designed) -> None:
     """
     digest = sha256(found.log.encode()).hexdigest()
     experiment = found.experiment.model_copy(update={"commands_sha256": digest})
-    steps = (textwrap.fill(one, WIDTH) for one in experiment.instructions)
     with appearing_together(out, last="experiment.json") as folder:
         write_text(folder / experiment.commands, found.log)
         save(draw_flight(found.picture), folder, "experiment")
-        write_text(folder / "instructions.txt", "\n\n".join(steps) + "\n")
+        write_text(folder / "instructions.txt", format_instructions(experiment.instructions))
         experiment.write(folder / "experiment.json")
+
+
+def format_instructions(instructions: Sequence[str]) -> str:
+    """Numbered steps, and under them what belongs to each, as a text."""
+    lines: list[str] = []
+    for number, (step, parts) in enumerate(list_steps(instructions), 1):
+        lines.append(_fill(step, f"{number}. "))
+        lines += [_fill(part, "   * ") for part in parts]
+    return "\n\n".join(lines) + "\n"
+
+
+def _fill(text: str, mark: str) -> str:
+    return textwrap.fill(text, WIDTH, initial_indent=mark, subsequent_indent=" " * len(mark))
 
 
 def _refuse(question: Question) -> None:

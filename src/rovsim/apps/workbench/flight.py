@@ -27,7 +27,8 @@ from rovsim.core.schema import checked
 from rovsim.design.settings import LONGEST, SHORTEST, Question
 from rovsim.dynamics.effects.thrusters import with_thruster_names
 from rovsim.dynamics.model_file import describe_effect
-from rovsim.reporting.words.experiment import size_of_odds, tell_limits, tell_share
+from rovsim.reporting.catalogue.entries import unit
+from rovsim.reporting.words.experiment import list_steps, size_of_odds, tell_limits, tell_share
 from rovsim.results.experiment import Experiment
 
 TITLE, QUESTION = "Flight", "Which flight would tell most?"
@@ -83,7 +84,7 @@ class Flight:
             else:
                 self._choice("know", ui.select(known, label="Values (none: all)", multiple=True))
             self._choice("model", ui.select(self.known, label="Model"))
-            seconds = ui.number("Seconds", min=SHORTEST, max=LONGEST, precision=0)
+            seconds = ui.number("Length (s)", min=SHORTEST, max=LONGEST, precision=0)
             self._choice("seconds", seconds.props("debounce=500"))  # ms, for two more digits
 
     async def _values(self) -> list[str]:
@@ -173,8 +174,7 @@ def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
                 on_click=lambda _, path=folder / name: ui.download.file(path),
             ).props("outline no-caps")  # fmt: skip
     section("What to do")
-    steps = "".join(f"<li>{escape(one)}</li>" for one in found.instructions)
-    ui.html(f"<ol>{steps}</ol>", sanitize=False).classes("text")
+    ui.html(_numbered(found.instructions), sanitize=False).classes("text")
     section("What the usual manoeuvres would tell")
     rows = [(name, [words(tell_share(one))]) for name, one in found.baselines.items()]
     table(
@@ -182,6 +182,19 @@ def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
         ["manoeuvre", "beside this flight"],
         rows,
     )
+
+
+def _numbered(instructions: Sequence[str]) -> str:
+    """Instructions as HTML: numbered steps, and under them what belongs to each."""
+
+    def items(texts: Sequence[str]) -> str:
+        return "".join(f"<li>{escape(one)}</li>" for one in texts)
+
+    steps = [
+        f"<li>{escape(step)}{f'<ul>{items(parts)}</ul>' if parts else ''}</li>"
+        for step, parts in list_steps(instructions)
+    ]
+    return f"<ol>{''.join(steps)}</ol>"
 
 
 def _expected(found: Experiment, thrusters: Sequence[str]) -> None:
@@ -195,7 +208,7 @@ def _expected(found: Experiment, thrusters: Sequence[str]) -> None:
     if found.expects.std:
         named = with_thruster_names(found.expects.std, thrusters)
         rows = [
-            (f"{called} ({one.unit})" if one.unit not in (None, "1") else called,
+            (f"{called} ({unit(one.unit)})" if one.unit not in (None, "1") else called,
              [cell(one.now, f"{name}/now"), cell(one.then, f"{name}/then")])
             for called, (name, one) in zip(named, found.expects.std.items(), strict=True)
         ]  # fmt: skip

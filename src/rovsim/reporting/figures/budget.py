@@ -14,8 +14,8 @@ from rovsim.reporting.figures.palette import (
     BROWN,
     GREEN,
     GREY,
+    OLIVE,
     PURPLE,
-    SKY,
     VERMILION,
     Look,
 )
@@ -42,7 +42,7 @@ KNOWN = {
     "Coriolis": Look(GREY, (0, (1, 1.2))),
     "added-mass Coriolis": Look(GREY, (0, (5, 2))),
 }
-ADDED = (Look(PURPLE, "-"), Look(SKY, "-"), Look(PURPLE, (0, (4, 1.5))))
+ADDED = (Look(PURPLE, "-"), Look(OLIVE, "-"), Look(PURPLE, (0, (4, 1.5))))
 
 
 @styled()

@@ -1,19 +1,36 @@
 """A designed flight: where it leads in the tank, and its commands. No figure of the study."""
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.reporting.figures.palette import GREY, VERMILION
+from rovsim.reporting.figures.legends import legend
+from rovsim.reporting.figures.palette import (
+    BLACK,
+    BLUE,
+    BROWN,
+    GREEN,
+    GREY,
+    OLIVE,
+    PURPLE,
+    VERMILION,
+    Dash,
+    Style,
+)
 from rovsim.reporting.figures.style import sheet, styled
 
 PATH, CHANCE = VERMILION, GREY
+START: Style = {"marker": "o", "color": PATH, "markersize": 4, "markeredgecolor": "white"}
+COLORS = (BLUE, BROWN, GREEN, PURPLE, BLACK, OLIVE, GREY)  # of commands; then dashed
+DASHES: tuple[Dash, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
 ROOM = 0.3  # m shown around the paths where no wall is known
 
 
@@ -42,12 +59,22 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
     _view(figure.add_subplot(grid[0, 1]), paths, tank, (0, 2), ("north (m)", "up (m)"))
     axes = figure.add_subplot(grid[1, :])
     steps = max(1, len(planned_flight.time) // 2000)  # more points than the paper shows
-    for name, column in zip(planned_flight.names, planned_flight.values.T, strict=True):
-        axes.plot(planned_flight.time[::steps], column[::steps], label=name, linewidth=0.7)
+    looks = list(product(DASHES, COLORS))
+    for k, (name, column) in enumerate(
+        zip(planned_flight.names, planned_flight.values.T, strict=True)
+    ):
+        dash, color = looks[k % len(looks)]
+        axes.plot(planned_flight.time[::steps], column[::steps], label=name, linewidth=0.7,
+                  color=color, linestyle=dash)  # fmt: skip
     axes.set_xlabel("time (s)")
     axes.set_ylabel(f"command ({planned_flight.unit})")
     axes.margins(x=0.0)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=1.2)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=2.0)
+    legend(figure, [
+        Line2D([], [], color=PATH, label="likeliest path"),
+        Line2D([], [], color=CHANCE, label="where else it may lead"),
+        Line2D([], [], linestyle="none", label="start", **START),
+    ])  # fmt: skip
     return figure
 
 
@@ -58,7 +85,7 @@ def _view(
     for path in paths[:0:-1]:
         axes.plot(path[:, a], path[:, b], color=CHANCE, linewidth=0.3, alpha=0.5)
     axes.plot(paths[0, :, a], paths[0, :, b], color=PATH, linewidth=0.9)
-    axes.plot(*paths[0, :1, [a, b]], "o", color=PATH, markersize=4, markeredgecolor="white")
+    axes.plot(*paths[0, :1, [a, b]], linestyle="none", **START)
     low, high = np.sort(tank[[a, b]], axis=1).T
     if np.isfinite([low, high]).all():
         axes.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor="#444444"))

@@ -57,3 +57,12 @@ def tell_limits(found: Experiment) -> str:
         f"It stays {wall}below {kept.speed_m_s:.2f} m/s, {kept.turn_rate_rad_s:.2f} rad/s and "
         f"{kept.tilt_rad:.2f} rad of tilt."
     )
+
+
+def list_steps(instructions: Sequence[str]) -> list[tuple[str, list[str]]]:
+    """Steps to be numbered, each with what belongs to it: all that follows one with a colon."""
+    ends = next((k for k, one in enumerate(instructions) if one.endswith(":")), len(instructions))
+    steps: list[tuple[str, list[str]]] = [(one, []) for one in instructions[: ends + 1]]
+    if steps:
+        steps[-1][1].extend(instructions[ends + 1 :])
+    return steps
