@@ -208,3 +208,32 @@ def test_measures_of_the_ladder_stand_under_headings_of_their_own(monkeypatch):
     assert groups == [("in standard deviations", 1), ("mean absolute error of the velocity", 6)]
     assert heads[:3] == ["model", "2 s error", "surge (m/s)"]
     assert [len(cells) for _, cells in rows] == [len(heads) - 1] * 4
+
+
+def test_a_replay_is_told_of_under_the_name_that_its_model_has_elsewhere():
+    time, tank = np.arange(3.0), np.array([[0.0, 1.0]] * 3)
+    out = np.tile([5.0, 0.5, 0.5], (3, 1))
+    (told,) = path.tell_leaving(time, {"measured": out, "knn_6dof": out}, tank)
+    assert told.startswith("The replay of KNN (6-DoF) leaves")
+
+
+def test_a_room_is_seen_whole_whatever_its_shape():
+    for size in ([10.0, 5.0, 3.0], [1.6, 1.6, 1.5], [1.0, 1.0, 8.0], [0.5, 20.0, 1.0]):
+        low, high = np.array([2.0, -3.0, -1.0]), np.array([2.0, -3.0, -1.0]) + size
+        eye = path.far_enough(low, high)
+        ahead = -eye / np.linalg.norm(eye)
+        right = np.cross(ahead, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(ahead, [0.0, 0.0, 1.0]))
+        above = np.cross(right, ahead)
+        corners = np.array(
+            np.meshgrid(*np.stack([-0.5 * high + 0.5 * low, 0.5 * high - 0.5 * low], 1))
+        )
+        seen = corners.reshape(3, -1).T - eye
+        depth = seen @ ahead
+        slope = np.tan(np.radians(0.5 * path.ANGLE))
+        up, aside = np.abs(seen @ above) / depth, np.abs(seen @ right) / depth / path.WIDE
+        assert depth.min() > 0.0
+        assert 0.8 * slope < max(up.max(), aside.max()) < 0.9 * slope
+
+
+def test_names_of_the_tank_hide_the_edges_behind_them():
+    assert f"background: {path.PAPER}" in path.NAME

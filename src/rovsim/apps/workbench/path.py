@@ -3,6 +3,7 @@
 import csv
 from contextlib import suppress
 from io import StringIO
+from itertools import product
 from typing import Callable, Mapping
 
 import numpy as np
@@ -13,7 +14,9 @@ from rovsim.apps.workbench.charts import SOFT, styles
 from rovsim.apps.workbench.parts import Slider, saving, section, text
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.measurement.signals.motion import Motion
+from rovsim.reporting.wording import title
 
+PAPER = "#ffffff"
 TICK = 0.1  # s between two pictures of a playback
 SPEED = 2  # times as fast as it was
 DRAWN = "new Promise(requestAnimationFrame)"  # kept when the browser draws its next picture
@@ -24,7 +27,11 @@ THIN = 0.0012  # radius of a tube of width 1, over the size of the room
 SPOT = 0.01  # radius of a vehicle, likewise
 DIRECTIONS = ("north", "east", "down")
 NEAR = 0.05  # m beyond a wall that are no leaving: walls and places are known no better
-EYE = np.array([-0.25, -0.9, 0.5])  # from the middle to the eye, over the size of the room
+EYE = np.array([-0.25, -0.9, 0.5])  # direction from the middle to the eye
+ANGLE, WIDE = 40.0, 1.6  # degrees that the eye sees from below to above; width over height
+FILLED = 0.86  # of the picture: names stand beside the room
+# The page of the tank goes behind names too, so that no edge strikes them through.
+NAME = f"color: {SOFT}; background: {PAPER}; padding: 0 4px; font-size: 13px"
 
 
 class Path:
@@ -74,9 +81,9 @@ class Path:
     def _draw(self, low: Array, high: Array) -> None:
         middle, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
         look = styles(list(self.paths))
-        camera = ui.scene.perspective_camera(fov=40, near=0.01 * size, far=10 * size)
+        camera = ui.scene.perspective_camera(fov=ANGLE, near=0.01 * size, far=10 * size)
         scene = ui.scene(
-            grid=False, background_color="#ffffff", camera=camera, click_events=[], fps=PICTURES
+            grid=False, background_color=PAPER, camera=camera, click_events=[], fps=PICTURES
         )
         scene.classes("path").props('role="img" aria-label="Path in the tank"')
         with scene:
@@ -84,7 +91,7 @@ class Path:
             walls = scene.box(wide, long, tall, wireframe=True)
             walls.move(*middle.tolist()).material(SOFT)
             for name, spot in directions(low, high).items():
-                scene.text(name, f"color: {SOFT}; font-size: 13px").move(*spot)
+                scene.text(name, NAME).move(*spot)
             for name, path in self.paths.items():
                 radius = THIN * size * look[name].width
                 for start, bend, end in bends(path):
@@ -94,7 +101,7 @@ class Path:
                 name: scene.sphere(SPOT * size).material(look[name].color).visible(False)
                 for name in self.paths
             }
-        eye = dict(zip("xyz", (middle + size * EYE).tolist(), strict=True))
+        eye = dict(zip("xyz", (middle + far_enough(low, high)).tolist(), strict=True))
         at = {f"look_at_{k}": x for k, x in zip("xyz", middle.tolist(), strict=True)}
         scene.move_camera(**eye, **at, duration=0)
 
@@ -149,6 +156,23 @@ def room(measured: Array, tank: Array) -> tuple[Array, Array]:
     return low, np.maximum(high, low + 0.1)  # a box has a size, whatever moved
 
 
+def far_enough(low: Array, high: Array) -> Array:
+    """From the middle of a room to an eye (3,) that sees all of it, m.
+
+    Args:
+        low: lowest corner (3,), north, west, up; m.
+        high: highest corner (3,), likewise.
+    """
+    ahead = EYE / np.linalg.norm(EYE)
+    right = np.cross([0.0, 0.0, 1.0], ahead)
+    right /= np.linalg.norm(right)
+    above = np.cross(ahead, right)
+    corners = 0.5 * (high - low) * np.array(list(product((-1.0, 1.0), repeat=3)))
+    slope = FILLED * np.tan(np.radians(0.5 * ANGLE))
+    aside = np.maximum(np.abs(corners @ above), np.abs(corners @ right) / WIDE)
+    return ahead * float(np.max(corners @ ahead + aside / slope))
+
+
 def directions(low: Array, high: Array) -> dict[str, list[float]]:
     """What stands at the ends of three edges of the room: a direction, and what is measured along.
 
@@ -161,7 +185,7 @@ def directions(low: Array, high: Array) -> dict[str, list[float]]:
     found = {}
     for k, (name, end) in enumerate(zip(DIRECTIONS, ends, strict=True)):
         a, b = sorted((HALF_TURN_X[k] * low[k], HALF_TURN_X[k] * high[k]))
-        told = f"{name} {a + 0.0:.3g} to {b + 0.0:.3g} m"
+        told = f"{name} {round(a, 2) + 0.0:g} to {round(b, 2) + 0.0:g} m"
         found[told.replace("-", "−")] = [float(x) for x in end]
     return found
 
@@ -180,7 +204,7 @@ def tell_leaving(time: Array, paths: Mapping[str, Array], tank: Array) -> list[s
         outside = ((path < low - NEAR) | (path > high + NEAR)).any(axis=1)
         if name != "measured" and outside.any():
             at = time[np.argmax(outside)] - time[0]
-            said.append(f"The replay of {name} leaves the tank after {at:.1f} s.")
+            said.append(f"The replay of {title(name)} leaves the tank after {at:.1f} s.")
     return said
 
 
