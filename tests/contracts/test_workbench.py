@@ -286,3 +286,7 @@ def test_a_page_that_is_closed_while_it_asks_is_no_fault():
     assert told(RuntimeError("another"))
     assert told(ValueError("No response returned."))
     assert app.was_answered(logging.LogRecord("", 40, "", 0, "", (), None))
+
+
+def test_long_names_at_the_head_of_a_column_go_on_in_the_next_line():
+    assert parts.head("effects+gp_6dof <b>") == "effects+<wbr>gp_<wbr>6dof &lt;b&gt;"

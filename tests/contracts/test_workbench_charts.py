@@ -210,6 +210,21 @@ def test_measures_of_the_ladder_stand_under_headings_of_their_own(monkeypatch):
     assert [len(cells) for _, cells in rows] == [len(heads) - 1] * 4
 
 
+def test_curves_are_called_as_their_models_are_elsewhere_and_keep_the_file_s_name_in_tables():
+    time = np.arange(3.0)
+    curves = ("measured", "knn_6dof", "knn_6dof, 3dof-1", "a, b", "effects+gp_3dof")
+    shown = [Panel("surge", "m/s", dict.fromkeys(curves, time), about=dict.fromkeys(curves, "x"))]
+    series = charts.time_series(time, shown, charts.styles(curves))["series"]
+    assert {one["id"]: one["name"] for one in series if "name" in one} == {
+        "0/measured": "measured",
+        "0/knn_6dof": "KNN (6-DoF)",
+        "0/knn_6dof, 3dof-1": "KNN (6-DoF), 3dof-1",
+        "0/a, b": "a, b",
+        "0/effects+gp_3dof": "effects + GP (3-DoF)",
+    }
+    assert set(charts.columns(shown)["curves"]) == {f"0/{name}" for name in curves}
+
+
 def test_a_replay_is_told_of_under_the_name_that_its_model_has_elsewhere():
     time, tank = np.arange(3.0), np.array([[0.0, 1.0]] * 3)
     out = np.tile([5.0, 0.5, 0.5], (3, 1))

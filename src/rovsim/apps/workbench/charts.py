@@ -8,6 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.reporting.figures.palette import SHADE, Look, looks
+from rovsim.reporting.wording import title
 
 Options = dict[str, Any]  # of ECharts, plain and deep
 
@@ -49,6 +50,15 @@ def _axis_with_minus(axis: Options) -> Options:
     if axis.get("type") != "value":
         return axis
     return {**axis, "axisLabel": {":formatter": "tellTick", **axis.get("axisLabel", {})}}
+
+
+def told(curve: str) -> str:
+    """What the legend calls a curve: its model as every screen does, then its run, if it is told.
+
+    Ids of curves, and the CSV, keep the name of the model's file.
+    """
+    model, separator, run = curve.rpartition(", ")
+    return f"{title(model)}{separator}{run}" if model else title(curve)
 
 
 def styles(names: Sequence[str]) -> dict[str, Look]:
@@ -140,7 +150,7 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         for name in panel.curves:
             found["series"].append(
                 {
-                    "id": f"{k}/{name}", "name": name, "type": "line", "symbol": "none",
+                    "id": f"{k}/{name}", "name": told(name), "type": "line", "symbol": "none",
                     "xAxisIndex": k, "yAxisIndex": k, "lineStyle": line_style(look[name]),
                     "itemStyle": {"color": look[name].color}, "data": ready[f"{k}/{name}"],
                     "z": 3 if name == "measured" else 2,
@@ -156,7 +166,8 @@ def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> 
     """One of the two series that make a band: an unseen line, and what fills up to the other."""
     shade = {"color": look.color, "opacity": SHADE if end == WIDTH else 0.0}
     return {
-        "id": f"{k}/{name}{end}", "name": name, "type": "line", "symbol": "none", "silent": True,
+        "id": f"{k}/{name}{end}", "name": told(name), "type": "line", "silent": True,
+        "symbol": "none",
         "xAxisIndex": k, "yAxisIndex": k, "stack": f"{k}/{name}", "stackStrategy": "all",
         "lineStyle": {"opacity": 0}, "areaStyle": shade, "itemStyle": {"color": look.color},
         "data": ready[f"{k}/{name}{end}"], "z": 1,

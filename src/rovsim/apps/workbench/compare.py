@@ -6,7 +6,16 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
-from rovsim.apps.workbench.parts import about_axes, cell, computed, heading, onward, table, text
+from rovsim.apps.workbench.parts import (
+    about_axes,
+    cell,
+    computed,
+    heading,
+    onward,
+    table,
+    text,
+    titled,
+)
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.runaway import tell_divergence
@@ -26,6 +35,7 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.reporting.wording import title
 from rovsim.results.comparison import WINDOW
 from rovsim.simulation.bands import LEVEL, Band, why_without_bands
 from rovsim.simulation.prediction import Prediction
@@ -79,7 +89,7 @@ class Compare:
             self._choice("run", ui.select(runs, label="Run"))
             self._choice("beside", ui.select(runs, label="Other runs", multiple=True))
             self._choice(
-                "models", ui.select(list(self.bench.models), label="Models", multiple=True)
+                "models", ui.select(titled(self.bench.models), label="Models", multiple=True)
             )
             self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
             names = {key: name for key, (name, _) in QUANTITIES.items()}
@@ -144,7 +154,8 @@ class Compare:
         """Which replays diverge."""
         told = []
         for run, models in predicted.items():
-            named = {f"{n}, {run}," if len(predicted) > 1 else n: p for n, p in models.items()}
+            several = len(predicted) > 1
+            named = {f"{title(n)}, {run}," if several else title(n): p for n, p in models.items()}
             told.append(tell_divergence(self.bench.data.motions[run].time, named))
         return " ".join(filter(None, told))
 
@@ -158,7 +169,7 @@ class Compare:
         for name in self.chosen["models"]:
             why = why_without_bands(self.bench.models[name], self.motion)
             if why:
-                text(f"No band for {name}: {why}.", "soft")
+                text(f"No band for {title(name)}: {why}.", "soft")
 
     async def draw(self) -> None:
         """Everything below the controls."""
@@ -196,7 +207,8 @@ class Compare:
                 key = "" if run == self.chosen["run"] else f"{run}/"
                 cells = [cell(errors.velocity_rmse[a], f"{key}velocity_rmse/{a}") for a in AXES]
                 cells += [cell(getattr(errors, k), f"{key}{k}") for k in POSE_ERRORS]
-                rows.append((f"{name}, {run}" if len(found) > 1 else name, cells))
+                called = title(name)
+                rows.append((f"{called}, {run}" if len(found) > 1 else called, cells))
             units = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
             table(
                 f"Velocity error (root mean square) on run {', '.join(found)}, "

@@ -17,6 +17,7 @@ from rovsim.apps.workbench.parts import (
     section,
     table,
     text,
+    titled,
     while_idle,
     words,
 )
@@ -83,7 +84,7 @@ class Flight:
                 self._choice("other", ui.select(effects, label="Or the other", with_input=True))
             else:
                 self._choice("know", ui.select(known, label="Values (none: all)", multiple=True))
-            self._choice("model", ui.select(self.known, label="Model"))
+            self._choice("model", ui.select(titled(self.known), label="Model"))
             seconds = ui.number("Length (s)", min=SHORTEST, max=LONGEST, precision=0)
             self._choice("seconds", seconds.props("debounce=500"))  # ms, for two more digits
 

@@ -7,6 +7,7 @@ from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.design.settings import Question
 from rovsim.dynamics.model_file import read_model
+from rovsim.reporting.wording import title
 
 
 def diagnose(bench: Workbench) -> None:
@@ -26,7 +27,7 @@ def train(bench: Workbench, kind: str, name: str) -> None:
         bench.add(read_model(path, bench.catalogue), path)
 
     path = bench.out / "trained" / trained / f"{trained}.yaml"
-    bench.work.begin(f"Training {trained}", take, tasks.train_into, settings, path)
+    bench.work.begin(f"Training {title(trained)}", take, tasks.train_into, settings, path)
 
 
 def report(bench: Workbench) -> None:

@@ -13,6 +13,7 @@ from rovsim.apps.workbench.parts import (
     section,
     table,
     text,
+    titled,
     while_idle,
 )
 from rovsim.apps.workbench.place import Place
@@ -71,7 +72,7 @@ def _train(bench: Workbench) -> None:
     text("Trained on the train runs, on top of any model, and shown here on the test runs.", "soft")
     physical = [n for n, m in bench.models.items() if m.residual is None and not m.inert]
     with ui.row().classes("controls"):
-        on = ui.select(physical, label="On top of", value=physical[-1]).classes("control")
+        on = ui.select(titled(physical), label="On top of", value=physical[-1]).classes("control")
         on.props("outlined dense")
         for kind, name in KINDS.items():
             train = ui.button(

@@ -18,6 +18,7 @@ from rovsim.apps.workbench.parts import (
     section,
     table,
     text,
+    titled,
     words,
 )
 from rovsim.apps.workbench.place import Place
@@ -40,7 +41,7 @@ from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import VELOCITY_UNITS
-from rovsim.reporting.wording import listed, significant
+from rovsim.reporting.wording import LEARNERS, listed, significant, title
 from rovsim.reporting.words.totals import list_totals, warn
 from rovsim.reporting.words.verdict import interval
 from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
@@ -82,7 +83,7 @@ class Models:
         """Build the screen."""
         heading(TITLE, QUESTION)
         about_axes()
-        known = list(self.bench.known_models())
+        known = titled(self.bench.known_models())
         runs = {r: f"{r} ({split})" for r, split in self.bench.data.runs.splits.items()}
         with ui.row().classes("controls"):
             self.sides = [
@@ -120,7 +121,7 @@ class Models:
             return
         self.failure.forget()
         for side in self.sides:
-            side.set_options(list(self.bench.known_models()))
+            side.set_options(titled(self.bench.known_models()))
         self.sides[1].value = model.name
 
     async def _horizon(self, horizon: float | None) -> None:
@@ -180,7 +181,8 @@ class Models:
             for name, model in self.models.items()
         }
         axes = [axis for axis in AXES if axis in self.chosen["axes"]]
-        return panels(motion, predicted, axes), tell_divergence(motion.time, predicted)
+        named = {title(name): one for name, one in predicted.items()}
+        return panels(motion, predicted, axes), tell_divergence(motion.time, named)
 
     def _errors(self) -> Errors:
         """Of each model at each horizon that comparison.json has."""
@@ -195,7 +197,8 @@ def _tell_errors(run: str, errors: Errors) -> None:
     """Errors by axis and horizon, and by how much the right one's are smaller or larger."""
     section("Errors")
     horizons = list(next(iter(errors.values())))
-    heads = [*errors, *(["change"] if len(errors) == 2 else [])]
+    names = list(map(title, errors))
+    heads = [*names, *(["change"] if len(errors) == 2 else [])]
     rows = []
     for name in (*ERRORS, *POSE):
         cells: list[str] = []
@@ -208,7 +211,7 @@ def _tell_errors(run: str, errors: Errors) -> None:
         rows.append((name, cells))
     groups = [("open loop" if h is None else f"{h:g} s", len(heads)) for h in horizons]
     spans = listed([f"{h:g}" for h in horizons if h is not None])
-    change = f"; change from {' to '.join(errors)}" if len(errors) == 2 else ""
+    change = f"; change from {' to '.join(names)}" if len(errors) == 2 else ""
     table(
         f"Root mean square error on run {run}: restarted every {spans} s; open loop{change}",
         ["axis", *heads * len(horizons)], rows, groups,
@@ -240,7 +243,8 @@ def _tell_parameters(models: Mapping[str, Model]) -> None:
          [words(values.get((effect, parameter), ABSENT)) for values in columns.values()])
         for effect, parameter in known
     ]  # fmt: skip
-    table("Effects that were added, with 95 % intervals", ["value", *columns], rows)
+    heads = ["value", *map(title, columns)]
+    table("Effects that were added, with 95 % intervals", heads, rows)
 
 
 def _values(model: Model) -> dict[tuple[str, str], str]:
@@ -253,7 +257,8 @@ def _values(model: Model) -> dict[tuple[str, str], str]:
             called = name_parameter(effect.id, name, model.vehicle.thruster_names)
             found[effect.id, called] = interval(value)
     if (learned := model.residual) is not None:
-        found["learned residual", ""] = f"{learned.kind}, {learned.points} points"
+        kind, _ = LEARNERS.get(learned.kind, (learned.kind, ""))
+        found["learned residual", ""] = f"{kind}, {learned.points} points"
     return found
 
 
@@ -272,7 +277,11 @@ def _tell_totals(models: Mapping[str, Model], catalogue: Catalogue) -> None:
             rows.append((f"{effect}, {axis} ({unit(si)})", told))
     if rows:
         section("What the coefficients come to")
-        table("The vehicle file and what was added, together", ["coefficient", *columns], rows)
+        table(
+            "The vehicle file and what was added, together",
+            ["coefficient", *map(title, columns)],
+            rows,
+        )
 
 
 async def show(bench: Workbench, place: Place) -> None:

@@ -8,13 +8,13 @@ from concurrent.futures import ThreadPoolExecutor
 from html import escape
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Callable, Mapping, Sequence
+from typing import Any, Callable, Iterable, Mapping, Sequence
 
 from nicegui import ui
 
 from rovsim.apps.workbench.charts import Options, with_minus
 from rovsim.reporting.formula import mathml
-from rovsim.reporting.wording import significant
+from rovsim.reporting.wording import significant, title
 from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
@@ -81,10 +81,10 @@ class Failure(ui.html):
         self.content, self.visible = "", False
 
 
-def heading(title: str, question: str) -> None:
+def heading(called: str, question: str) -> None:
     """Title of a screen, and the question it answers."""
     with ui.column().classes("heading"):
-        ui.html(f"<h1>{escape(title)}</h1>", sanitize=False)
+        ui.html(f"<h1>{escape(called)}</h1>", sanitize=False)
         ui.label(question).classes("question")
 
 
@@ -106,9 +106,9 @@ def alarm(words: str) -> str:
     return f'<span class="alarm">{sign} Warning: {escape(words)}</span>'
 
 
-def section(title: str) -> None:
+def section(called: str) -> None:
     """A heading inside a screen."""
-    ui.html(f"<h2>{escape(title)}</h2>", sanitize=False)
+    ui.html(f"<h2>{escape(called)}</h2>", sanitize=False)
 
 
 def cell(value: float | None, name: str = "", told: str = "") -> str:
@@ -120,6 +120,16 @@ def cell(value: float | None, name: str = "", told: str = "") -> str:
     digits = str(value) if isinstance(value, int) else significant(or_nan(value))
     shown = escape(told or digits)
     return f'<td class="number" data-name="{escape(name)}"{known}>{shown}</td>'
+
+
+def titled(models: Iterable[str]) -> dict[str, str]:
+    """Names of models to choose from: as files call them, and as every screen does."""
+    return {name: title(name) for name in models}
+
+
+def head(words: str) -> str:
+    """Text at the head of a column as HTML: a long name may go on in the next line."""
+    return re.sub(r"([_+.])", r"\1<wbr>", escape(words))
 
 
 def words(value: Any) -> str:
@@ -142,7 +152,7 @@ def table(
         *(c.startswith('<td class="number') and "number" for c in (rows or [("", ())])[0][1]),
     ]
     top = "".join(
-        f'<th scope="col" class="{kind or ""}">{escape(h)}</th>'
+        f'<th scope="col" class="{kind or ""}">{head(h)}</th>'
         for h, kind in zip(heads, numeric, strict=False)
     )
     above = "".join(
@@ -160,16 +170,16 @@ def table(
     )
 
 
-def tile(title: str, value: float | None, name: str, note: str = "") -> ui.html:
+def tile(called: str, value: float | None, name: str, note: str = "") -> ui.html:
     """A number that matters."""
-    return ui.html(tile_html(title, value, name, note), sanitize=False).classes("tile")
+    return ui.html(tile_html(called, value, name, note), sanitize=False).classes("tile")
 
 
-def tile_html(title: str, value: float | None, name: str, note: str = "") -> str:
+def tile_html(called: str, value: float | None, name: str, note: str = "") -> str:
     """The content of a tile, to be replaced when the number changes."""
     known = "" if value is None else f' data-value="{value!r}"'
     return (
-        f"<span>{escape(title)}</span><strong data-name='{escape(name)}'{known}>"
+        f"<span>{escape(called)}</span><strong data-name='{escape(name)}'{known}>"
         f"{significant(or_nan(value))}</strong><small>{escape(note)}</small>"
     )
 

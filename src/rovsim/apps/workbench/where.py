@@ -9,7 +9,16 @@ from nicegui import ui
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.condition_map import FieldMap
-from rovsim.apps.workbench.parts import about_axes, chart, computed, heading, onward, section, text
+from rovsim.apps.workbench.parts import (
+    about_axes,
+    chart,
+    computed,
+    heading,
+    onward,
+    section,
+    text,
+    titled,
+)
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.evaluation.error_conditions.bins import Table
@@ -41,9 +50,9 @@ class Where:
         """Build the screen."""
         heading(TITLE, QUESTION)
         about_axes()
-        choice = ui.select(self.physical, label="Model", value=self.chosen["model"]).classes(
-            "control"
-        )
+        choice = ui.select(
+            titled(self.physical), label="Model", value=self.chosen["model"]
+        ).classes("control")
         choice.props("outlined dense")
         self.area = ui.row().classes("halves")
 
