@@ -6,14 +6,15 @@ from rovsim.application.intake.proposal import ANSWER, Proposal, Question
 from rovsim.apps.workbench.new_campaign import list_guesses, tell_unanswered
 from rovsim.measurement.survey.timing import Timing
 
+NO_LOG = "guess: no log of commands was among the files"
 RUNS = [{"id": "run_1", "control": "3dof"}, {"id": "run_2", "control": "6dof"}]
 
 
 def test_a_guess_says_which_run_it_is_of_and_what_a_key_means():
     content = {"vehicle": ANSWER, "mocap": {"velocity": "mean"}, "runs": RUNS}
     comments = {
-        "runs.0": ("poses: 60 s", "guess: 3dof, by how much its commands turn it"),
-        "runs.1": ("guess: 6dof, by how much its commands turn it",),
+        "runs.0": ("poses: 60 s", "guess: 3dof, by how much its commands turn it", NO_LOG),
+        "runs.1": ("guess: 6dof, by how much its commands turn it", NO_LOG),
         "runs": ("guess: kept for the test is none",),
         "mocap.velocity": ("guess: a line's velocity is the mean up to the next line",),
     }
@@ -21,6 +22,7 @@ def test_a_guess_says_which_run_it_is_of_and_what_a_key_means():
         "Runs: kept for the test is none",
         "Velocities: mean; a line's velocity is the mean up to the next line",
         "Run run_1: 3dof, by how much its commands turn it",
+        "Runs run_1 and run_2: no log of commands was among the files",
         "Run run_2: 6dof, by how much its commands turn it",
     ]
 

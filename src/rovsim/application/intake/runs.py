@@ -16,7 +16,7 @@ from rovsim.measurement.survey.timing import Timing
 TURNING = 0.2
 NOTHING = (
     "guess: no log of commands was among the files, and 'none' says that nothing was commanded. If "
-    "there is one, run init again with it"
+    "there is one, put it beside them and begin again"
 )
 
 

@@ -79,16 +79,21 @@ def _guesses(proposal: Proposal) -> None:
 
 
 def list_guesses(proposal: Proposal) -> list[str]:
-    """What was taken and why, a line each: of the campaign, then run by run."""
-    guesses = [
-        (place, line.removeprefix(GUESS))
-        for place, lines in proposal.comments.items()
-        for line in lines
-        if line.startswith(GUESS)
-    ]
-    guesses.sort(key=lambda one: one[0].startswith("runs."))
-    told = [f"{_topic(proposal, at)}: {_value(proposal, at)}{why}" for at, why in guesses]
-    return list(dict.fromkeys(told))
+    """What was taken and why, a line each: of the campaign, then of runs, alike ones together."""
+    told: list[str] = []
+    runs: dict[str, list[str]] = {}  # that a reason is of
+    for place, lines in proposal.comments.items():
+        for line in lines:
+            why = line.removeprefix(GUESS)
+            if line == why:
+                continue
+            if place.startswith("runs."):
+                runs.setdefault(why, []).append(_run(proposal, place))
+            else:
+                told.append(f"{TOPICS.get(place, place)}: {_value(proposal, place)}{why}")
+    for why, names in runs.items():
+        told.append(f"Run{'s' if len(names) > 1 else ''} {listed(names)}: {why}")
+    return told
 
 
 def tell_unanswered(questions: Sequence[Question], answers: Mapping[str, str]) -> str:
@@ -98,11 +103,9 @@ def tell_unanswered(questions: Sequence[Question], answers: Mapping[str, str]) -
     return f"No answer yet: {names}. Answer every question; no file does." if left else ""
 
 
-def _topic(proposal: Proposal, place: str) -> str:
-    """What a key is about; of a run, which one."""
-    if place.startswith("runs."):
-        return f"Run {_find(proposal, '.'.join(place.split('.')[:2]))['id']}"
-    return TOPICS.get(place, place)
+def _run(proposal: Proposal, place: str) -> str:
+    """Id of the run that a key is of."""
+    return _find(proposal, ".".join(place.split(".")[:2]))["id"]
 
 
 def _find(proposal: Proposal, place: str) -> Any:
