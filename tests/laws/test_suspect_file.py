@@ -10,7 +10,7 @@ from rovsim import AXES
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import project_out
 from rovsim.diagnosis.selection.candidates import Candidate
-from rovsim.diagnosis.selection.nominal_terms import spread_of_file
+from rovsim.diagnosis.selection.nominal_terms import STATED, spread_of_file
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.diagnosis.selection.uncertain_file import list_numbers, measure_doubt
 from rovsim.diagnosis.selection.vehicle_file_steps import suspect_file
@@ -106,6 +106,18 @@ def test_many_small_errors_of_a_file_are_sought_in_the_place_of_what_looks_like_
 @pytest.mark.parametrize("seed", range(5))
 def test_a_file_that_is_right_is_not_suspected(seed):
     workspace, found = make(seed, off=0.0, special=8.0)
+    assert suspect_file(workspace, found) is found
+
+
+def test_a_file_that_promises_more_than_its_fit_keeps_is_not_taken(monkeypatch):
+    """All numbers of a torpedo's file promised 2,000 in place of weak fins, and gained 360."""
+    workspace, found = make(0, off=1.0, special=0.0)
+    true = workspace.score
+
+    def score(one):
+        return true(one) - 1e3 * any(term.id in STATED for term in one.hypothesis.terms)
+
+    monkeypatch.setattr(workspace, "score", score)
     assert suspect_file(workspace, found) is found
 
 

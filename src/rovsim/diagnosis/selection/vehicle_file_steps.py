@@ -47,7 +47,9 @@ def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     if workspace.score(rest) + doubt < workspace.score(current) + SURE:
         return current
     loose = add_file(workspace, rest)
-    return loose if is_off(loose.hypothesis) else current
+    # first-order promises of many numbers together may be five times what a fit makes of them
+    kept = workspace.score(loose) > workspace.score(current) - uncertain_file.FILE_ODDS
+    return loose if is_off(loose.hypothesis) and kept else current
 
 
 def _find_explained(workspace: SearchWorkspace, found: Fit) -> Term | None:
