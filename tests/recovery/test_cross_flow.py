@@ -15,3 +15,14 @@ def test_a_drag_of_two_velocities_is_a_law_and_not_a_lift(tmp_path):
     assert not found.selected
     (term,) = found.unexplained.proposal.terms
     assert (term.on, term.quantities) == ("sway", ("u", "v"))
+
+
+@pytest.mark.thorough
+def test_two_names_do_not_stand_in_for_a_law_that_they_resemble(tmp_path):
+    """Beside the noise that lift and linear damping leave, the drag u^2 v does not stand out."""
+    fly(law("coupled_cubic", 13, "development"), tmp_path / "raw")
+    found = diagnosis(tmp_path / "raw", tmp_path)
+    assert found.verdict == "unexplained"
+    (term,) = found.unexplained.proposal.terms
+    assert (term.on, term.quantities) == ("sway", ("u", "v"))
+    assert all(one.probability is None for one in found.selected)
