@@ -23,9 +23,10 @@ from rovsim.reporting.report_data import ReportData, describe
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import explain_model, several, significant, title
 from rovsim.reporting.words import published_errors, terminal
+from rovsim.reporting.words.apart import apart_sentences
 from rovsim.reporting.words.shown import part_sentences
 from rovsim.reporting.words.speed import timing_sentences
-from rovsim.reporting.words.verdict import apart_sentences, explain
+from rovsim.reporting.words.verdict import explain
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import DiagnosisErrors, LookedAt, RivalEffect, Unexplained
 from rovsim.results.error_conditions import ErrorConditions

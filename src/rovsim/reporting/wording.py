@@ -77,6 +77,11 @@ def explain_model(model: str) -> str:
     return MEANINGS.get(model, "")
 
 
+def percent(share: float | None) -> str:
+    """A share as a whole number of percent."""
+    return "an unknown share" if share is None else f"{100 * share:.0f}\u202f%"
+
+
 def several(names: Sequence[str]) -> str:
     """Names that may be hundreds: of many the first ones, and how many more."""
     if len(names) <= MOST + 1:

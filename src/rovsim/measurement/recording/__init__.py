@@ -11,6 +11,7 @@ rosbag2       ROS 2 bags
 ardupilot     ArduPilot logs
 table         columns of numbers in text
 units_row     a line of units below the names
+times         a column of times
 dates         times that are dates
 foreign       errors of foreign libraries as one message
 channels      each kind of measurement at its own times

@@ -12,13 +12,8 @@ from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import ALLOWED, as_commands, as_logged
 from rovsim.measurement.recording.readers import CommandExport, command_reader
-from rovsim.measurement.recording.table import (
-    column_places,
-    csv_lines,
-    numbers,
-    times,
-    without_cut_line,
-)
+from rovsim.measurement.recording.table import column_places, csv_lines, numbers, without_cut_line
+from rovsim.measurement.recording.times import times
 
 HEAVE = AXES.index("heave")
 

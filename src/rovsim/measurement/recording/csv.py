@@ -31,9 +31,9 @@ from rovsim.measurement.recording.table import (
     column_places,
     csv_lines,
     numbers,
-    times,
     without_cut_line,
 )
+from rovsim.measurement.recording.times import times
 
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
 QUATERNION = ["qw", "qx", "qy", "qz"]

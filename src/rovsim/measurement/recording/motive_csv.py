@@ -21,7 +21,8 @@ from rovsim.measurement.recording.readers import (
     mocap_reader,
     unit_quaternions,
 )
-from rovsim.measurement.recording.table import numbers, split_lines, times, without_cut_line
+from rovsim.measurement.recording.table import numbers, split_lines, without_cut_line
+from rovsim.measurement.recording.times import times
 
 RE_EXPORT = (
     "In Motive: Edit, Export Tracking Data, CSV, with Rigid Bodies, header information on, "

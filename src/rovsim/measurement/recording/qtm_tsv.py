@@ -17,7 +17,8 @@ from rovsim.measurement.recording.readers import (
     mocap_reader,
     orthonormal,
 )
-from rovsim.measurement.recording.table import Lines, numbers, split_lines, times, without_cut_line
+from rovsim.measurement.recording.table import Lines, numbers, split_lines, without_cut_line
+from rovsim.measurement.recording.times import times
 
 POSITION = ["X", "Y", "Z"]
 ROTATION = [f"Rot[{k}]" for k in range(9)]

@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
-from rovsim.measurement.recording.dates import is_date, resembles_date, to_seconds
+from rovsim.measurement.recording.dates import is_date
 from rovsim.measurement.recording.units_row import with_units
 
 MISSING = {"", "na", "n/a", "null", "none", "-"}  # words for "not measured", in any case
@@ -23,7 +23,6 @@ LIKE_TIME = re.compile(
     r"|unnamed.*|index|t|t[\W_]+.*|.*time.*|.*stamp.*|secs?|seconds|utc.*|clock.*|elapsed.*|date.*",
     re.IGNORECASE,
 )
-LATEST = 1e11  # s since 1970: the year 5138
 AT_ONCE = 10_000  # lines: where one of them needs a closer look, so many get it
 
 
@@ -193,59 +192,6 @@ def _plain_numbers(table: Lines, columns: list[int]) -> Array:
         return np.array([[_number(table, row, n, c) for c in columns] for row, n in rows])
 
 
-def times(table: Lines, column: int) -> Array:
-    """Times (lines,) of one column, which may be dates or times of day.
-
-    Raises:
-        BadInput: a time is no finite number.
-    """
-    dated = dates(table, column)
-    if dated is None:
-        _refuse_date(table, 0, column)
-    time = numbers(table, [column])[:, 0] if dated is None else dated
-    bad = np.flatnonzero(~np.isfinite(time))
-    if bad.size:
-        _refuse_date(table, int(bad[0]), column)
-        cell = table.cells(int(bad[0]))[column].strip()
-        raise _bad_cell(table, table.numbers[bad[0]], column, cell, "a time in s, or all as dates")
-    if len(time) and np.abs(time).max() > LATEST:
-        raise BadInput(
-            f"times up to {np.abs(time).max():.3g}: ms, us or ns since 1970?",
-            where=f"{table.path}, column '{table.names[column]}'",
-            expected="seconds",
-            remedy="Name the column after its unit (time_ms, time_us, time_ns), and let "
-            "`rovsim init` make a copy in s.",
-        )
-    return time
-
-
-def _refuse_date(table: Lines, row: int, column: int) -> None:
-    """Refuse a time that is a date or a time of day in another spelling than that of ISO 8601.
-
-    Raises:
-        BadInput: it is.
-    """
-    cells = table.cells(row) if len(table) else []
-    cell = cells[column].strip(' "') if column < len(cells) else ""
-    if not resembles_date(cell):
-        return
-    raise BadInput(
-        f"{cell!r} is a date or a time of day that is not written by ISO 8601",
-        where=f"{table.path}, line {table.numbers[row]}, column '{table.names[column]}'",
-        expected="all times in s, or all as 2026-05-12T10:00:12.5, or as 10:00:12.5 (24 hours, "
-        "two digits each)",
-        remedy="Convert the column: in a spreadsheet with the format yyyy-mm-dd hh:mm:ss.000, in "
-        "pandas with pd.to_datetime(…).dt.strftime('%Y-%m-%dT%H:%M:%S.%f').",
-    )
-
-
-def dates(table: Lines, column: int) -> Array | None:
-    """Times (lines,) of a column that begins with a date or a time of day; None for another."""
-    cells = (row[column].strip(' "') if column < len(row) else "" for row in table.all_cells())
-    first = next(cells, "")
-    return to_seconds([first, *cells]) if is_date(first) else None
-
-
 def find_filler(values: Array) -> float | None:
     """The value of a column (n,) that stands for "not measured"; None without one."""
     for filler in FILLERS:
@@ -278,10 +224,11 @@ def _number(table: Lines, row: list[str], line: int, column: int) -> float:
     try:
         return float(cell)
     except ValueError:
-        raise _bad_cell(table, line, column, cell, "a number") from None
+        raise bad_cell(table, line, column, cell, "a number") from None
 
 
-def _bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) -> BadInput:
+def bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) -> BadInput:
+    """The error of a cell that holds something else than expected."""
     place = f"{table.path}, line {line}, column '{table.names[column]}'"
     if re.match(r"\d{4}-\d\d-\d\d|\d\d?:\d\d:", cell):
         return BadInput(

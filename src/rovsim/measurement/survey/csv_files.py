@@ -18,10 +18,10 @@ from rovsim.measurement.recording.table import (
     csv_lines,
     no_time,
     numbers,
-    times,
     without_cut_line,
 )
 from rovsim.measurement.recording.tidying import tidy_export
+from rovsim.measurement.recording.times import times
 from rovsim.measurement.survey.contents import Contents, Drive, Kind, Track
 from rovsim.measurement.survey.headings import rewritten
 

@@ -17,15 +17,13 @@ from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
 from rovsim.measurement.recording.csv_checks import LONGEST_STEP, is_height
 from rovsim.measurement.recording.table import (
-    LATEST,
     Lines,
     csv_lines,
-    dates,
     find_filler,
     numbers,
-    times,
     without_cut_line,
 )
+from rovsim.measurement.recording.times import LATEST, dates, times
 from rovsim.measurement.survey.quaternions import check_quaternion
 
 DEGREE = np.pi / 180.0

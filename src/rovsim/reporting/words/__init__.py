@@ -1,6 +1,7 @@
 """What numbers say, in plain language: one statement for terminal, report, workbench and notebook.
 
 verdict           what a diagnosis found
+apart             what these runs cannot tell apart
 sureness          how sure a name is, and why no probability is given where none is
 sentences         the report's summary
 speed             what the timing says about control loops

@@ -9,7 +9,7 @@ from rovsim import AXES
 from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
-from rovsim.dynamics.effects.thrusters import name_parameter, with_thruster_names
+from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import (
     ERROR,
@@ -17,16 +17,16 @@ from rovsim.reporting.wording import (
     FLOOR_COUNTS_ALL,
     listed,
     minus,
+    percent,
     significant,
 )
+from rovsim.reporting.words.apart import apart_sentences, scale_sentences
 from rovsim.reporting.words.shown import shown_sentences
 from rovsim.reporting.words.sureness import tell_sureness
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
     Diagnosis,
-    RivalEffect,
-    ScaleOfForces,
 )
 from rovsim.results.fitted import FittedEffect, FittedValue
 
@@ -37,7 +37,6 @@ VERDICTS = {
     "insufficient_data": "The recordings cannot tell: too short, or some axis never moved.",
 }
 MOST_PUSHES = 3  # moments of a disturbance that are told
-MANY = 1e6  # odds that need no number
 NO_TEST = (
     "No test run could be used, so there is no error to report. "
     "Write `split: test` for a run in campaign.yaml to hold it out."
@@ -185,11 +184,6 @@ def differs_from_zero(value: FittedValue) -> bool:
     return abs(or_nan(value.value)) > Z_95 * or_nan(value.std) > 0.0
 
 
-def percent(share: float | None) -> str:
-    """A share as a whole number of percent."""
-    return "an unknown share" if share is None else f"{100 * share:.0f}\u202f%"
-
-
 def error_sentence(found: Diagnosis) -> str:
     """The error on the test runs before and after, and what a perfect model would show."""
     error = found.error
@@ -227,68 +221,6 @@ def _away_sentence(runs: Sequence[str], after: float) -> str:
 def leaves_unexplained(found: Diagnosis) -> bool:
     """Whether something is left for which no law was found: it was fitted as noise."""
     return found.unexplained.significant and found.unexplained.proposal is None
-
-
-def apart_sentences(found: Diagnosis) -> list[str]:
-    """Which effects the runs cannot tell apart, and how far behind the next names are."""
-    sentences = [
-        f"These runs cannot tell {listed(group)} apart." for group in found.indistinguishable
-    ]
-    sentences += [
-        f"Known only together, not one by one: {', '.join(_named(group, found))}."
-        for group in found.known_together
-    ]
-    return sentences + _runner_up_sentences(_list_runners_up(found))
-
-
-def _named(group: Sequence[str], found: Diagnosis) -> list[str]:
-    return with_thruster_names(group, found.thrusters)
-
-
-def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
-    """Of each selected effect the next best name, but for those that cannot be told from it."""
-    best = []
-    for one in found.selected:
-        rivals = [r for r in found.rivals if r.instead_of == one.effect]
-        alike = (group for group in found.indistinguishable if one.effect in group)
-        taken = {name for group in alike for name in group}
-        behind = [r for r in rivals if r.effect not in taken]
-        if behind:
-            best.append(min(behind, key=lambda r: or_nan(r.deficit)))
-    return best
-
-
-def _runner_up_sentences(best: Sequence[RivalEffect]) -> list[str]:
-    """How far behind the next names are; one sentence for all that nobody would argue about."""
-    odds = [(r, math.exp(min(0.5 * or_nan(r.deficit), 700.0))) for r in best]
-    near = [(r, significant(times, 2)) for r, times in odds if times <= MANY]
-    far = [r for r, times in odds if times > MANY]
-    if len(far) == 1:
-        near, far = [*near, (far[0], "more than a million")], []
-    sentences = [
-        f"The next best explanation instead of {r.instead_of} is {r.effect}: {times} times less "
-        "likely."
-        for r, times in near
-    ]
-    if far:
-        pairs = listed([f"{r.effect} instead of {r.instead_of}" for r in far])
-        sentences.append(
-            f"The next best explanations are each more than a million times less likely: {pairs}."
-        )
-    return sentences
-
-
-def scale_sentences(scale: ScaleOfForces | None) -> list[str]:
-    """That forces are known to a common factor only, where they are."""
-    if scale is None:
-        return []
-    owners = listed(list(dict.fromkeys(name.split(".")[0] for name in scale.parameters)))
-    return [
-        "All forces are known only up to one common factor, which is uncertain by "
-        f"{percent(scale.std)} (one standard deviation). A vehicle with 10 % more thrust, inertia "
-        f"and drag would move in the same way. The factor acts on values of {owners}; their "
-        "intervals include it."
-    ]
 
 
 def unexplained_sentences(found: Diagnosis) -> list[str]:

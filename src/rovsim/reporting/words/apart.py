@@ -1,0 +1,73 @@
+"""What these runs cannot tell apart: effects, values, names that come next, a common factor."""
+
+import math
+from typing import Sequence
+
+from rovsim.dynamics.effects.thrusters import with_thruster_names
+from rovsim.reporting.wording import listed, percent, significant
+from rovsim.results.base import or_nan
+from rovsim.results.diagnosis import Diagnosis, RivalEffect, ScaleOfForces
+
+MANY = 1e6  # odds that need no number
+
+
+def apart_sentences(found: Diagnosis) -> list[str]:
+    """Which effects the runs cannot tell apart, and how far behind the next names are."""
+    sentences = [
+        f"These runs cannot tell {listed(group)} apart." for group in found.indistinguishable
+    ]
+    sentences += [
+        f"Known only together, not one by one: {', '.join(_named(group, found))}."
+        for group in found.known_together
+    ]
+    return sentences + _runner_up_sentences(_list_runners_up(found))
+
+
+def _named(group: Sequence[str], found: Diagnosis) -> list[str]:
+    return with_thruster_names(group, found.thrusters)
+
+
+def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
+    """Of each selected effect the next best name, but for those that cannot be told from it."""
+    best = []
+    for one in found.selected:
+        rivals = [r for r in found.rivals if r.instead_of == one.effect]
+        alike = (group for group in found.indistinguishable if one.effect in group)
+        taken = {name for group in alike for name in group}
+        behind = [r for r in rivals if r.effect not in taken]
+        if behind:
+            best.append(min(behind, key=lambda r: or_nan(r.deficit)))
+    return best
+
+
+def _runner_up_sentences(best: Sequence[RivalEffect]) -> list[str]:
+    """How far behind the next names are; one sentence for all that nobody would argue about."""
+    odds = [(r, math.exp(min(0.5 * or_nan(r.deficit), 700.0))) for r in best]
+    near = [(r, significant(times, 2)) for r, times in odds if times <= MANY]
+    far = [r for r, times in odds if times > MANY]
+    if len(far) == 1:
+        near, far = [*near, (far[0], "more than a million")], []
+    sentences = [
+        f"The next best explanation instead of {r.instead_of} is {r.effect}: {times} times less "
+        "likely."
+        for r, times in near
+    ]
+    if far:
+        pairs = listed([f"{r.effect} instead of {r.instead_of}" for r in far])
+        sentences.append(
+            f"The next best explanations are each more than a million times less likely: {pairs}."
+        )
+    return sentences
+
+
+def scale_sentences(scale: ScaleOfForces | None) -> list[str]:
+    """That forces are known to a common factor only, where they are."""
+    if scale is None:
+        return []
+    owners = listed(list(dict.fromkeys(name.split(".")[0] for name in scale.parameters)))
+    return [
+        "All forces are known only up to one common factor, which is uncertain by "
+        f"{percent(scale.std)} (one standard deviation). A vehicle with 10 % more thrust, inertia "
+        f"and drag would move in the same way. The factor acts on values of {owners}; their "
+        "intervals include it."
+    ]
