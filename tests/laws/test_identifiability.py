@@ -17,9 +17,17 @@ from rovsim.diagnosis.observer.random_walk import Rate
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
-from rovsim.diagnosis.selection.ranking import Named, Selected, doubt_idle, doubt_lead, name_drift
+from rovsim.diagnosis.selection.ranking import (
+    Named,
+    Selected,
+    doubt_lead,
+    doubt_names,
+    find_stand_ins,
+    name_drift,
+)
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.clocks import InputDelay
+from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import nominal
@@ -134,8 +142,19 @@ def test_what_a_law_makes_unnecessary_is_not_sure():
     """A jet in one corner was a current at a probability of one; beside the jet there is none."""
     found = fit(alike())
     drag, thrust = (Named(term, {}, 1.0) for term in found.hypothesis.terms[:2])
-    kept, idle = doubt_idle([drag, thrust], [drag])
+    doubted = find_stand_ins([drag, thrust], [drag])
+    kept, idle = doubt_names([drag, thrust], doubted)
+    assert doubted == {thrust.term.id}
     assert (kept.probability, idle.probability) == (1.0, None)
+
+
+@pytest.mark.parametrize(("left", "doubted"), [(0.4, True), (0.8, False), (-0.1, True)])
+def test_a_name_that_changes_by_half_beside_a_law_stood_in_for_it(left, doubted):
+    """A brush was a coupled damping of 3.6 N m s/m at a probability of one; beside it -0.4."""
+    own, other = (
+        Named(Term(LinearDamping(sway=10.0 * part), ("sway",)), {}, 1.0) for part in (1.0, left)
+    )
+    assert find_stand_ins([own], [other]) == ({"linear_damping"} if doubted else set())
 
 
 @pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])

@@ -25,7 +25,8 @@ class TrainDiagnosis:
     judge, and the `correlation` of its values; `structures` that are left, and whether the gate
     `refused` effects that explain something; `scale` of all forces, where it is unknown;
     `not_observable` effects that the runs could not show; `proposed`: a law for what is left, where
-    one holds; `disturbance`: the force in time, where none does.
+    one holds; `stand_ins`: names that it, or half a law, makes unnecessary or others;
+    `disturbance`: the force in time, where none does.
     """
 
     base: Model
@@ -40,6 +41,7 @@ class TrainDiagnosis:
     scale: CommonScale | None = None
     not_observable: Sequence[str] = ()
     proposed: ProposedLaw | None = None
+    stand_ins: tuple[str, ...] = ()
     disturbance: ForceInTime | None = None
 
     @property

@@ -52,8 +52,9 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
     Named,
-    doubt_idle,
     doubt_lead,
+    doubt_names,
+    find_stand_ins,
     name_drift,
     name_smoothing,
     name_terms,
@@ -124,12 +125,13 @@ def _diagnose(
         return _diagnose(base, calm, settings, catalogue, seed, stage, smooths)
     found, wider, scale = finish(found, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
-    proposed = _propose(found, base, gate, usable, camera) if found.lasting else None
+    law = _propose(found, base, gate, usable, camera) if found.lasting else None
     rivals = found.selection.named_rivals
     terms = name_terms(wider, rivals)
     named = [*camera, *(doubt_lead(terms) if camera else terms)]
-    if proposed:
-        named = doubt_idle(named, proposed.beside)
+    stand_ins = find_stand_ins(named, law.beside) if law else set()
+    named = doubt_names(named, stand_ins)
+    proposed = law if law and law.whole else None
     if found.fit.noise.drift:
         drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
         if drift.sure:
@@ -142,7 +144,7 @@ def _diagnose(
         rivals=rivals, structures=found.structures,
         refused=found.refused or not found.fit.held, scale=scale,
         not_observable=list_not_observable(found.selection, catalogue, base.vehicle),
-        proposed=proposed,
+        proposed=proposed, stand_ins=tuple(sorted(stand_ins)),
         disturbance=None if proposed else _trace(found),
     )  # fmt: skip
 

@@ -159,6 +159,7 @@ def describe_structures(found: TrainDiagnosis) -> Unexplained:
         fraction=rounded(share), significant=True,
         hint=_hint(found.structures) if found.structures else REFUSED,
         proposal=describe_law(found.proposed) if found.proposed else None,
+        stand_ins=found.stand_ins,
         disturbance=describe_force(found.disturbance) if found.disturbance else None,
     )  # fmt: skip
 

@@ -98,13 +98,15 @@ class Unexplained(Section):
     """Structure that no effect of the catalogue explains: its share of the disturbance's power.
 
     `proposal`: an equation for it, where one holds; `disturbance`: the force in time, where none
-    does.
+    does; `stand_ins`: selected effects that an equation which was tried, proposed or not, does
+    without, or with values that differ by more than half.
     """
 
     fraction: float | None
     significant: bool
     hint: str
     proposal: Proposal | None = None
+    stand_ins: tuple[str, ...] = ()
     disturbance: Disturbance | None = None
 
 

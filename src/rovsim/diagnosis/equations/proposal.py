@@ -42,7 +42,8 @@ class ProposedLaw:
     `error_reduction`: share of the base's error in 2 s windows that it removes on top of all else;
     `sizes` N or N m, RMS of each term; `axis` on which it acts most; `rivals`: equations that were
     tried in its place, and by how much less likely each is; `beside`: effects of the catalogue that
-    act with it.
+    act with it; `whole`: whether nothing but noise is left on its axis. Half a law is no equation
+    to propose, and tells all the same which names it makes unnecessary.
     """
 
     form: Form
@@ -52,6 +53,7 @@ class ProposedLaw:
     axis: str
     rivals: tuple[tuple[str, float], ...]
     beside: tuple[Named, ...]
+    whole: bool = True
 
     @property
     def law(self) -> Term:
@@ -83,8 +85,8 @@ def propose_law(
 
     A law holds if it gains more than the best of so many terms would by chance, if it helps on
     blocks it was not fitted to, if the runs are replayed better with it than by the best that the
-    catalogue can do, and stretches that took no part in anything no worse, and if nothing is left
-    on its axis but noise: half a law is a wrong one.
+    catalogue can do, and stretches that took no part in anything no worse. It is `whole` if nothing
+    is left on its axis but noise.
 
     Args:
         selection: what the search selected.
@@ -104,14 +106,15 @@ def propose_law(
     if not fit.held:
         return None
     action = find_action(judged.form, fit, runs)
-    if is_half(action.axis, fit, bank):
-        return None
+    whole = not is_half(action.axis, fit, bank)
     bare = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, bare, fit.hypothesis.model], runs).normalised
     start, before, after = (or_nan(e) for e in errors)
     beside = (*camera, *(one for one in name_terms(fit, ()) if one.term.effect.listed))
     share = (before - after) / start
-    return ProposedLaw(judged.form, fit, share, action.sizes, action.axis, judged.rivals, beside)
+    return ProposedLaw(
+        judged.form, fit, share, action.sizes, action.axis, judged.rivals, beside, whole
+    )
 
 
 def _holds(judged: Judged, selection: Selection, best: Catalogued, gate: Gate) -> bool:

@@ -1,7 +1,7 @@
 """What was found, in order: each selected effect's worth, and every effect by itself."""
 
 from dataclasses import dataclass, replace
-from typing import Sequence
+from typing import Collection, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -17,6 +17,8 @@ from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
+
+CHANGED = 0.5  # of an effect: more is not the same effect beside something else
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,10 +88,31 @@ def doubt_lead(named: Sequence[Named]) -> list[Named]:
     return [replace(one, probability=None) if leads(one) else one for one in named]
 
 
-def doubt_idle(named: Sequence[Named], beside: Sequence[Named]) -> list[Named]:
-    """The same, no name sure that a proposed law makes unnecessary: it acts not `beside` that."""
-    acting = {one.term.id for one in beside}
-    return [one if one.term.id in acting else replace(one, probability=None) for one in named]
+def find_stand_ins(named: Sequence[Named], beside: Sequence[Named]) -> set[str]:
+    """Names that a law makes unnecessary, or another: what they do changes `beside` it by half."""
+    acting = {one.term.id: one.term for one in beside}
+    return {
+        one.term.id
+        for one in named
+        if one.term.id not in acting or _differs(one.term, acting[one.term.id])
+    }
+
+
+def _differs(own: Term, other: Term) -> bool:
+    """Whether the fitted values of an effect are others, by more than half of what they change."""
+    if not (own.free and own.vanishes):
+        return False
+    names = [p for p in own.effect.parameters if p.name in own.free]
+    usual, values, others = (
+        np.array([effect[p.name] / p.scale for p in names])
+        for effect in (own.effect.neutral(), own.effect, other.effect)
+    )
+    return bool(np.linalg.norm(others - values) > CHANGED * np.linalg.norm(values - usual))
+
+
+def doubt_names(named: Sequence[Named], doubted: Collection[str]) -> list[Named]:
+    """The same, none of the doubted sure."""
+    return [replace(one, probability=None) if one.term.id in doubted else one for one in named]
 
 
 def name_drift(drift: DriftFit, lasting: bool) -> Named:

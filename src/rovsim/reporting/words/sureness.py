@@ -26,6 +26,8 @@ def _say_why(one: FittedEffect, found: Diagnosis, known: type[Effect] | None) ->
         return "what is left unexplained may seem a current that wanders"
     if proposal and one.effect not in {each.effect for each in proposal.beside}:
         return "the proposed equation does without it"
+    if one.effect in found.unexplained.stand_ins:
+        return "an equation that was tried takes most of its place"
     smooths = any(each.effect == PoseFilter.id for each in found.selected)
     if known and issubclass(known, InputDelay) and smooths and _leads(one):
         return "the cameras' filter may look ahead"
