@@ -37,8 +37,8 @@ def runs(facts: Facts, places: Places, draft: Draft) -> None:
             }
         )
         draft.say(f"runs.{k}", controls[k][1])
-    kept = "the last run of each control" if "test" in splits else "none, for there is one run"
-    draft.say("runs", f"guess: kept for the test, and never used to fit anything, is {kept}")
+    held = "the last run of each control is a test run: nothing is ever fitted to it"
+    draft.say("runs", f"guess: {held if 'test' in splits else 'no test run, for there is one run'}")
 
 
 def described(one: Pair) -> list[str]:
