@@ -7,8 +7,8 @@ from rovsim.evaluation.commanded_motion.likeness import Likeness
 # A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
 # of the likeness is known to about a tenth of a second.
 EARLIEST, LATEST = -0.25, 0.6  # s
-# Below it the likeness of a periodic motion hardly changes from one period to the next.
-CLEARER = 0.03
+# Of periodic commands a peak some seconds away may be as high as that of the true lag.
+CLEARER, AWAY = 0.03, 1.0  # likeness by which it must be higher, s beyond the usual lags
 QUARTER = 900.0  # s: time zones differ by whole quarters of an hour
 LOOSE = 60.0  # s by which clocks that were set by hand differ beside it
 FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
@@ -17,9 +17,10 @@ FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
 def tell_clocks(found: Likeness, axes: Array) -> str:
     """What to do about the clock of the commands, body axes being `axes` (3, 3); else nothing."""
     score, lag = found.best(axes)
+    beyond = max(EARLIEST - lag, lag - LATEST)
     usual = (found.lag >= EARLIEST) & (found.lag <= LATEST)
     near = found.along(axes)[usual].max(initial=-1.0)
-    if EARLIEST <= lag <= LATEST or score < near + CLEARER:
+    if beyond <= 0.0 or (beyond > AWAY and score < near + CLEARER):
         return ""
     how = "after" if lag > 0 else "before"
     zone = QUARTER * round(lag / QUARTER)
