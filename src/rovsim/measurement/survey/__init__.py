@@ -1,20 +1,22 @@
 """What is in files that nobody has described yet.
 
-gather       the files and bags that were named, also by their folder
-sniff        which format a file has, by what stands in it
-contents     what it holds: motions, and what looks like commands
-look         that, by the readers of `recording`
-bags         in ROS 2 bags
-logs         in ArduPilot logs
-csv_files    in csv files
-headings     csv files whose columns have other names or units: a copy with ours
-quaternions  numbered columns that may be one
-grid         rough velocities on an even clock, to compare recordings with
-timing       rates, jitter, gaps
+gather        the files and bags that were named, also by their folder
+sniff         which format a file has, by what stands in it
+contents      what it holds: motions, and what looks like commands
+look          that, by the readers of `recording`
+bags          in ROS 2 bags
+logs          in ArduPilot logs
+csv_files     in csv files
+headings      csv files whose columns have other names or units: a copy with ours
+column_names  our channels in other words, and units behind them
+sizes         units that the size of the numbers tells
+quaternions   numbered columns that may be one
+grid          rough velocities on an even clock, to compare recordings with
+timing        rates, jitter, gaps
 """
 
 from rovsim.measurement.survey.contents import Contents, Drive, Track
 from rovsim.measurement.survey.gather import gather
 from rovsim.measurement.survey.look import look
 
-__all__ = ["Contents", "Drive", "Track", "gather", "look"]
+__all__       = ["Contents", "Drive", "Track", "gather", "look"]

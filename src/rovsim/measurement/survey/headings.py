@@ -13,7 +13,6 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
-from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
 from rovsim.measurement.recording.csv_checks import LONGEST_STEP, is_height
 from rovsim.measurement.recording.table import (
@@ -24,40 +23,10 @@ from rovsim.measurement.recording.table import (
     without_cut_line,
 )
 from rovsim.measurement.recording.times import LATEST, dates, times
+from rovsim.measurement.survey.column_names import FORMS, UNITS, split_unit
 from rovsim.measurement.survey.quaternions import check_quaternion
+from rovsim.measurement.survey.sizes import find_by_size
 
-DEGREE = np.pi / 180.0
-# Names after their units, brackets and case are gone; `{}` stands for a letter of the channel.
-FORMS = {
-    "time_s": "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|time_boot|"
-    "rostime",
-    **{
-        ours: f"{letter}|p{letter}|pos_?{letter}|position_?{letter}|(pose_)*position_{letter}|"
-        f"t{letter}|translation_{letter}|{letter}_pos(ition)?"
-        for ours, letter in zip(POSITION, "xyz", strict=True)
-    },
-    **{
-        ours: f"q_?{letter}|quat(ernion)?_?{letter}|(pose_)*orientation_{letter}|{letter}_quat|"
-        f"rot(ation)?_{letter}"
-        for ours, letter in zip(QUATERNION, "wxyz", strict=True)
-    },
-    **{ours: ours.removesuffix("_rad") for ours in EULER},
-    **{ours: ours.removesuffix("_m_s") for ours in LINEAR},
-    **{ours: ours.removesuffix("_rad_s") for ours in ANGULAR},
-    "depth_m": "depth",
-}
-FORMS["roll_rad"] += "|phi"
-FORMS["pitch_rad"] += "|theta"
-FORMS["yaw_rad"] += "|psi|heading"
-UNITS = {
-    "mm": 1e-3, "cm": 1e-2, "m": 1.0, "deg": DEGREE, "degrees": DEGREE, "rad": 1.0, "radians": 1.0,
-    "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9,
-    "m_s": 1.0, "mm_s": 1e-3, "deg_s": DEGREE, "rad_s": 1.0,
-}  # fmt: skip
-# Sizes that no vehicle reaches in a tank or a bay.
-FASTEST, FARTHEST = 30.0, 1000.0  # m/s, m
-FASTEST_TURN = 10.0  # rad/s, usual over a recording
-SLOW_ENOUGH = 10.0  # m/s in which a unit of metres is believed
 SHORTEST_STEP = 2e-4  # s between two lines of any recording
 
 
@@ -119,7 +88,7 @@ def _cell(text: str, column: Column | None, filler: float | None) -> str:
 
 def _columns(lines: Lines) -> list[Column]:
     """Columns that are ours under another name or unit."""
-    plain = {k: _plain(name) for k, name in enumerate(lines.names)}
+    plain = {k: split_unit(name) for k, name in enumerate(lines.names)}
     places = {
         ours: k for ours, form in FORMS.items() for k, (stem, _) in plain.items()
         if lines.names[k] == ours or (ours not in lines.names and re.fullmatch(form, stem))
@@ -138,15 +107,6 @@ def _columns(lines: Lines) -> list[Column]:
         here = {ours: places[ours] for ours in group if ours in places}
         columns += _group(lines, here, {k: plain[k][1] for k in here.values()}, seconds)
     return columns
-
-
-def _plain(name: str) -> tuple[str, str]:
-    """A name without its unit, in lower case with underscores, and the unit."""
-    text = re.sub(r"[\s.\[\](){}/]+", "_", name.strip().lower().lstrip("%")).strip("_")
-    for unit in sorted(UNITS, key=len, reverse=True):
-        if text.endswith(f"_{unit}"):
-            return text.removesuffix(f"_{unit}"), unit
-    return text, ""
 
 
 def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
@@ -209,7 +169,7 @@ def _group(lines: Lines, here: dict[str, int], units: dict[int, str], time: Arra
         return [Column(n, p, 1.0, "") for n, p in here.items()]
     if names[0] == "depth_m" and is_height(value[:, 0]):
         return _turned(lines, here, units)
-    factor, said = _by_size(lines, names, value, time)
+    factor, said = find_by_size(lines, names, value, time)
     return [
         Column(n, p, UNITS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
         for n, p in here.items()
@@ -225,84 +185,3 @@ def _turned(lines: Lines, here: dict[str, int], units: dict[int, str]) -> list[C
 
 def _of(unit: str) -> str:
     return f" in {unit}" if unit else ""
-
-
-def _by_size(lines: Lines, names: list[str], value: Array, time: Array) -> tuple[float, str]:
-    """Factor to our unit where the size of the numbers says one, and how; else 1 and nothing.
-
-    Raises:
-        BadInput: the columns name no unit, and their numbers allow two.
-    """
-    named = all(name in lines.names or _plain_unit(lines, name) for name in names)
-    if names[0] in POSITION:
-        return _metres(lines, value, time, named)
-    if names[0] in EULER:
-        return _radians(lines, names, value, time, named)
-    return 1.0, ""
-
-
-def _plain_unit(lines: Lines, ours: str) -> str:
-    found = [_plain(name) for name in lines.names]
-    return next((unit for stem, unit in found if re.fullmatch(FORMS[ours], stem) and unit), "")
-
-
-def _metres(lines: Lines, value: Array, time: Array, named: bool) -> tuple[float, str]:
-    far = float(np.nanmax(np.nanpercentile(value, 99, axis=0) - np.nanpercentile(value, 1, axis=0)))
-    fast = _usual_speed(value, time)
-    unit = any(_plain(name)[1] in ("mm", "cm") for name in lines.names)
-    if unit and named:
-        return 1.0, ""
-    if fast > FASTEST or far > FARTHEST:
-        return 1e-3, f" in mm, by its size ({fast:.0f} m/s if it were m)"
-    if named:
-        return 1.0, ""
-    if fast < SLOW_ENOUGH and far < 0.1 * FARTHEST:
-        return 1.0, " in m, by its size"
-    raise BadInput(
-        f"positions over {far:.3g}, {fast:.3g} per second, without a unit",
-        where=lines.path,
-        expected="x_m, y_m, z_m or x_mm, y_mm, z_mm",
-        remedy="Rename these columns.",
-    )
-
-
-def _usual_speed(value: Array, time: Array) -> float:
-    """A high but usual speed: the 90th percentile over tenths of a second, free of noise."""
-    known = np.isfinite(value).all(axis=1) & np.isfinite(time) & value.any(axis=1)
-    if known.sum() < 10:
-        return 0.0
-    t, x = time[known], value[known]
-    stride = max(1, round(0.2 / max(float(np.median(np.diff(t))), 1e-6)))
-    dt, dx = t[stride:] - t[:-stride], np.linalg.norm(x[stride:] - x[:-stride], axis=1)
-    good = dt > 0
-    return float(np.percentile(dx[good] / dt[good], 90)) if good.any() else 0.0
-
-
-def _radians(
-    lines: Lines, names: list[str], value: Array, time: Array, named: bool
-) -> tuple[float, str]:
-    unit = any(_plain(name)[1] in ("deg", "degrees") for name in lines.names)
-    if named and unit:
-        return 1.0, ""
-    if named:  # angles that count on may be large: only what no vehicle does speaks against a name
-        fast = _usual_speed(unwrapped(value), time)
-        absurd = fast > FASTEST_TURN
-        return (DEGREE, f" in degrees, by its size ({fast:.0f} rad/s)") if absurd else (1.0, "")
-    size = np.nanmax(np.abs(value), axis=0)
-    turns = [s for n, s in zip(names, size, strict=True) if n != "yaw_rad"]
-    # a pitch lies within a quarter turn, a roll within half a turn; a heading may count its turns
-    degrees = max(turns, default=0.0) > 1.02 * np.pi or (not turns and size.max() > 6 * np.pi)
-    if degrees:
-        return DEGREE, " in degrees, by its size"
-    heading = value[:, names.index("yaw_rad")] if "yaw_rad" in names else value[:, 0]
-    spread = float(np.nanmax(heading) - np.nanmin(heading))
-    if 1.0 < spread < 2.02 * np.pi:
-        return 1.0, " in rad, by its size"
-    if spread >= 2.02 * np.pi:
-        return DEGREE, " in degrees, by its size"
-    raise BadInput(
-        f"angles up to {size.max():.3g} without a unit: rad or degrees?",
-        where=lines.path,
-        expected="roll_rad, pitch_rad, yaw_rad or roll_deg, pitch_deg, yaw_deg",
-        remedy="Rename these columns.",
-    )
