@@ -75,7 +75,6 @@ def test_one_that_does_not_say_what_it_is_of_is_taken(given):
     assert opened(folder, diagnosis).diagnosis is not None
 
 
-@pytest.mark.slow
 def test_a_diagnosis_says_what_it_is_of(bench, tmp_path):
     found = tasks.diagnose_into(bench.only("nominal"), tmp_path / "diagnosis.json")
     assert found.recordings == digest_recordings(bench.data.campaign)

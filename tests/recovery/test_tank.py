@@ -190,7 +190,7 @@ def test_a_vehicle_of_the_users_goes_along(tmp_path, monkeypatch):
     flown = TankSettings(vehicle="mine.yaml", runs=(RUN,), duration=2.0)
     make_campaign(flown, tmp_path / "deep" / "raw", built_in())
     campaign = load_campaign(tmp_path / "deep" / "raw")
-    flown_with = load_vehicle(campaign.vehicle, campaign.file.parent)
+    flown_with = load_vehicle(campaign.vehicle, named_in=campaign.file)
     assert nominal(flown_with).body.M_RB[0, 0] == 14.5
 
 

@@ -118,7 +118,7 @@ def provenance(
     origin = {"settings": chosen, **describe_origin(catalogue)}
     if campaign is None:
         return origin
-    vehicle = vehicle_file(campaign.vehicle, campaign.file)
+    vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
     return origin | {"recordings": digest_files(campaign), "vehicle": _sha256(vehicle)[:16]}
 
 

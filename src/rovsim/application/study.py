@@ -128,7 +128,7 @@ class Study:
     def _described(self) -> list[Path]:
         """Files of the vehicle and of the user's effects: an edit changes what models do."""
         if isinstance(self.campaign, Campaign):
-            vehicle = vehicle_file(self.campaign.vehicle, self.campaign.file)
+            vehicle = vehicle_file(self.campaign.vehicle, named_in=self.campaign.file)
         else:
             vehicle = vehicle_file(self.settings.tank.vehicle)
         return [vehicle, *self.catalogue.files]

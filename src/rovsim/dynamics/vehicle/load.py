@@ -24,7 +24,7 @@ def known_vehicle(name: str) -> Path | None:
     return conf_file(f"vehicle/{name}.yaml")
 
 
-def vehicle_file(name: str, named_in: Path | None = None) -> Path:
+def vehicle_file(name: str, *, named_in: Path | None = None) -> Path:
     """The file of a vehicle: of a name in conf/vehicle/, or a path.
 
     `named_in`: the file that names it; a path is relative to the folder that this lies in.
@@ -45,13 +45,13 @@ def vehicle_file(name: str, named_in: Path | None = None) -> Path:
     return path
 
 
-def load_vehicle(name: str, named_in: Path | None = None) -> Vehicle:
+def load_vehicle(name: str, *, named_in: Path | None = None) -> Vehicle:
     """Load a vehicle by its name in conf/vehicle/, or by a path (as `vehicle_file` finds it).
 
     Raises:
         BadInput: no such vehicle, or its file does not describe one.
     """
-    path = vehicle_file(name, named_in)
+    path = vehicle_file(name, named_in=named_in)
     return build_vehicle(read_yaml(path), path)
 
 

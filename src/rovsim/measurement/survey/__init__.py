@@ -19,4 +19,4 @@ from rovsim.measurement.survey.contents import Contents, Drive, Track
 from rovsim.measurement.survey.gather import gather
 from rovsim.measurement.survey.look import look
 
-__all__       = ["Contents", "Drive", "Track", "gather", "look"]
+__all__ = ["Contents", "Drive", "Track", "gather", "look"]
