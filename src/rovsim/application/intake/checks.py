@@ -11,7 +11,7 @@ from rovsim.application.intake.motions import Log, Motion
 from rovsim.application.intake.vehicles import Fit, as_logged
 from rovsim.core.rotations import unrotate
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.evaluation.commanded_motion.clocks import tell_clocks
+from rovsim.evaluation.commanded_motion.clocks import tell_following
 from rovsim.evaluation.commanded_motion.likeness import ALIKE, orientations
 from rovsim.evaluation.commanded_motion.predicted import held, respond, wrench
 from rovsim.measurement.quality import EXCITED, usable_reason
@@ -36,15 +36,9 @@ def unusable(motion: Motion) -> str | None:
 
 
 def check_clocks(choice: Choice, axes: Array, names: Sequence[str]) -> Iterator[str]:
-    """Runs in which the motion comes too late or too early after its commands."""
+    """Runs in which the motion does not follow its commands, or too late or too early."""
     for k, one in choice.runs.items():
-        score = one.best(axes)[0]
-        if score < ALIKE:
-            yield (
-                f"{names[k]}: the motion hardly follows its commands (likeness {score:.2f}): "
-                "another log, another vehicle, a tether that pulls?"
-            )
-        elif said := tell_clocks(one, axes):
+        if said := tell_following(one, axes):
             yield f"{names[k]}: {said}"
 
 

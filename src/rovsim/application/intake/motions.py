@@ -9,14 +9,18 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.intake.vehicles import Fit, as_logged
-from rovsim.evaluation.commanded_motion.likeness import REACH, Likeness, likeness, rotations
-from rovsim.evaluation.commanded_motion.predicted import velocity
+from rovsim.evaluation.commanded_motion.likeness import (
+    REACH,
+    SHORTEST,
+    Likeness,
+    likeness,
+    rotations,
+)
+from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.measurement.survey.contents import Drive, Track
-from rovsim.measurement.survey.grid import STEP, Velocities, velocities
+from rovsim.measurement.survey.grid import Velocities, velocities
 
 LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
-SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
-BEFORE, AFTER = 1.0, 3.0  # s around the commands
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +69,7 @@ class Log:
         commands = as_logged(self.drive, fit, self.path)
         if commands is None or len(commands.time) < 2:
             return None
-        end = min(commands.time[-1], commands.time[0] + LONGEST)
-        time = np.arange(commands.time[0] - BEFORE, end + AFTER, STEP)
-        return time, velocity(fit.vehicle, commands, time)
+        return cause(fit.vehicle, commands, float(commands.time[0]), LONGEST)
 
 
 def alike(motion: Motion, log: Log, fit: Fit) -> Likeness | None:

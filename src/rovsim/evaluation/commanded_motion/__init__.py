@@ -2,6 +2,6 @@
 
 predicted  which velocity commands ought to cause
 likeness   how alike a commanded and a measured motion are: along which axes, how late
-clocks     a motion that comes too late or too early after its commands
+clocks     a motion that does not follow its commands, or too late or too early
 doubts     what speaks against a run as its campaign describes it
 """

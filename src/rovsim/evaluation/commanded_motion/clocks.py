@@ -1,8 +1,8 @@
-"""A motion that comes too late or too early after its commands."""
+"""A motion that does not follow its commands, or too late or too early."""
 
 from numpy import ndarray as Array
 
-from rovsim.evaluation.commanded_motion.likeness import Likeness
+from rovsim.evaluation.commanded_motion.likeness import ALIKE, Likeness
 
 # A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
 # of the likeness is known to about a tenth of a second.
@@ -14,9 +14,17 @@ LOOSE = 60.0  # s by which clocks that were set by hand differ beside it
 FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
 
 
-def tell_clocks(found: Likeness, axes: Array) -> str:
-    """What to do about the clock of the commands, body axes being `axes` (3, 3); else nothing."""
+def tell_following(found: Likeness, axes: Array) -> str:
+    """That a motion hardly follows its commands, or too late or too early; else nothing.
+
+    Body axes being `axes` (3, 3).
+    """
     score, lag = found.best(axes)
+    if score < ALIKE:
+        return (
+            f"the motion hardly follows its commands (likeness {score:.2f}): another log, another "
+            "vehicle, a tether that pulls?"
+        )
     beyond = max(EARLIEST - lag, lag - LATEST)
     usual = (found.lag >= EARLIEST) & (found.lag <= LATEST)
     near = found.along(axes)[usual].max(initial=-1.0)

@@ -7,21 +7,20 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.evaluation.commanded_motion.clocks import tell_clocks
+from rovsim.evaluation.commanded_motion.clocks import tell_following
 from rovsim.evaluation.commanded_motion.likeness import (
     AHEAD,
     ALIKE,
+    SHORTEST,
     Likeness,
     likeness,
     orientations,
 )
-from rovsim.evaluation.commanded_motion.predicted import righting, velocity
+from rovsim.evaluation.commanded_motion.predicted import cause, righting
 from rovsim.measurement.recording import Recording
-from rovsim.measurement.survey.grid import STEP, velocities
+from rovsim.measurement.survey.grid import velocities
 
 LONGEST = 120.0  # s of commands that are looked at
-SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
-BEFORE, AFTER = 1.0, 3.0  # s around the commands
 HANGS = -0.5  # cosine of the tilt: 120 degrees
 OUTSIDE, SHARE = 0.5, 0.5  # m beyond a wall, of the frames: no error of a calibration
 STOPPED, OFTEN = 2.0, 5.0  # s after a log that had a line each step: of its longest step
@@ -58,12 +57,7 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
             f"{best:.2f}; as described {own:.2f}). Check 'mocap.body_axes', 'mocap.world_axes' and "
             "the order and signs of 'commands.columns'."
         )
-    elif own < ALIKE:
-        yield (
-            f"The motion hardly follows its commands (likeness {own:.2f}): the log of another run, "
-            "another vehicle, a tether that pulls?"
-        )
-    elif said := tell_clocks(found, np.eye(3)):
+    elif said := tell_following(found, np.eye(3)):
         yield said[0].upper() + said[1:]
 
 
@@ -80,8 +74,7 @@ def _compared(recording: Recording, vehicle: Vehicle) -> Likeness | None:
     if not np.isfinite(measured.nu).any():
         return None
     begin = max(float(commands.time[0]), float(measured.time[0]))
-    time = np.arange(begin - BEFORE, min(commands.time[-1], begin + LONGEST) + AFTER, STEP)
-    return likeness(measured, time, velocity(vehicle, commands, time))
+    return likeness(measured, *cause(vehicle, commands, begin, LONGEST))
 
 
 def _told(axes: Array) -> str:

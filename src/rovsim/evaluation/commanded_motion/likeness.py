@@ -14,6 +14,7 @@ from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.survey.grid import Velocities
 
 REACH = 10.0  # s by which clocks that share a start may differ
+SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
 OVERLAP = 0.5  # share of the shorter recording that must lie beside the other
 AFTER = 2.0  # s for which a motion goes on after its last command
 SPARSE = 1e-9

@@ -11,7 +11,10 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.dynamics.vehicle.hydrodynamics import matrix
 from rovsim.measurement.signals.clock import time_step
+from rovsim.measurement.survey.grid import STEP
 from rovsim.simulation.drive import Drive
+
+BEFORE, AFTER = 1.0, 3.0  # s around the commands
 
 
 def wrench(vehicle: Vehicle, commands: Commands) -> Array:
@@ -24,6 +27,18 @@ def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
     """Body velocity (n, 6) at the even times (n,) s, commands held between their lines."""
     tau = held(commands.time, wrench(vehicle, commands), time)
     return respond(vehicle, tau, time_step(time))
+
+
+def cause(
+    vehicle: Vehicle, commands: Commands, begin: float, longest: float
+) -> tuple[Array, Array]:
+    """Times (n,) s and body velocities (n, 6) that commands cause, and a little around them.
+
+    From `begin` s on, and of that at most the first `longest` s.
+    """
+    end = min(float(commands.time[-1]), begin + longest)
+    time = np.arange(begin - BEFORE, end + AFTER, STEP)
+    return time, velocity(vehicle, commands, time)
 
 
 def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:
