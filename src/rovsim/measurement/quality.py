@@ -40,25 +40,14 @@ READINGS = 3.0  # of the slowest channel in a block: fewer are its noise
 EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard deviation
 
 
-def report_quality(
-    recording: Recording, anomalies: Anomalies, settings: Outliers, doubts: Sequence[str] = ()
-) -> Quality:
-    """What `quality/RUN.json` holds; outliers of binned velocities are not looked for.
-
-    `doubts`: what is known to speak against the run beside what is seen here.
-    """
+def report_quality(recording: Recording, anomalies: Anomalies, settings: Outliers) -> Quality:
+    """What `quality/RUN.json` holds; outliers of binned velocities are not looked for."""
     if recording.nu is not None or not recording.posed:
-        return assess(recording, anomalies, doubts=doubts)
-    count = int(find_outliers(recording, settings).sum())
-    return assess(recording, anomalies, count, doubts)
+        return assess(recording, anomalies)
+    return assess(recording, anomalies, int(find_outliers(recording, settings).sum()))
 
 
-def assess(
-    recording: Recording,
-    anomalies: Anomalies,
-    outliers: int | None = None,
-    doubts: Sequence[str] = (),
-) -> Quality:
+def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = None) -> Quality:
     """Describe a recording.
 
     `outliers` is the number of frames that the outlier rejection refused, None when not looked for.
@@ -86,9 +75,8 @@ def assess(
         unusable=usable_reason(recording),
         channels=_describe_channels(recording),
     )
-    known = (*doubt(report), *doubts)
-    remarks = (*known, *remark(report), *anomalies.notes)
-    return report.model_copy(update={"doubts": known, "remarks": remarks})
+    others = (*remark(report), *anomalies.notes)
+    return report.model_copy(update={"remarks": others}).doubted(*doubt(report))
 
 
 def usable_reason(recording: Recording) -> str | None:

@@ -95,6 +95,16 @@ class Quality(Result):
     remarks: tuple[str, ...] = ()
 
     @property
+    def others(self) -> tuple[str, ...]:
+        """The remarks that are no doubts."""
+        return self.remarks[len(self.doubts) :]
+
+    def doubted(self, *more: str) -> "Quality":
+        """The same with further doubts, which are remarks as well, the first of them."""
+        doubts = (*self.doubts, *more)
+        return self.model_copy(update={"doubts": doubts, "remarks": (*doubts, *self.others)})
+
+    @property
     def excited(self) -> tuple[str, ...]:
         """Axes that moved enough to be judged."""
         return tuple(axis for axis, one in self.excitation.items() if one.excited)

@@ -4,7 +4,7 @@ from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.held_out import doubt_test_run
-from rovsim.measurement.quality import report_quality, usable_reason
+from rovsim.measurement.quality import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.outliers import Outliers
@@ -26,7 +26,8 @@ def read_recording(campaign: Campaign, run: str, outliers: Outliers) -> tuple[Re
     vehicle = load_campaign_vehicle(campaign)
     known = mark_angles(campaign, vehicle)
     recording, anomalies = read_run(known, run)
-    doubts: list[str] = []
-    if usable_reason(recording) is None:
-        doubts += [*find_doubts(recording, vehicle), *doubt_test_run(campaign, campaign.run(run))]
-    return recording, report_quality(recording, anomalies, outliers, doubts)
+    quality = report_quality(recording, anomalies, outliers)
+    if quality.unusable is None:
+        repeats = doubt_test_run(campaign, campaign.run(run))
+        quality = quality.doubted(*find_doubts(recording, vehicle), *repeats)
+    return recording, quality

@@ -12,7 +12,6 @@ from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.campaign import Campaign, load_campaign
-from rovsim.measurement.quality import usable_reason
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import (
     SignalSettings,
@@ -86,7 +85,7 @@ def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = 
     stages, motions = Remade((), read), Remade((), derive)
     for run in counted(campaign.runs, "reading"):
         recording, quality[run.id] = read_recording(campaign, run.id, settings.outliers)
-        if usable_reason(recording) is None:
+        if quality[run.id].unusable is None:
             stages.keep(run.id, resampled(recording, settings))
             motions.keep(run.id, derive(run.id))
     found = Measured(campaign, load_campaign_vehicle(campaign), motions, quality, stages)

@@ -31,7 +31,7 @@ async def show(bench: Workbench, place: Place) -> None:
     _excitation(quality)
     section("Remarks")
     for run, report in quality.items():
-        for remark in report.remarks[len(report.doubts) :]:
+        for remark in report.others:
             text(f"{run}: {remark}")
     if not any(report.remarks for report in quality.values()):
         text("Nothing to remark on.", "soft")

@@ -44,9 +44,8 @@ def list_totals(body: Body) -> dict[tuple[str, str], float]:
 def warn_totals(body: Body) -> str:
     """Which coefficients of a body are below zero, and what that does; empty where none is."""
     sentences = []
-    for effect in body.stated:
-        totals = {axis: v for (name, axis), v in list_totals(body).items() if name == effect}
-        wrong = {axis: v for axis, v in totals.items() if v < 0.0}
+    for effect, six in body.stated.items():
+        wrong = {axis: float(v) for axis, v in zip(AXES, six, strict=True) if v < 0.0}
         if wrong:
             told = listed(f"{axis} ({significant(value)})" for axis, value in wrong.items())
             reason = warn(effect, min(wrong.values()))
