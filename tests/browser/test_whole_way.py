@@ -9,7 +9,8 @@ import pytest
 from rovsim import AXES
 from rovsim.apps.cli.main import main
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.model_file import describe_effect, read_model
+from rovsim.dynamics.effect_entry import describe_effect
+from rovsim.dynamics.model_file import read_model
 from screens import READY, have_diagnosed, read_csv
 
 pytestmark = pytest.mark.browser

@@ -21,11 +21,11 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry, build_effect
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.effects.damping import CubicDamping
 from rovsim.dynamics.effects.dry_friction import DryFriction
 from rovsim.dynamics.engine.types import EXAMPLE
-from rovsim.dynamics.model_file import EffectEntry, build_effect
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.reporting.pages.marked import BEGIN, END, replace_tables
 from rovsim.results.blind_benchmark import BlindSummary

@@ -10,7 +10,7 @@ from rovsim.benchmarks.blind.case import Case
 from rovsim.benchmarks.blind.pictures import RANKS, RELIABILITY, write_pictures
 from rovsim.benchmarks.blind.summary import summarize
 from rovsim.benchmarks.blind.tables import write_markdown
-from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.results.blind_benchmark import BlindSummary
 from rovsim.results.diagnosis import Answer, DiagnosisErrors
 from synthetic_study import study

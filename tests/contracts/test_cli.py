@@ -286,3 +286,13 @@ def test_help_is_quick_because_it_imports_nothing_heavy(words):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip().endswith("[]")
+
+
+@pytest.mark.parametrize("module", ["application.settings", "apps.cli.commands.ui"])
+def test_settings_are_read_before_the_compiler_is_loaded(module):
+    """What is asked wrongly is refused at once, and the first page is there at once."""
+    code = (
+        f"import sys, rovsim.{module};"
+        "print(sorted({'hydra', 'numba', 'scipy.sparse', 'torch'} & set(sys.modules)))"
+    )
+    assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "[]"

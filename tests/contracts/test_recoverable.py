@@ -13,9 +13,9 @@ from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import build_effect
 from rovsim.dynamics.effects.base import Smoothing, Wander
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.model_file import build_effect
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 

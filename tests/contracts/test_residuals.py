@@ -12,10 +12,10 @@ import yaml
 
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.learned.features import FEATURES, FeatureSettings, feature_names
 from rovsim.dynamics.learned.layout import BLOCKS, COUNT, POINTS
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.residual import read_residual, write_residual
+from rovsim.dynamics.learned.settings import FEATURES, FeatureSettings, feature_names
 from rovsim.learning.learner import (
     learner,
     learner_settings,

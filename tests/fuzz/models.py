@@ -16,8 +16,8 @@ from rovsim.application.export.write import represent
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.shipped import shipped
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.learned.features import feature_names
 from rovsim.dynamics.learned.residual import write_residual
+from rovsim.dynamics.learned.settings import feature_names
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import load_model, read_model
 from rovsim.dynamics.vehicle import load_vehicle

@@ -12,10 +12,10 @@ from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.sensing import MarkerOffset
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
-from rovsim.dynamics.model_file import EffectEntry
 
 PLACE, DRAG = {"x": 0.15}, {"heave": 90.0}  # m, N s2/m2
 

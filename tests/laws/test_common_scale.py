@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.diagnosis import ScaleOfForces
 from synthetic_study import study

@@ -11,7 +11,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.gauss_newton import fit, fit_or_give_up
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.effect_entry import EffectEntry
 
 HIDDEN = EffectEntry(effect="quadratic_damping", parameters={"surge": 60.0, "sway": 80.0})
 

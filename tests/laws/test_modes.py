@@ -13,9 +13,9 @@ from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.onboard_control import OnboardControl
-from rovsim.dynamics.model_file import EffectEntry
 from rovsim.simulation.synthetic_tank.settings import Log
 
 ROTATION = ("roll", "pitch", "yaw")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.evaluation.held_out.pitfalls import PITFALLS, SAID, measure_pitfalls, on_wrong_clock
 from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.chain import SignalSettings

@@ -11,17 +11,16 @@ from scipy.linalg import eigh
 from rovsim.core import rotations
 from rovsim.dynamics.engine.parallel import on_cores
 from rovsim.dynamics.learned.checks import check_exported
-from rovsim.dynamics.learned.features import (
+from rovsim.dynamics.learned.features import assemble, assemble_one
+from rovsim.dynamics.learned.layout import BLOCKS, HEADER
+from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
+from rovsim.dynamics.learned.settings import (
     COLUMNS,
     FEATURES,
     FeatureSettings,
-    assemble,
-    assemble_one,
     blocks_code,
     feature_names,
 )
-from rovsim.dynamics.learned.layout import BLOCKS, HEADER
-from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.simd import exponentials
 from rovsim.learning.export import Kernel, export_expansion, export_neighbours
 from rovsim.learning.posterior_variance import EXACT, ROUGH, decompose_exact, rbf

@@ -15,8 +15,8 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain, free_terms
 from rovsim.diagnosis.selection.prior import Prior
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.thrusters import ThrusterGain
-from rovsim.dynamics.model_file import EffectEntry
 
 OFF = 0.2  # of each coefficient
 WEAK = 0.95  # thrusters of this strength

@@ -12,9 +12,9 @@ from rovsim.design.steady_push import SteadyPush
 from rovsim.design.surroundings import surround
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.dynamics.vehicle import load_vehicle
 
 FORCE, HEAVE = 3.0, 2

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.dynamics.learned.features import FeatureSettings
+from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.learning.pairs import Gathered
 from rovsim.simulation.samples import Samples
 

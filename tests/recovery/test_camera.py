@@ -10,8 +10,8 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.procedure import diagnose
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.pose_filter import PoseFilter
-from rovsim.dynamics.model_file import EffectEntry
 from rovsim.simulation.synthetic_tank.settings import Camera
 
 LAG = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.3})

@@ -21,9 +21,9 @@ from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.effects.current import Current
-from rovsim.dynamics.model_file import EffectEntry
 
 
 def rms(values):

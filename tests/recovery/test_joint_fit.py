@@ -22,8 +22,8 @@ from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.model_file import EffectEntry
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Log
 

@@ -5,7 +5,7 @@ import pytest
 
 from flown import observed
 from rovsim.diagnosis.selection.nominal_refit import refit_nominal
-from rovsim.dynamics.model_file import EffectEntry
+from rovsim.dynamics.effect_entry import EffectEntry
 
 
 def train(folder, effects, control="6dof", duration=25.0):

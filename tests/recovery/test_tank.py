@@ -9,9 +9,9 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import log, multiply
 from rovsim.core.schema import checked
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.model_file import EffectEntry
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle, vehicle_file
 from rovsim.evaluation.scores import rms, subtract
 from rovsim.measurement.campaign import load_campaign

@@ -5,8 +5,8 @@ from typing import Any
 from pydantic import Field, PositiveFloat, PositiveInt
 
 from rovsim.core.schema import Section
-from rovsim.dynamics.learned.residual import Control
-from rovsim.learning.learner import LearnerSettings, learner_settings
+from rovsim.dynamics.learned.settings import Control
+from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings
 
@@ -42,4 +42,6 @@ class TrainingSettings(SimulationSettings):
     @property
     def learner(self) -> LearnerSettings:
         """The residual's own settings."""
+        from rovsim.learning.learner import learner_settings  # with it every learner
+
         return learner_settings(self.residual, "conf/residual")

@@ -11,7 +11,7 @@ from rovsim.core.schema import PathText, S, Section, checked
 from rovsim.core.shipped import conf_folders, conf_names
 from rovsim.design.settings import DesignSettings
 from rovsim.diagnosis.settings import SearchSettings
-from rovsim.dynamics.learned.residual import Control
+from rovsim.dynamics.learned.settings import Control
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 

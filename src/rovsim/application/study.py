@@ -15,8 +15,9 @@ from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BASELINES
 from rovsim.dynamics.vehicle import vehicle_file
-from rovsim.learning.learner import LearnerSettings, learner, learner_settings
+from rovsim.learning.learner import learner, learner_settings
 from rovsim.learning.pairs import flown_with
+from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
 from rovsim.reporting.report_data import list_run_figures
 from rovsim.results.ladder import EFFECTS

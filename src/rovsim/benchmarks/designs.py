@@ -29,8 +29,8 @@ from rovsim.design.settings import Question
 from rovsim.design.worth import NOTHING
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.measurement.recording.commands_csv import format_commands
 from rovsim.results.experiment import Start
 from rovsim.simulation.synthetic_tank.campaign import make_campaign

@@ -7,6 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 CommandKind = Literal["thruster", "demand", "wrench"]
+Between = Literal["held", "linear"]  # what commands do between two logged lines
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,11 @@ from typing import Collection, Container, NamedTuple, Sequence
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.schema import checked
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effect_entry import EffectEntry, build_effects
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import (
-    EffectEntry,
     UncertaintyEntry,
-    build_effects,
     build_model,
     describe_model,
     load_model,

@@ -6,13 +6,13 @@ asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happe
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Callable, Literal, Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import CommandKind, Commands
+from rovsim.core.run import Between, CommandKind, Commands
 from rovsim.dynamics.effects.base import (
     Autopilot,
     Clock,
@@ -27,7 +27,6 @@ from rovsim.dynamics.effects.base import (
 from rovsim.dynamics.step_cuts import StepCuts, latest
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
-Between = Literal["held", "linear"]
 AT_ONCE = 1 << 16  # steps whose thrust is found together: it takes twenty times the room of a step
 
 

@@ -2,17 +2,17 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Iterable, Literal, Self
+from typing import Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from rovsim.core.errors import BadInput, located, nearest
 from rovsim.core.files import plain
 from rovsim.core.names import name_of
-from rovsim.core.schema import Number, PathText, Section, checked
+from rovsim.core.schema import PathText, Section, checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effect_entry import EffectEntry, build_effects, describe_effect
 from rovsim.dynamics.learned.residual import StoredResidual, read_residual
 from rovsim.dynamics.model import BUILT_IN, Model
 from rovsim.dynamics.uncertainty import Draws, Uncertainty
@@ -20,44 +20,8 @@ from rovsim.dynamics.vehicle import Vehicle, build_vehicle, known_vehicle, load_
 from rovsim.results.fitted import Correlation, FittedNoise, Probability
 
 SCHEMA = "rovsim.model/1"
-# Larger than anything that was ever fitted: no replay survives what is drawn from it.
-VAGUEST = 1e12  # a standard deviation
-WILDEST = 1e3  # noise, m/s2, rad/s2, m, rad
-
-
-class Value(Section):
-    """A parameter's value with what is known of it."""
-
-    value: Number
-    std: Annotated[Number, Field(ge=0.0, le=VAGUEST)] | None = None
-    unit: str | None = None
-
-
-def _with_key(value: Any) -> Any:
-    """A bare number is a value nothing more is known of."""
-    return value if isinstance(value, (dict, Value)) else {"value": value}
-
-
-class EffectEntry(Section):
-    """One effect of a model file; a parameter is a number, or a `value` with `std` and `unit`."""
-
-    effect: str
-    parameters: dict[str, Annotated[Value, BeforeValidator(_with_key)]] = Field(
-        default_factory=dict
-    )
-
-    @property
-    def values(self) -> dict[str, float]:
-        """The values alone, by parameter."""
-        return {name: known.value for name, known in self.parameters.items()}
-
-    def plain(self) -> dict[str, Any]:
-        """As it is written: numbers alone where nothing more is known."""
-        known = {
-            name: v.value if v.std is None and v.unit is None else v.model_dump(exclude_none=True)
-            for name, v in self.parameters.items()
-        }
-        return {"effect": self.effect, "parameters": known}
+# Noise, m/s2, rad/s2, m, rad, larger than was ever fitted: no replay survives what is drawn.
+WILDEST = 1e3
 
 
 class PossibilityEntry(Section):
@@ -108,31 +72,6 @@ class ModelFile(Section):
         return effects
 
 
-def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
-    """The effect that an entry describes.
-
-    Raises:
-        BadInput: an unknown effect or parameter, a value out of range, another unit.
-    """
-    found = catalogue.find(entry.effect)(**entry.values)
-    units = {p.name: p.unit for p in found.parameters}
-    for name, known in entry.parameters.items():
-        if known.unit not in (None, units[name]):
-            raise BadInput(
-                f"{name} has the unit '{known.unit}'",
-                where=f"effect {entry.effect}",
-                expected=f"'{units[name]}'",
-                remedy="Convert the value, or leave the unit out.",
-            )
-    std = {name: v.std for name, v in entry.parameters.items() if v.std is not None}
-    return found.with_std(std)
-
-
-def build_effects(entries: Iterable[EffectEntry], catalogue: Catalogue) -> tuple[Effect, ...]:
-    """The effects that entries describe; see `build_effect`."""
-    return tuple(build_effect(entry, catalogue) for entry in entries)
-
-
 def with_uncertainty(
     model: Model, entry: UncertaintyEntry, catalogue: Catalogue, where: object
 ) -> Model:
@@ -165,19 +104,6 @@ def _describe_uncertainty(found: Uncertainty) -> UncertaintyEntry:
             for probability, draws in found.instead
         ),
     )
-
-
-def describe_effect(effect: Effect) -> EffectEntry:
-    """The entry of an effect: what differs from the default, and what was fitted."""
-    given = effect.given()
-    values = {
-        p.name: Value(value=effect[p.name], std=effect.std[p.name], unit=p.unit)
-        if p.name in effect.std
-        else Value(value=given[p.name])
-        for p in effect.parameters
-        if p.name in given or p.name in effect.std
-    }
-    return EffectEntry(effect=effect.id, parameters=values)
 
 
 def read_model(path: Path, catalogue: Catalogue) -> Model:

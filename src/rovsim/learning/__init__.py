@@ -2,6 +2,7 @@
 
 pairs               training pairs: features, and what the acceleration misses
 scaling             features brought to one size
+settings            what every learner can be told
 learner             what every learner declares, and how they are found
 knn                 k nearest neighbours
 gp                  exact Gaussian process

@@ -8,7 +8,6 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.learned.features import FeatureSettings, blocks_code, feature_names
 from rovsim.dynamics.learned.layout import (
     BLOCKS,
     COUNT,
@@ -31,6 +30,7 @@ from rovsim.dynamics.learned.layout import (
     WIDTH,
     filled,
 )
+from rovsim.dynamics.learned.settings import FeatureSettings, blocks_code, feature_names
 from rovsim.learning.posterior_variance import PosteriorVariance
 from rovsim.learning.scaling import Scaling
 from rovsim.learning.tree import packed_tree, side_by_side

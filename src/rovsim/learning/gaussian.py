@@ -16,9 +16,10 @@ from pydantic import Field
 from rovsim import AXES
 from rovsim.core.normal import STD_PER_MAD
 from rovsim.learning.export import Kernel, export_expansion
-from rovsim.learning.learner import LearnerSettings, Posterior, Predict, Progress, spread_rows
+from rovsim.learning.learner import Posterior, Predict, Progress, spread_rows
 from rovsim.learning.posterior_variance import PosteriorVariance, rbf
 from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
+from rovsim.learning.settings import LearnerSettings
 
 NEARBY = 20  # rows: their median's own noise is a quarter of a row's
 SHOWN = 2000  # training rows that show how sure a process is where it was taught

@@ -14,13 +14,13 @@ from rovsim.learning.cross_validation import PARTS, split_rows
 from rovsim.learning.export import export_neighbours
 from rovsim.learning.learner import (
     Learner,
-    LearnerSettings,
     Predict,
     Progress,
     Trained,
     spread_rows,
 )
 from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
+from rovsim.learning.settings import LearnerSettings
 
 TRIED = (3, 5, 10, 20, 30)
 

@@ -13,23 +13,16 @@ import rovsim.learning
 from rovsim import AXES
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.extras import require
-from rovsim.core.schema import Section, checked
+from rovsim.core.schema import checked
 from rovsim.dynamics.learned.checks import checked_rows, posterior
-from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.learned.predictor import evaluate_many
-from rovsim.dynamics.learned.residual import Control, Residual
+from rovsim.dynamics.learned.residual import Residual
+from rovsim.dynamics.learned.settings import Control, FeatureSettings
+from rovsim.learning.settings import LearnerSettings
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
 Posterior = Callable[[Array], tuple[Array, Array]]  # the same -> mean and variance, (n, 6) each
 Progress = Callable[[int, int], None]  # rounds done, rounds in all
-
-
-class LearnerSettings(Section):
-    """Settings every learner has. Each adds its own `kind` and hyperparameters."""
-
-    kind: str
-    features: FeatureSettings = FeatureSettings()
-    max_points: int | None = None  # training rows kept; null: all
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.learned.features import FeatureSettings
+from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import spread_rows
 from rovsim.measurement.signals.chain import SignalSettings

@@ -8,8 +8,8 @@ from numpy import ndarray as Array
 from scipy.sparse import csr_array
 
 from rovsim.core.bounded_cache import Recent
-from rovsim.core.run import Commands
-from rovsim.dynamics.actuation import Between, Thrust
+from rovsim.core.run import Between, Commands
+from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.measurement.signals.motion import Motion

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.learned.features import FeatureSettings, assemble
+from rovsim.dynamics.learned.features import assemble
+from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
 from rovsim.measurement.signals.chain import SignalSettings

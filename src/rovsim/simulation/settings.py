@@ -4,8 +4,8 @@ from typing import Annotated
 
 from pydantic import Field, PositiveFloat, field_validator
 
+from rovsim.core.run import Between
 from rovsim.core.schema import Section
-from rovsim.dynamics.actuation import Between
 from rovsim.results.comparison import WINDOW
 
 

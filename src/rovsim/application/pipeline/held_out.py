@@ -12,7 +12,7 @@ from rovsim.evaluation.held_out.published_errors import (
     find_demanded,
     read_published,
 )
-from rovsim.learning.learner import LearnerSettings
+from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison
 from rovsim.results.pitfalls import Pitfalls

@@ -9,9 +9,9 @@ import numpy as np
 
 from rovsim.diagnosis.apply import add_uncertainty, choose_effects, extend, list_entries
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effect_entry import EffectEntry, Value, build_effects
 from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import EffectEntry, Value, build_effects
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect
 

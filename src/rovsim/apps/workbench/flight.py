@@ -26,8 +26,8 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.core.schema import checked
 from rovsim.design.settings import LONGEST, SHORTEST, Question
+from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import with_thruster_names
-from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.words.experiment import list_steps, size_of_odds, tell_limits, tell_share
 from rovsim.results.experiment import Experiment

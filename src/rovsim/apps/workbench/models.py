@@ -35,9 +35,9 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.dynamics.model import Model, nominal
-from rovsim.dynamics.model_file import describe_effect
 from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import VELOCITY_UNITS

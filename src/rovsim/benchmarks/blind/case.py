@@ -10,8 +10,8 @@ from rovsim.benchmarks.blind.laws import find_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.effects.base import Effect, Parameter
-from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 # First and last seed of each range. Whoever builds or tunes a method looks at development cases

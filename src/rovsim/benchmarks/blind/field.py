@@ -15,7 +15,7 @@ import numpy as np
 from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
-from rovsim.dynamics.model_file import EffectEntry, Value
+from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")

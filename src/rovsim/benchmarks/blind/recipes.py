@@ -12,8 +12,8 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.effects.base import Parameter
-from rovsim.dynamics.model_file import EffectEntry, Value
 from rovsim.simulation.synthetic_tank.settings import SUITABLE
 
 Range = tuple[float, float]

@@ -16,7 +16,7 @@ from typing import Any, Iterator, Mapping
 import numpy as np
 
 from rovsim.benchmarks.blind.case import Case, Range, random_of, seed_of
-from rovsim.dynamics.model_file import EffectEntry, Value
+from rovsim.dynamics.effect_entry import EffectEntry, Value
 
 Sizes = Mapping[str, tuple[float, float]]  # of parameters, least and most
 Hidden = tuple[str, Sizes]

@@ -26,7 +26,7 @@ from rovsim.benchmarks.blind.laws import LAWS, drawn_law
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.benchmarks.blind.recordings import recordings
-from rovsim.dynamics.model_file import EffectEntry, Value
+from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Camera
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.learned.features import FeatureSettings
 from rovsim.dynamics.learned.layout import FADING_RANK
 from rovsim.dynamics.learned.residual import Residual
+from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.learning.export import Kernel, export_expansion, export_neighbours
 from rovsim.learning.learner import learner_settings, train
 from rovsim.learning.scaling import fit_scaling

@@ -21,8 +21,9 @@ from rovsim.dynamics.engine.vectors import (
     vector3,
     vector6,
 )
-from rovsim.dynamics.learned.features import FEATURES, assemble_one
+from rovsim.dynamics.learned.features import assemble_one
 from rovsim.dynamics.learned.predictor import evaluate
+from rovsim.dynamics.learned.settings import FEATURES
 
 ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 

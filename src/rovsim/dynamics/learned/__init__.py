@@ -1,6 +1,7 @@
 """A trained residual inside the loop: its features, its kernels, its file. Trains nothing.
 
-features          what it looks at: velocity, thrust, acceleration, gravity
+settings          the runs it learned from, and what it looks at
+features          that, of samples: velocity, thrust, acceleration, gravity
 layout            where things stand in an exported residual
 predictor         its evaluation, one sample or many
 neighbours        the k nearest points

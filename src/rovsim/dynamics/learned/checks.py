@@ -7,7 +7,6 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.learned.features import FeatureSettings, blocks_code, feature_names
 from rovsim.dynamics.learned.layout import (
     BLOCKS,
     COUNT,
@@ -30,6 +29,7 @@ from rovsim.dynamics.learned.layout import (
     tree_levels,
 )
 from rovsim.dynamics.learned.predictor import posterior_many
+from rovsim.dynamics.learned.settings import FeatureSettings, blocks_code, feature_names
 
 
 def check_exported(data: Any, features: FeatureSettings, where: object) -> Array:

@@ -15,11 +15,10 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import plain
 from rovsim.core.schema import PathText, Section, checked
 from rovsim.dynamics.learned.checks import check_exported, checked_rows, posterior
-from rovsim.dynamics.learned.features import Block, FeatureSettings
 from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many
+from rovsim.dynamics.learned.settings import Block, Control, FeatureSettings
 
-Control = Literal["3dof", "6dof", "all"]  # runs a residual learns from
 LIBRARY = "library."  # prefix of the arrays from which the library's own model is rebuilt
 ARRAYS = "residual.npz"  # file of the arrays, beside the model file
 

@@ -8,7 +8,8 @@ from numpy import ndarray as Array
 
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread, normalize, rms, subtract
-from rovsim.learning.learner import LearnerSettings, Trained, train
+from rovsim.learning.learner import Trained, train
+from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion

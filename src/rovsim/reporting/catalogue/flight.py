@@ -8,10 +8,10 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import unlisted
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.model import nominal
-from rovsim.dynamics.model_file import describe_effect
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
 from rovsim.evaluation.error_conditions.conditions import (

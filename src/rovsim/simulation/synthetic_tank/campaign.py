@@ -12,9 +12,9 @@ from rovsim.core.files import copy_file, folder_beside, text_appearing
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effect_entry import build_effects
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import build_effects
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.campaign import check_ids
 from rovsim.simulation.synthetic_tank.description import (

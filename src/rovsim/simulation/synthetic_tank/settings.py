@@ -10,8 +10,8 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator, mo
 
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.schema import Section
+from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.base import Means
-from rovsim.dynamics.model_file import EffectEntry
 from rovsim.dynamics.vehicle import default_vehicle
 
 Share = Annotated[float, Field(ge=0, le=1)]

@@ -24,7 +24,7 @@ from rovsim.benchmarks.speed.tables import write_page
 from rovsim.core.extras import require
 from rovsim.core.making import describe_machine
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.learned.features import FeatureSettings
+from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.campaign import load_campaign
 from rovsim.results.timing import Bench
