@@ -106,6 +106,8 @@ def test_a_log_that_ends_while_pushing_is_told(campaign):
 def test_a_tank_that_is_too_small_is_told(campaign):
     said = described(campaign, lambda c: c.update(tank={"z": [4.0, 5.0]}))
     assert "outside of the tank: z from" in said
+    said = described(campaign, lambda c: c.update(tank={"z": [-5.0, -4.0]}))
+    assert "'tank' says −5 to −4" in said
 
 
 def test_a_test_run_that_was_trained_on_is_told_at_the_end_of_compare(

@@ -3,8 +3,13 @@
 import numpy as np
 
 from rovsim.application.pipeline.design import format_instructions
+from rovsim.core.run import Commands
+from rovsim.design.instructions import instruct
+from rovsim.design.search import Tried
+from rovsim.design.settings import FlightLimits
 from rovsim.reporting.figures.planned_flight import PlannedFlight, draw_flight
 from rovsim.reporting.words.experiment import list_steps
+from rovsim.results.experiment import Start
 
 TOLD = (
     "Put it there.",
@@ -39,3 +44,14 @@ def test_what_is_done_by_hand_stands_under_the_step_that_it_replaces():
     assert list_steps(()) == []
     lines = format_instructions(TOLD).split("\n\n")
     assert lines[1:4] == ["2. Send it.", "3. By hand, instead of step 2:", "   * Surge: swing it."]
+
+
+def test_places_and_angles_below_zero_have_a_minus_sign():
+    flight = Tried(
+        np.zeros((1, 6)), 0.0, Commands(np.zeros(1), np.zeros((1, 2)), "demand"), 0.0, None,
+        numbers=np.zeros(11),
+    )  # fmt: skip
+    start = Start(x_m=-1.25, y_m=0.5, z_m=-0.001, yaw_rad=np.radians(-112.0))
+    where = instruct(flight, np.array([0, 5]), start, FlightLimits())[0]
+    assert where.startswith("Put the vehicle to x −1.25 m, y 0.50 m, z 0.00 m in the ")
+    assert "yaw −112 degrees: level" in where

@@ -105,7 +105,7 @@ def test_stamps_of_another_clock_are_shifted_and_that_is_said(tmp_path):
     np.testing.assert_allclose(same.time - START, SWIM.time, atol=1e-6)  # transport is no clock
     other = read_bag(write_bag(tmp_path / "b", {BODY: poses(SWIM, late=6741.0)}), mocap())
     np.testing.assert_allclose(other.time - START - 6741.0, SWIM.time, atol=1e-6)
-    assert "-6741.000 s from the bag's clock" in other.notes[0]
+    assert "−6741.000 s from the bag's clock" in other.notes[0]
 
 
 def test_stamps_that_stand_or_jump_are_not_believed(tmp_path):

@@ -7,6 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
+from rovsim.core.signs import minus
 from rovsim.design.flight import Envelope
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.search import Range
@@ -16,7 +17,6 @@ from rovsim.design.sticks import ticks
 from rovsim.design.worth import Worth
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
-from rovsim.reporting.wording import minus
 from rovsim.simulation.replay import predict as replay
 from rovsim.simulation.windows import find_windows
 

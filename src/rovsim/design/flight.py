@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import exp, multiply, to_euler
+from rovsim.core.signs import minus
 from rovsim.design.knowledge import Knowledge
 from rovsim.design.settings import FlightLimits
 from rovsim.design.surroundings import Surroundings
@@ -210,9 +211,9 @@ def _require_room(box: Array, tank: Array, surface: float, limits: FlightLimits)
     axis = int(np.argmax(box[:, 0] >= box[:, 1]))
     found = f"walls {tank[axis, 1] - tank[axis, 0]:.2f} m apart along {'xy'[axis % 2]}"
     if axis == 2:
-        low, high = tank[2] - surface
+        low, high = (minus(f"{depth:.2f}") for depth in tank[2] - surface)
         wanted = f", design.limits.depth={list(limits.depth)}" if limits.depth else ""
-        found = f"floor and surface at {high:.2f} m and {low:.2f} m of depth{wanted}"
+        found = f"floor and surface at {high} m and {low} m of depth{wanted}"
     raise BadInput(
         f"{found}, and a clearance of {limits.clearance:g} m: they leave no room",
         where="rovsim design",

@@ -6,6 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.signs import minus
 from rovsim.design.search import Tried
 from rovsim.design.settings import FlightLimits
 from rovsim.design.sticks import IDLE, NUMBERS, SWELL, USUAL, Swing
@@ -23,10 +24,10 @@ def instruct(flight: Tried, axes: Array, start: Start, limits: FlightLimits) -> 
         start: where it begins.
         limits: what full sticks are.
     """
+    yaw = minus(f"{np.degrees(start.yaw_rad):.0f}")
     found = [
-        f"Put the vehicle to x {start.x_m:.2f} m, y {start.y_m:.2f} m, z {start.z_m:.2f} m in the "
-        f"recordings' axes, yaw {np.degrees(start.yaw_rad):.0f} degrees: level, at rest, within "
-        "0.1 m and 5 degrees.",
+        f"Put the vehicle to {_place(start)} in the recordings' axes, yaw {yaw} degrees: level, at "
+        "rest, within 0.1 m and 5 degrees.",
         "Start the recording, then send experiment.csv as it is, from a computer. No pilot and no "
         "autopilot may act beside it: what keeps the vehicle level is in the commands.",
         "By hand, instead of step 2: start the recording, let an autopilot hold attitude and "
@@ -36,6 +37,11 @@ def instruct(flight: Tried, axes: Array, start: Start, limits: FlightLimits) -> 
         f"{np.degrees(limits.tilt):.0f} degrees of tilt, or full thrust where that is less.",
     ]
     return found
+
+
+def _place(start: Start) -> str:
+    axes = zip("xyz", (start.x_m, start.y_m, start.z_m), strict=True)
+    return ", ".join(f"{axis} {minus(f'{value:.2f}')} m" for axis, value in axes)
 
 
 def _numbers(flight: Tried, axes: Array) -> list[str]:

@@ -4,6 +4,7 @@ import math
 import re
 from typing import Iterable, Sequence
 
+from rovsim.core.signs import minus
 from rovsim.results.diagnosis import PROPOSED
 
 LONGEST = 40  # letters of a name before its middle is left out
@@ -130,8 +131,3 @@ def significant(value: float, digits: int = 3) -> str:
 def rounded(value: float, digits: int = 3) -> float:
     """Return `value` to so many significant figures, as a number."""
     return float(f"{value:.{digits - 1}e}")
-
-
-def minus(number: str) -> str:
-    """A number as people write it: with a minus sign, not a hyphen; a zero has no sign."""
-    return number.replace("-", "−") if number.strip("-0.") else number.lstrip("-")

@@ -10,11 +10,11 @@ from rovsim.apps.workbench.parts import computed, formula, heading, section, tab
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.shipped import shipped
+from rovsim.core.signs import minus
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.reporting.catalogue.entries import PICTURES, chaptered, unit
-from rovsim.reporting.wording import minus
 
 TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look like?"
 DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`

@@ -21,6 +21,7 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.signs import minus
 from rovsim.evaluation.error_conditions.bins import Table
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import SearchedModel
@@ -153,14 +154,15 @@ def _span(found: Table, k: int) -> str:
     low, high = (np.degrees(edges[k : k + 2]) if unit == "rad" else edges[k : k + 2]).tolist()
     if len(edges) == 2:
         return "throughout"
-    return f"{low:.2g} to {high:.2g} {'°' if unit == 'rad' else unit}".replace("-", "−")
+    ends = " to ".join(minus(f"{end:.2g}") for end in (low, high))
+    return f"{ends} {'°' if unit == 'rad' else unit}"
 
 
 def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> Options:
     """Means of the bins with two standard errors, from where.json; grey: seen too rarely."""
     curve = chart_bins(found)
     colors = [BLUE if yes else FAINT for yes in curve.judged]
-    centers = [f"{c:.2g}".replace("-", "−") for c in curve.center]
+    centers = [minus(f"{c:.2g}") for c in curve.center]
     low, high = curve.mean - curve.error, curve.mean + curve.error
     whiskers = [[k, *ends] for k, ends in enumerate(np.stack([low, high], axis=1).tolist())]
     return {

@@ -6,6 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
+from rovsim.core.signs import minus
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.evaluation.commanded_motion.clocks import tell_following
 from rovsim.evaluation.commanded_motion.likeness import (
@@ -97,14 +98,12 @@ def _out_of_tank(recording: Recording) -> Iterator[str]:
     k = int(np.argmax(share))
     if share[k] > SHARE:
         sign = recording.site.axes[k]
-        reach, tank = (
-            sorted((sign * values).tolist())
-            for values in (np.percentile(position[:, k], [1.0, 99.0]), walls[k])
-        )
+        ends = np.percentile(position[:, k], [1.0, 99.0])
+        reach = [minus(f"{end:.2f}") for end in sorted((sign * ends).tolist())]
+        tank = [minus(f"{wall:g}") for wall in sorted((sign * walls[k]).tolist())]
         yield (
-            f"Most of the path lies outside of the tank: {'xyz'[k]} from {reach[0]:.2f} to "
-            f"{reach[1]:.2f} m, 'tank' says {tank[0]:g} to {tank[1]:g}. Check it, and "
-            "'mocap.world_axes'."
+            f"Most of the path lies outside of the tank: {'xyz'[k]} from {reach[0]} to {reach[1]} "
+            f"m, 'tank' says {tank[0]} to {tank[1]}. Check it, and 'mocap.world_axes'."
         )
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from rovsim.core.signs import minus
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
 from rovsim.evaluation.error_conditions.findings import SMALLEST, Explanation, Finding
 
@@ -122,7 +123,7 @@ def _span(found: Finding, b: int) -> str:
     """A bin in words; the outer bins are open."""
     edges, condition = found.table.binning.edges, found.table.binning.condition
     if condition.unit == "rad":
-        return f"near {np.degrees(found.table.binning.center[b]):.0f}°".replace("-", "−")
+        return f"near {minus(f'{np.degrees(found.table.binning.center[b]):.0f}')}°"
     low, high = (_plain(x) for x in edges[b : b + 2])
     if b == 0:
         return f"below {high} {condition.unit}"
@@ -132,7 +133,7 @@ def _span(found: Finding, b: int) -> str:
 
 
 def _plain(value: float) -> str:
-    return f"{'−' if value < 0 else ''}{amount(abs(float(value)))}"
+    return minus(amount(float(value)))
 
 
 def _share(found: Finding) -> str:

@@ -6,6 +6,7 @@ from typing import Iterable, Mapping
 
 import numpy as np
 
+from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import (
     Autopilot,
     Clock,
@@ -23,7 +24,6 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.reporting.wording import minus
 from rovsim.reporting.words.symbols import explain_symbols
 
 PAGE, PICTURES = "catalogue.md", "images/effects"

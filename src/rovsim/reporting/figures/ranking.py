@@ -9,10 +9,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from rovsim.core.signs import minus
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import LEAST, minus, short
+from rovsim.reporting.wording import LEAST, short
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 

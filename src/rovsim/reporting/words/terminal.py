@@ -3,13 +3,13 @@
 from typing import Mapping, Sequence
 
 from rovsim.core.columns import fold
+from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.wording import (
     ERROR_MEANING,
     LEAST,
     fit,
     listed,
-    minus,
     several,
     significant,
     title,

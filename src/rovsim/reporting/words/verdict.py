@@ -7,6 +7,7 @@ from typing import Mapping, Sequence
 
 from rovsim import AXES
 from rovsim.core.normal import Z_95
+from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import name_parameter
@@ -16,7 +17,6 @@ from rovsim.reporting.wording import (
     ERROR_MEANING,
     FLOOR_COUNTS_ALL,
     listed,
-    minus,
     percent,
     significant,
 )

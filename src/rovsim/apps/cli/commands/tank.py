@@ -16,6 +16,7 @@ from pathlib import Path
 from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.progress import reported
+from rovsim.core.signs import minus
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.sent_log import described_by
@@ -44,10 +45,11 @@ def _begin(tank: TankSettings, fly: str) -> str:
     """Where a log is flown from, if no plan says so; else nothing."""
     if described_by(Path(fly)):
         return ""
-    x, y, z = (0.5 * sum(walls) for walls in (tank.tank.x, tank.tank.y, tank.tank.z))
+    middle = (0.5 * sum(walls) for walls in (tank.tank.x, tank.tank.y, tank.tank.z))
+    x, y, z = (minus(f"{place:g}") for place in middle)
     return (
         f"No {Path(fly).stem}.json lies beside {fly}: it is flown from the middle of the tank "
-        f"(x {x:g} m, y {y:g} m, z {z:g} m, yaw 0).\n"
+        f"(x {x} m, y {y} m, z {z} m, yaw 0).\n"
     )
 
 

@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.signs import minus
+
 NANO = 1e-9
 # Transport within one computer or network takes less; another clock is off by more.
 SAME_CLOCK = 0.5  # s
@@ -30,7 +32,8 @@ def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tupl
     if abs(middle) <= SAME_CLOCK:
         return stamps * NANO, ()
     shifted = (stamps - stamps[0]) * NANO + (stamps[0] * NANO + middle)
-    note = f"{topic}: its stamps are {-middle:+.3f} s from the bag's clock and were shifted to it."
+    off = minus(f"{-middle:+.3f}")
+    note = f"{topic}: its stamps are {off} s from the bag's clock and were shifted to it."
     return shifted, (note,)
 
 
