@@ -8,8 +8,8 @@ from rovsim.design.instructions import instruct
 from rovsim.design.search import Tried
 from rovsim.design.settings import FlightLimits
 from rovsim.reporting.figures.planned_flight import PlannedFlight, draw_flight
-from rovsim.reporting.words.experiment import list_steps
-from rovsim.results.experiment import Start
+from rovsim.reporting.words.experiment import list_steps, tell_experiment
+from rovsim.results.experiment import Expected, Experiment, Keeps, Start, Surer
 
 TOLD = (
     "Put it there.",
@@ -55,3 +55,18 @@ def test_places_and_angles_below_zero_have_a_minus_sign():
     where = instruct(flight, np.array([0, 5]), start, FlightLimits())[0]
     assert where.startswith("Put the vehicle to x −1.25 m, y 0.50 m, z 0.00 m in the ")
     assert "yaw −112 degrees: level" in where
+
+
+def test_units_of_what_it_tells_are_written_as_everywhere():
+    std = {
+        "linear_damping.yaw": Surer(now=0.5, then=0.1, unit="N m s2/rad2"),
+        "lift.factor": Surer(now=0.5, then=None, unit="1"),
+    }
+    found = Experiment(
+        seconds=60.0, model="nominal", manoeuvre="designed", expects=Expected(std=std),
+        baselines={}, start=Start(x_m=0.0, y_m=0.0, z_m=1.0, yaw_rad=0.0), instructions=(),
+        keeps=Keeps(nearest_wall_m=None, speed_m_s=1.0, turn_rate_rad_s=1.0, tilt_rad=0.1),
+    )  # fmt: skip
+    said = tell_experiment(found)
+    assert "linear_damping.yaw: ± 0.10 N m s²/rad² (now ± 0.50 N m s²/rad²)" in said
+    assert "lift.factor: ± – (now ± 0.50)" in said

@@ -63,7 +63,7 @@ def test_a_force_that_the_model_lacks_pushes_all_that_could_happen(flown):
     assert chances.pushes[0, :, HEAVE] == pytest.approx(found.steady[0].mean[HEAVE])
     assert chances.pushes[..., HEAVE].mean() == pytest.approx(missing, rel=0.4)
     (told,) = doubt(found, QUESTION)
-    assert "in heave" in told
+    assert "m/s² in heave" in told
     assert "after 5 s it is" in told
 
 

@@ -17,12 +17,12 @@ from rovsim.design.sticks import ticks
 from rovsim.design.worth import Worth
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
+from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.simulation.replay import predict as replay
 from rovsim.simulation.windows import find_windows
 
 WIDER = 1.5  # times: beyond what two fits of the same runs differ by
 AFTER = 5.0  # s, the longest window of a comparison
-UNITS = ("m/s2",) * 3 + ("rad/s2",) * 3
 NARROW = "one told to stay where it is does, none that moves enough to show anything"
 REMEDY = (
     "Give the model that a diagnosis found: what a model lacks is a disturbance. Or give fewer "
@@ -77,7 +77,7 @@ def warn_of_wider(model: Model, now: Mapping[str, float | None]) -> tuple[str, .
 
 def _name(push: SteadyPush) -> str:
     return " and ".join(
-        f"{minus(f'{push.mean[i]:.2g}')} {UNITS[i]} in {AXES[i]}"
+        f"{minus(f'{push.mean[i]:.2g}')} {ACCELERATION_UNITS[i]} in {AXES[i]}"
         for i in np.flatnonzero(push.large)
     )
 

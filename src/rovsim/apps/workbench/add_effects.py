@@ -9,7 +9,7 @@ from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.parts import Failure, Slider, alarm, text
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.dynamics.effects.thrusters import name_parameter
-from rovsim.reporting.catalogue.entries import unit
+from rovsim.reporting.units import unit
 from rovsim.reporting.wording import rounded, tell_probability
 from rovsim.reporting.words.totals import tell_total
 

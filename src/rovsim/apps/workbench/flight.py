@@ -28,7 +28,7 @@ from rovsim.core.schema import checked
 from rovsim.design.settings import LONGEST, SHORTEST, Question
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import with_thruster_names
-from rovsim.reporting.catalogue.entries import unit
+from rovsim.reporting.units import unit
 from rovsim.reporting.words.experiment import list_steps, size_of_odds, tell_limits, tell_share
 from rovsim.results.experiment import Experiment
 

@@ -14,7 +14,8 @@ from rovsim.core.signs import minus
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.reporting.catalogue.entries import PICTURES, chaptered, unit
+from rovsim.reporting.catalogue.entries import PICTURES, chaptered
+from rovsim.reporting.units import unit
 
 TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look like?"
 DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`

@@ -38,9 +38,8 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.dynamics.model import Model, nominal
-from rovsim.reporting.catalogue.entries import unit
 from rovsim.reporting.figures.palette import FAMILIES
-from rovsim.reporting.units import VELOCITY_UNITS
+from rovsim.reporting.units import VELOCITY_UNITS, unit
 from rovsim.reporting.wording import LEARNERS, listed, significant, title
 from rovsim.reporting.words.totals import list_totals, warn
 from rovsim.reporting.words.verdict import interval

@@ -24,6 +24,7 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.effects.parameters import Signature
+from rovsim.reporting.units import unit
 from rovsim.reporting.words.symbols import explain_symbols
 
 PAGE, PICTURES = "catalogue.md", "images/effects"
@@ -160,11 +161,6 @@ def _range(low: float, high: float) -> str:
     if np.isinf(high):
         return minus(f"≥ {low:g}")
     return minus(f"≤ {high:g}" if np.isinf(low) else f"{low:.3g} … {high:.3g}")
-
-
-def unit(si: str) -> str:
-    """A unit with its powers raised; 1 is no unit."""
-    return "" if si == "1" else si.replace("2", "²").replace("3", "³")
 
 
 def _flat(text: str) -> str:

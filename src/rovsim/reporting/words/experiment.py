@@ -3,6 +3,7 @@
 from typing import Sequence
 
 from rovsim.dynamics.effects.thrusters import with_thruster_names
+from rovsim.reporting.units import unit
 from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 from rovsim.results.experiment import Experiment, RivalOdds, Surer, UsualManoeuvre
@@ -44,9 +45,10 @@ def size_of_odds(odds: float) -> str:
 
 
 def _std(name: str, one: Surer) -> str:
-    unit = "" if one.unit in (None, "1") else f" {one.unit}"
-    now, then = (significant(or_nan(x), 2) for x in (one.now, one.then))
-    return f"  {name}: ± {then}{unit} (now ± {now}{unit})"
+    now, then = (
+        f"± {significant(or_nan(x), 2)} {unit(one.unit)}".strip() for x in (one.now, one.then)
+    )
+    return f"  {name}: {then} (now {now})"
 
 
 def tell_limits(found: Experiment) -> str:

@@ -1,7 +1,6 @@
 """What a diagnosis found, in plain language: for the report and for the terminal."""
 
 import math
-import re
 from dataclasses import dataclass
 from typing import Mapping, Sequence
 
@@ -11,7 +10,7 @@ from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import name_parameter
-from rovsim.reporting.units import FORCE_UNITS
+from rovsim.reporting.units import FORCE_UNITS, unit
 from rovsim.reporting.wording import (
     ERROR,
     ERROR_MEANING,
@@ -170,13 +169,12 @@ def _removed(share: float | None, above: bool) -> str:
 
 def interval(value: FittedValue) -> str:
     """A fitted value with its 95 % interval and unit: 0.181 ± 0.002 s."""
-    unit = "" if value.unit in (None, "1") else re.sub(r"(?<=[a-z])2", "²", value.unit)
     half = Z_95 * or_nan(value.std)
     if not math.isfinite(half) or half <= 0.0:
-        return f"{significant(or_nan(value.value), 4)} {unit}".strip()
+        return f"{significant(or_nan(value.value), 4)} {unit(value.unit)}".strip()
     places = max(0, 1 - math.floor(math.log10(half)))
     told = minus(f"{or_nan(value.value):.{places}f}")
-    return f"{told} ± {half:.{places}f} {unit}".strip()
+    return f"{told} ± {half:.{places}f} {unit(value.unit)}".strip()
 
 
 def differs_from_zero(value: FittedValue) -> bool:
