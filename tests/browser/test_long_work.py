@@ -11,9 +11,13 @@ def test_long_work_can_be_cancelled_and_changes_nothing(tab, workbench):
     have_diagnosed(tab)
     before = tab.numbers()
     tab.page.get_by_role("button", name="Diagnose again").click()
+    tab.page.locator(
+        "button:disabled[title*='Finding what is missing'][aria-description]"
+    ).wait_for()
     tab.page.get_by_role("button", name="Cancel").click()
     tab.page.get_by_text("cancelled, nothing was changed").wait_for()
     tab.page.wait_for_selector(".verdict")
+    tab.page.locator("button:enabled:not([title])", has_text="Diagnose again").wait_for()
     assert tab.numbers() == before
     (path,) = workbench[1].glob("results/*/ui/*/*.*")  # flights lie a folder deeper
     assert path.name == "diagnosis.json"

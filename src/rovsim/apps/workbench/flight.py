@@ -18,7 +18,6 @@ from rovsim.apps.workbench.parts import (
     table,
     text,
     titled,
-    while_idle,
     words,
 )
 from rovsim.apps.workbench.place import Place
@@ -144,11 +143,11 @@ class Flight:
             "Commands are searched that move the vehicle so that the answer shows best. This takes "
             "one to some minutes, and can be cancelled.", "soft",
         )  # fmt: skip
-        button = ui.button(
-            "Plan the flight", icon="route",
+        button = jobs.Beginning(
+            self.bench, "Plan the flight", icon="route",
             on_click=lambda: jobs.design(self.bench, self.chosen["model"], question),
-        ).props("unelevated no-caps").classes("onward")  # fmt: skip
-        while_idle(self.bench, button)
+        )  # fmt: skip
+        button.props("unelevated no-caps").classes("onward")
 
     def _terminal(self) -> None:
         chosen = self.chosen

@@ -1,6 +1,10 @@
 """Long work on an open campaign: begun here, done in a process of its own, taken in when done."""
 
 from pathlib import Path
+from typing import Any
+
+from nicegui import ui
+from nicegui.binding import BindableProperty, bind_from
 
 from rovsim.application.settings import compose
 from rovsim.apps.workbench import tasks
@@ -8,6 +12,26 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.design.settings import Question
 from rovsim.dynamics.model_file import read_model
 from rovsim.reporting.wording import title
+
+WAITING = "Waits until what goes on has ended, one long work at a time: {}."
+
+
+class Beginning(ui.button):
+    """A button that begins long work: while other work goes on it waits, and says for what."""
+
+    other = BindableProperty(on_change=lambda button, _: button.wait())
+
+    def __init__(self, bench: Workbench, words: str, **given: Any) -> None:
+        super().__init__(words, **given)
+        self.other = ""
+        bind_from(self, "other", bench, "goes_on")
+
+    def wait(self) -> None:
+        """While other work goes on, for those who point at it and those who hear it."""
+        self.set_enabled(not self.other)
+        told = WAITING.format(self.other) if self.other else None
+        for name in ("title", "aria-description"):
+            self.props.set_optional(name, told)
 
 
 def diagnose(bench: Workbench) -> None:

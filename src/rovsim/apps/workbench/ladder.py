@@ -14,7 +14,6 @@ from rovsim.apps.workbench.parts import (
     table,
     text,
     titled,
-    while_idle,
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
@@ -75,10 +74,10 @@ def _train(bench: Workbench) -> None:
         on = ui.select(titled(physical), label="On top of", value=physical[-1]).classes("control")
         on.props("outlined dense")
         for kind, name in KINDS.items():
-            train = ui.button(
-                f"Train {name}", on_click=lambda _, k=kind: jobs.train(bench, k, on.value)
+            train = jobs.Beginning(
+                bench, f"Train {name}", on_click=lambda _, k=kind: jobs.train(bench, k, on.value)
             )
-            while_idle(bench, train.props("outline no-caps"))
+            train.props("outline no-caps")
 
 
 def _report(bench: Workbench) -> None:
@@ -88,10 +87,10 @@ def _report(bench: Workbench) -> None:
         "soft",
     )
     with ui.row().classes("controls"):
-        write = ui.button(
-            "Write the report", icon="description", on_click=lambda: jobs.report(bench)
+        write = jobs.Beginning(
+            bench, "Write the report", icon="description", on_click=lambda: jobs.report(bench)
         )
-        while_idle(bench, write.props("outline no-caps"))
+        write.props("outline no-caps")
         if "report" in bench.choices:
             path = bench.choices["report"]
             address = app.add_static_file(local_file=path, max_cache_age=0)

@@ -44,11 +44,6 @@ async def computed(function: Callable, *given: Any) -> Any:
     return found
 
 
-def while_idle(bench: object, button: ui.button) -> None:
-    """A button that begins long work: it waits while other work goes on."""
-    button.bind_enabled_from(bench, "busy", backward=lambda busy: not busy)
-
-
 class Slider(ui.slider):
     """A slider that keeps up with a fast hand or key.
 

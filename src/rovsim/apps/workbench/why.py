@@ -22,7 +22,6 @@ from rovsim.apps.workbench.parts import (
     table,
     text,
     tile,
-    while_idle,
     words,
 )
 from rovsim.apps.workbench.place import Place
@@ -71,8 +70,8 @@ async def show(bench: Workbench, place: Place) -> None:
     for remark in said.remarks:
         text(remark)
     _ranking(found)
-    again = ui.button("Diagnose again", on_click=lambda: jobs.diagnose(bench))
-    while_idle(bench, again.props("flat no-caps").classes("onward"))
+    again = jobs.Beginning(bench, "Diagnose again", on_click=lambda: jobs.diagnose(bench))
+    again.props("flat no-caps").classes("onward")
     for effect, room in seen.items():
         with room:
             await _show_effect(bench, effect)
@@ -84,8 +83,10 @@ def _ask(bench: Workbench) -> None:
         "to prove itself on stretches it was not fitted to. The test runs stay closed until the "
         "end. This takes from ten seconds to some minutes."
     )
-    button = ui.button("Find what is missing", icon="search", on_click=lambda: jobs.diagnose(bench))
-    while_idle(bench, button.props("unelevated no-caps").classes("onward"))
+    button = jobs.Beginning(
+        bench, "Find what is missing", icon="search", on_click=lambda: jobs.diagnose(bench)
+    )
+    button.props("unelevated no-caps").classes("onward")
 
 
 def _errors(found: Diagnosis) -> None:

@@ -208,9 +208,9 @@ class Workbench:
         return self.settings.model_copy(update={"model": [self.paths[name] for name in names]})
 
     @property
-    def busy(self) -> bool:
-        """Whether long work is going on."""
-        return self.work.now is not None
+    def goes_on(self) -> str:
+        """What long work is going on; nothing where none is."""
+        return self.work.now.title if self.work.now else ""
 
     def ladder(self) -> Ladder:
         """All that is known: baseline, base, found effects, models, noise floor."""
