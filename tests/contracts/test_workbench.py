@@ -14,7 +14,7 @@ from chores import counting, dying, failing
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
-from rovsim.apps.workbench import app, models, parts, tasks, why
+from rovsim.apps.workbench import app, data, models, parts, tasks, why
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.models import Models
 from rovsim.apps.workbench.place import Place
@@ -290,3 +290,17 @@ def test_a_page_that_is_closed_while_it_asks_is_no_fault():
 
 def test_long_names_at_the_head_of_a_column_go_on_in_the_next_line():
     assert parts.head("effects+gp_6dof <b>") == "effects+<wbr>gp_<wbr>6dof &lt;b&gt;"
+
+
+def test_no_heading_stands_over_nothing(monkeypatch):
+    told = []
+    for name in ("section", "text"):
+        monkeypatch.setattr(parts, name, told.append)
+    sound = synthetic_study.study()["quality"]["3dof-1"].model_copy(update={"remarks": ()})
+    doubted = {"a": sound.doubted("The vehicle hangs upside down.")}
+    parts.paragraphs("Remarks", data.list_remarks(doubted))
+    assert told == []  # the doubt stands above
+    parts.paragraphs("Remarks", data.list_remarks({"a": sound}))
+    noisy = sound.model_copy(update={"remarks": ("The poses are noisy.",)})
+    parts.paragraphs("Remarks", data.list_remarks({"a": noisy}))
+    assert told == ["Remarks", "Nothing to remark on.", "Remarks", "a: The poses are noisy."]

@@ -7,7 +7,17 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
-from rovsim.apps.workbench.parts import Failure, cell, chart, heading, section, table, text, words
+from rovsim.apps.workbench.parts import (
+    Failure,
+    cell,
+    chart,
+    heading,
+    paragraphs,
+    section,
+    table,
+    text,
+    words,
+)
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
@@ -29,13 +39,15 @@ async def show(bench: Workbench, place: Place) -> None:
     _recordings(quality)
     _gaps(quality)
     _excitation(quality)
-    section("Remarks")
-    for run, report in quality.items():
-        for remark in report.others:
-            text(f"{run}: {remark}")
-    if not any(report.remarks for report in quality.values()):
-        text("Nothing to remark on.", "soft")
+    paragraphs("Remarks", list_remarks(quality))
     _notes(bench.data.campaign.file.with_name(NOTES))
+
+
+def list_remarks(quality: Mapping[str, Quality]) -> list[str]:
+    """What is no doubt: doubts stand above."""
+    if not any(report.remarks for report in quality.values()):
+        return ["Nothing to remark on."]
+    return [f"{run}: {remark}" for run, report in quality.items() for remark in report.others]
 
 
 def _notes(file: Path) -> None:

@@ -106,6 +106,14 @@ def section(called: str) -> None:
     ui.html(f"<h2>{escape(called)}</h2>", sanitize=False)
 
 
+def paragraphs(called: str, sentences: Iterable[str]) -> None:
+    """Sentences under a heading; nothing where there are none."""
+    for place, words in enumerate(sentences):
+        if not place:
+            section(called)
+        text(words)
+
+
 def cell(value: float | None, name: str = "", told: str = "") -> str:
     """A number in a table, its full value in `data-value`, its name in `data-name`.
 

@@ -17,6 +17,7 @@ from rovsim.apps.workbench.parts import (
     formula,
     heading,
     onward,
+    paragraphs,
     png,
     section,
     table,
@@ -66,9 +67,7 @@ async def show(bench: Workbench, place: Place) -> None:
         section("What to record next")
         text(said.next, "next")
         onward("Plan the flight", "/flight")
-    section("What else to know")
-    for remark in said.remarks:
-        text(remark)
+    paragraphs("What else to know", said.remarks)
     _ranking(found)
     again = jobs.Beginning(bench, "Diagnose again", on_click=lambda: jobs.diagnose(bench))
     again.props("flat no-caps").classes("onward")
