@@ -25,6 +25,7 @@ from rovsim.core.files import read_json
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.ladder import Ladder, Step
 from said import unfolded
 
@@ -304,3 +305,11 @@ def test_no_heading_stands_over_nothing(monkeypatch):
     noisy = sound.model_copy(update={"remarks": ("The poses are noisy.",)})
     parts.paragraphs("Remarks", data.list_remarks({"a": noisy}))
     assert told == ["Remarks", "Nothing to remark on.", "Remarks", "a: The poses are noisy."]
+
+
+def test_a_constant_error_is_told_as_a_push():
+    share = {"axis": "heave", "condition": "throughout", "share_of_error": 0.4}
+    assert why.tell_share(ConditionShare(**share)) == "40\u202f%"
+    assert why.tell_share(ConditionShare(**share, push=-3.04)) == "40\u202f%: a push of 3.0 N"
+    share["axis"] = "yaw"
+    assert why.tell_share(ConditionShare(**share, push=0.2)).endswith("0.20 N m")

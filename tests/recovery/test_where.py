@@ -1,5 +1,6 @@
 """A planted cause is found and named; noise, however long its memory, is not."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -97,6 +98,34 @@ def test_noise_gives_no_finding_in_95_of_100_campaigns(memory):
     assert alarms <= 0.05 * len(seeds)
 
 
+def test_a_constant_error_is_told_as_the_push_that_it_stands_for():
+    M = np.diag([15.0, 20.0, 25.0, 1.0, 1.0, 2.0])
+    found = explain(planted(lambda u, t: 0.2 + 0 * u, size=-1.0), inertia=M)
+    assert found.findings[0].push == pytest.approx(-3.0, rel=0.05)
+    assert found.findings[0].share().push == pytest.approx(-3.0, rel=0.05)
+    assert re.search(r"more backward than the model, as a push of (2\.9|3\.0|3\.1) N would make it",
+                     summarize(found)[0])  # fmt: skip
+    found = explain(planted(lambda u, t: 0.2 + 0 * u, axis="yaw"), inertia=M)
+    assert re.search(r"as a push of 0\.(39|4|40|41) N m would", summarize(found)[0])
+    beside = explain(planted(lambda u, t: 0.1 + 0.6 * u * np.abs(u)), inertia=M)
+    assert beside.findings[0].share().push is None
+    assert re.search(r"a constant alone \d+ % \(a push of [12]\.\d N\)\.", summarize(beside)[0])
+
+
+def test_a_push_holds_what_other_axes_of_the_inertia_add():
+    M = np.diag([15.0, 20.0, 25.0, 1.0, 1.0, 2.0])
+    M[0, 4] = M[4, 0] = 5.0
+    world = planted(lambda u, t: 0.2 + 0 * u)
+    error = world.error.copy()
+    error[:, 4] = 0.1
+    pushed = explain(replace(world, error=error), inertia=M)
+    surge = next(f for f in pushed.findings if f.axis == "surge")
+    assert surge.push == pytest.approx(3.5, rel=0.05)
+    unseen = replace(world, error=error, axes=np.array([True] * 3 + [False] * 3))
+    surge = next(f for f in explain(unseen, inertia=M).findings if f.axis == "surge")
+    assert surge.push == pytest.approx(3.0, rel=0.05)
+
+
 def test_an_adequate_model_is_told_to_be_one():
     assert "No condition explains" in summarize(explain(driven(SECONDS, noise(1.0, 3), 3)))[0]
 
@@ -145,3 +174,15 @@ def test_models_are_searched_on_train_runs():
         "t",
     )
     assert search_conditions(model(), [run], SignalSettings(), ReplaySettings()).split == "test"
+
+
+def test_forces_of_a_search_are_those_of_the_model():
+    run = motion(np.zeros((1, 8)), seconds=40.0, start=at_rest())
+    lifted = model().body.M_inv @ [0.0, 0.0, -60.0, 0.0, 0.0, 0.0]
+    run = replace(run, nu_dot=run.nu_dot + lifted)
+    searched = search_conditions(model(), [run], SignalSettings(), ReplaySettings()).explanation
+    heave = next(f for f in searched.findings if f.axis == "heave")
+    assert heave.condition == "throughout"
+    mean = searched.blocks.error.mean(axis=0)
+    assert heave.push == pytest.approx(model().M[2] @ mean)
+    assert heave.push < -50.0

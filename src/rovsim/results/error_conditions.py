@@ -11,11 +11,16 @@ BLOCK = 0.5  # s, over which errors are averaged
 
 
 class ConditionShare(Section):
-    """Share of one axis' squared error that varies with a condition."""
+    """Share of one axis' squared error that varies with a condition.
+
+    `push` in N or N m that a constant error stands for; None where it varies with something, and in
+    files of earlier versions.
+    """
 
     axis: str
     condition: str
     share_of_error: float
+    push: float | None = None
 
 
 class ConditionFinding(ConditionShare):

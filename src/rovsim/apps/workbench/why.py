@@ -6,6 +6,7 @@ from typing import Sequence
 
 from nicegui import ui
 
+from rovsim import AXES
 from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.gallery import picture
 from rovsim.apps.workbench.on_your_data import show_lowered
@@ -28,9 +29,11 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.reporting.wording import ERROR, IMPROBABLE, percent, tell_probability
+from rovsim.reporting.units import FORCE_UNITS
+from rovsim.reporting.wording import ERROR, IMPROBABLE, percent, significant, tell_probability
 from rovsim.reporting.words.verdict import Missing, explain, interval
 from rovsim.results.diagnosis import Diagnosis, Disturbance
+from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import FittedEffect
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
@@ -187,10 +190,17 @@ def _ranking(found: Diagnosis) -> None:
         )  # fmt: skip
     if found.where:
         section("Where the model fails")
-        rows = [
-            (w.axis, [words(w.condition), words(percent(w.share_of_error))]) for w in found.where
-        ]
+        rows = [(w.axis, [words(w.condition), words(tell_share(w))]) for w in found.where]
         table("Conditions the error varies with", ["axis", "condition", "share of error"], rows)
+
+
+def tell_share(one: ConditionShare) -> str:
+    """How much of the error varies with a condition; of a constant, also what pushes so."""
+    share = percent(one.share_of_error)
+    if one.push is None:
+        return share
+    unit = FORCE_UNITS[AXES.index(one.axis)]
+    return f"{share}: a push of {significant(abs(one.push), 2)} {unit}"
 
 
 def list_worth_showing(ranking: Sequence[FittedEffect]) -> list[FittedEffect]:

@@ -53,11 +53,8 @@ def _size(explanation: Explanation, k: int) -> ErrorSize:
 
 
 def _finding(found: Finding) -> ConditionFinding:
-    share = found.share()
     return ConditionFinding(
-        axis=share.axis,
-        condition=share.condition,
-        share_of_error=share.share_of_error,
+        **found.share().model_dump(),
         unit=UNITS.get(found.axis, "rad/s²"),
         chance=found.chance,
         alike=tuple(c.name for c in found.alike),

@@ -40,7 +40,8 @@ class Finding:
     `share_of_error` of its squared error, of which `constant` varies with nothing; `table` of the
     error that was left when it was found; `alike` conditions that explain it nearly as well;
     `chance` of such a share by accident; `after` the conditions that were taken out of the error
-    before this one was sought.
+    before this one was sought. `steady` is the mean error, and `push` what a constant would push
+    with, N or N m, where the inertia is known.
     """
 
     axis: str
@@ -51,12 +52,16 @@ class Finding:
     alike: tuple[Condition, ...] = ()
     after: tuple[str, ...] = ()
     constant: float = 0.0
+    steady: float = 0.0
+    push: float | None = None
 
     def share(self) -> ConditionShare:
         """As `where` of a diagnosis lists it."""
+        alone = self.push is not None and self.condition == THROUGHOUT
         return ConditionShare(
-            axis=self.axis, condition=self.condition, share_of_error=round(self.share_of_error, 3)
-        )
+            axis=self.axis, condition=self.condition, share_of_error=round(self.share_of_error, 3),
+            push=float(f"{self.push:.4g}") if alone else None,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +79,14 @@ class Explanation:
         return Explanation(None, {axis: {} for axis in AXES}, [], False)
 
 
-def explain(blocks: Blocks, seed: int = 0) -> Explanation:
-    """Search all conditions on the axes that were measured."""
+def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Explanation:
+    """Search all conditions on the axes that were measured.
+
+    Args:
+        blocks: what is searched.
+        seed: of the signs that say what chance does.
+        inertia: of the model (6, 6), which makes forces of accelerations.
+    """
     if len(blocks.time) < 2:
         return Explanation.nothing()
     tables: dict[str, dict[str, Table]] = {axis: {} for axis in AXES}
@@ -89,9 +100,19 @@ def explain(blocks: Blocks, seed: int = 0) -> Explanation:
         worth = max(SMALLEST, NEGLIGIBLE**2 * _relative_power(blocks, k))
         with threadpool_limits(1, "blas"):  # the matrices are small: threads would wait
             causes = _of_axis(axis, error, cuts, stretch, seed)
-        found += [f for f in causes if f.share_of_error > worth]
+        pushes = [_pushed(f, blocks, k, inertia) for f in causes]
+        found += [f for f in pushes if f.share_of_error > worth]
         enough = enough and int(stretch.max()) + 1 >= FEWEST
     return Explanation(blocks, tables, sorted(found, key=lambda f: -f.share_of_error), enough)
+
+
+def _pushed(one: Finding, blocks: Blocks, k: int, inertia: Array | None) -> Finding:
+    """A finding of axis k with the push of a constant: that axis' row of tau_res = M a_res."""
+    if inertia is None:
+        return one
+    mean = np.where(blocks.axes, blocks.error.mean(axis=0), 0.0)
+    mean[k] = one.steady
+    return replace(one, push=float(inertia[k] @ mean))
 
 
 def _relative_power(blocks: Blocks, k: int) -> float:
@@ -131,10 +152,11 @@ def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
     best, chance = (simplest or close)[0]
     alike = () if simplest else tuple(t.binning.condition for t, _ in close[1:])
     name = best.binning.condition.name
-    constant = next(
-        (t.share * scale for t in tables if t.binning.condition.name == THROUGHOUT), 0.0
+    alone = next((t for t in tables if t.binning.condition.name == THROUGHOUT), None)
+    constant, steady = (alone.share * scale, float(alone.mean[0])) if alone else (0.0, 0.0)
+    return Finding(
+        axis, name, best.share * scale, chance, best, alike, constant=constant, steady=steady
     )
-    return Finding(axis, name, best.share * scale, chance, best, alike, constant=constant)
 
 
 def _chances(error: Array, cuts: Sequence[Binning], stretch: Array, signs: Array) -> list[float]:

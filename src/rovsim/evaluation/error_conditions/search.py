@@ -69,7 +69,10 @@ class ConditionSearch:
     def found(self) -> SearchedModel:
         """What the error varies with."""
         parts = self._parts
-        explanation = explain(join_blocks(parts)) if parts else Explanation.nothing()
+        if not parts:
+            explanation = Explanation.nothing()
+        else:
+            explanation = explain(join_blocks(parts), inertia=self._model.M)
         return SearchedModel(self._model.name, self.split, tuple(self._runs), explanation)
 
 

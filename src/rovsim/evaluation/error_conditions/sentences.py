@@ -7,6 +7,7 @@ from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
 from rovsim.evaluation.error_conditions.findings import SMALLEST, Explanation, Finding
 
 UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
+FORCES = {axis: "N" for axis in UNITS}
 POSITIVE = {
     "surge": "forward", "sway": "to starboard", "heave": "downward", "roll": "to starboard",
     "pitch": "nose up", "yaw": "to starboard",
@@ -89,10 +90,16 @@ def _what(found: Finding) -> str:
 def _constant(found: Finding, unit: str) -> str:
     mean = float(found.table.mean[0])
     side = (POSITIVE if mean > 0 else NEGATIVE)[found.axis]
+    push = f", as a push of {_push(found)} would make it" if found.push is not None else ""
     return (
         f"throughout, the vehicle accelerates {amount(abs(mean))} {unit} more {side} "
-        "than the model, whatever else varies."
+        f"than the model{push}, whatever else varies."
     )
+
+
+def _push(found: Finding) -> str:
+    """Size of the push that a constant stands for."""
+    return f"{amount(abs(found.push or 0.0))} {FORCES.get(found.axis, 'N m')}"
 
 
 def _extreme(found: Finding, unit: str) -> str:
@@ -143,7 +150,8 @@ def _share(found: Finding) -> str:
         return f"{share} of the squared error is constant."
     text = f"{_begin(at.name)} explains {share} of the squared error."
     if found.constant > SMALLEST:
-        text = f"{text[:-1]}, a constant alone {100 * found.constant:.0f} %."
+        push = f" (a push of {_push(found)})" if found.push is not None else ""
+        text = f"{text[:-1]}, a constant alone {100 * found.constant:.0f} %{push}."
     others = [c.name for c in found.alike[:2]]
     if not others:
         return text
