@@ -159,6 +159,30 @@ def test_a_verdict_tells_a_probability_as_tables_do(content, probability):
     assert said.worth.endswith(f"probability {tell_probability(probability)}")
 
 
+def test_a_sure_effect_whose_values_may_each_be_absent_is_told(content):
+    def said(effect, values, probability=0.9999):
+        given = {name: FittedValue(value=v, std=s, unit="1") for name, (v, s) in values.items()}
+        one = FittedEffect(effect=effect, parameters=given, probability=probability)
+        selected = {"selected": (one,), "thrusters": ("port", "starboard")}
+        found = content["diagnosis"].model_copy(update=selected)
+        told = explain(found, built_in()).remarks
+        assert set(told) <= set(explain(found, built_in()).sentences)
+        return " ".join(one for one in told if "is sure" in one)
+
+    wrench = {"surge": (1.0, 0.9), "sway": (2.0, 0.1), "yaw": (-0.1, 0.2)}
+    assert said("constant_wrench", wrench) == (
+        "constant_wrench is sure, but not each of its values: the 95 % intervals of surge and yaw "
+        "hold 0, which changes nothing."
+    )
+    assert said("constant_wrench", wrench, probability=0.99) == ""
+    assert said("constant_wrench", wrench, probability=None) == ""
+    assert said("constant_wrench", {"surge": (1.0, None), "sway": (2.0, 0.1)}) == ""
+    gains = {"t1": (1.02, 0.1), "t2": (0.1, 0.1)}  # it is one, not zero, where nothing is wrong
+    assert said("thruster_gain", gains).endswith(
+        "interval of port (t1) holds 1, which changes nothing."
+    )
+
+
 def test_the_ladder_says_which_rows_build_on_each_other(content):
     steps = (Step(model="nominal", windows_2s=0.2), Step(model="+lift", windows_2s=0.1))
     assert LADDER in tabulate_ladder(Ladder(steps=steps)).caption

@@ -1,14 +1,16 @@
-"""How sure a name is, and why no probability is given where none is."""
+"""How sure a name is, why no probability is given where none is, and which values are unsure."""
 
 from typing import Mapping
 
+from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect, Wander
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
-from rovsim.reporting.wording import tell_probability
+from rovsim.dynamics.effects.thrusters import name_parameter
+from rovsim.reporting.wording import IMPROBABLE, listed, tell_probability
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
-from rovsim.results.fitted import FittedEffect
+from rovsim.results.fitted import FittedEffect, FittedValue
 
 
 def tell_sureness(
@@ -18,6 +20,29 @@ def tell_sureness(
     if one.probability is not None:
         return f"probability {tell_probability(one.probability)}"
     return f"no probability: {_say_why(one, found, catalogue.get(one.effect))}"
+
+
+def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> list[str]:
+    """Effects that surely act, of which some values by themselves might be those of absence."""
+    sentences = []
+    for one in found.selected:
+        known = catalogue.get(one.effect)
+        absence = {p.name: p.absence for p in known.parameters} if known else {}
+        unsure = [name for name, v in one.parameters.items() if _holds(v, absence.get(name, 0.0))]
+        if unsure and (one.probability or 0.0) > 1.0 - IMPROBABLE:
+            names = [name_parameter(one.effect, name, found.thrusters) for name in unsure]
+            values = dict.fromkeys(f"{absence.get(name, 0.0):g}" for name in unsure)
+            hold = "intervals of {} hold" if len(names) > 1 else "interval of {} holds"
+            sentences.append(
+                f"{one.effect} is sure, but not each of its values: the 95 % "
+                f"{hold.format(listed(names))} {' or '.join(values)}, which changes nothing."
+            )
+    return sentences
+
+
+def _holds(value: FittedValue, other: float) -> bool:
+    """Whether a value's 95 % interval holds another; False where it has none."""
+    return abs(or_nan(value.value) - other) <= Z_95 * or_nan(value.std)
 
 
 def _say_why(one: FittedEffect, found: Diagnosis, known: type[Effect] | None) -> str:

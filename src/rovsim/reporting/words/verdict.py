@@ -21,7 +21,7 @@ from rovsim.reporting.wording import (
 )
 from rovsim.reporting.words.apart import apart_sentences, scale_sentences
 from rovsim.reporting.words.shown import shown_sentences
-from rovsim.reporting.words.sureness import tell_sureness
+from rovsim.reporting.words.sureness import tell_sureness, unsure_sentences
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import (
@@ -86,6 +86,7 @@ class Verdict:
 def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
     """A diagnosis in words; the catalogue says what its effects are."""
     remarks = [
+        *unsure_sentences(found, catalogue),
         *apart_sentences(found),
         *scale_sentences(found.common_scale),
         *unexplained_sentences(found),
