@@ -1,5 +1,6 @@
 """Values known only together, from covariances made up for the purpose."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -26,10 +27,13 @@ from rovsim.diagnosis.selection.ranking import (
     name_drift,
 )
 from rovsim.dynamics.catalogue import Catalogue, built_in
+from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.clocks import InputDelay
-from rovsim.dynamics.effects.damping import LinearDamping
+from rovsim.dynamics.effects.constant_wrench import ConstantWrench
+from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from worlds import motion, sticks
@@ -101,6 +105,39 @@ def test_an_effect_that_does_not_say_what_reveals_it_asks_for_a_planned_flight()
     own = Catalogue({**built_in(), "law": Law})
     known = advise(found, [], [["law.c1", "law.x"]], own)
     assert known == f"To know law.c1, law.x one by one: {plan}"
+
+
+@pytest.mark.parametrize(
+    ("effect", "told"),
+    [
+        (ThrusterGain(all=9.8), "thruster_gain.all is 9.8:"),
+        (ThrusterGain(all=0.1), "thruster_gain.all is 0.1:"),
+        (ThrusterGain(all=-9.8), "thruster_gain.all is −9.8:"),
+        (ThrusterGain(all=-1.0), ""),
+        (ThrusterGain(all=0.5, t1=0.0), ""),  # weak, and one of them dead
+        (LinearDamping(surge=1000.0), "linear_damping.surge comes to "),
+        (LinearDamping(surge=50.0, sway=1000.0), ""),  # the file states none in sway
+        (AddedMass(surge=500.0, heave=1.0), "added_mass.surge comes to "),
+        (QuadraticDamping(surge=80.0, sway=90.0), ""),
+        (ConstantWrench(surge=100.0), ""),  # of which no file says anything
+    ],
+)
+def test_a_value_that_no_vehicle_file_is_off_by_asks_for_the_units(effect, told):
+    base = nominal(load_vehicle("bluerov2_heavy"))
+    term = Term(effect, tuple(effect.given()))
+    found = TrainDiagnosis(
+        base, UsableRuns((), (), (), (), 60.0), fit(alike()),
+        selected=(Selected(term, {}, 1.0, 0.5),),
+    )  # fmt: skip
+    advice = advise(found, [], [], built_in())
+    assert advice.startswith(told)
+    assert ("check the units" in advice) == bool(told)
+    if told and effect.id in base.body.stated:
+        (axis,) = re.findall(r"\.(\w+) comes", advice)
+        stated = base.body.stated[effect.id][AXES.index(axis)]
+        times = (stated + effect[axis]) / stated
+        assert f"{times:.0f} times what the vehicle file states" in advice
+        assert times > 20.0
 
 
 def flown(commands, kind):

@@ -2,6 +2,7 @@
 
 from typing import Sequence
 
+from rovsim.diagnosis.checks.wrong_units import list_absurd
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.selection.ranking import leads
 from rovsim.dynamics.catalogue import Catalogue
@@ -36,6 +37,11 @@ AWAY = (
     "file, or diagnose model=nominal."
 )
 
+CHECK_UNITS = (
+    "{}: check the units first, of mass and thrust in the vehicle file, of positions and commands "
+    "in the recordings."
+)
+
 LOOKS_AHEAD = (
     "A negative input_delay beside a pose_filter is what software leaves that smooths forwards and "
     "backwards, and so without delay: export the poses unsmoothed, and diagnose these."
@@ -58,7 +64,7 @@ def advise(
     """
     if not found.enough:
         return _begin_again(found)
-    parts = []
+    parts = _doubt_units(found)
     smoothed = any(isinstance(one.term.effect, PoseFilter) for one in found.selected)
     if smoothed and any(leads(one) for one in found.selected):
         parts.append(LOOKS_AHEAD)
@@ -97,6 +103,12 @@ def _begin_again(found: TrainDiagnosis) -> str:
         "Record train runs of at least a minute in which the vehicle moves: "
         f"only {found.usable.seconds:.0f} s could be used."
     )
+
+
+def _doubt_units(found: TrainDiagnosis) -> list[str]:
+    """What to check first where a value is absurd."""
+    absurd = list_absurd(found.base, [one.term for one in found.selected])
+    return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
 def _show_more(found: TrainDiagnosis) -> list[str]:

@@ -12,6 +12,7 @@ rest_of_file         what does the rest of a vehicle file that is off leave open
 whole_file           all of such a file, fitted together with what was selected
 standstills          does the vehicle stand still although the model would move?
 commanded            what could have been commanded, and never was?
+wrong_units          which values are so far off that a unit may be wrong?
 identifiability      which values are known only together?
 observability        which effects could these runs not show?
 noise_floor          what would a perfect model score?
