@@ -9,7 +9,7 @@ from typing import Sequence
 import numpy as np
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings

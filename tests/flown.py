@@ -7,7 +7,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.model import Model, nominal
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings, differentiated, filtered, resampled

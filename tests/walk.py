@@ -22,7 +22,7 @@ import numpy as np
 from rovsim.apps.cli.main import main as rovsim
 from rovsim.core.files import read_json
 from rovsim.core.rotations import to_euler
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording.reading import read_run
 
 ROOT = Path(__file__).parents[1]

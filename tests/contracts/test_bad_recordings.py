@@ -11,7 +11,7 @@ from recordings import (
     write_run,
 )
 from rovsim.core.errors import BadInput
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 
 COLUMNS = 8  # index of the column line in the QTM files written here

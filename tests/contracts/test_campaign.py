@@ -9,7 +9,7 @@ import pytest
 from recordings import campaign_content, write_campaign, write_run
 from rovsim.application.provenance import digest_files
 from rovsim.core.errors import BadInput
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 
 
 def test_a_campaign_gives_absolute_paths_and_the_tank_in_ned(tmp_path, monkeypatch):

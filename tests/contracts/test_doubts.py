@@ -11,7 +11,7 @@ from rovsim.application.pipeline.reading import read_recording
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.core.yaml_files import read_yaml, write_yaml
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.signals.outliers import KeepAll
 from said import unfolded
 

@@ -10,7 +10,7 @@ from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from synthetic_study import a_lag
 
 

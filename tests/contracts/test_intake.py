@@ -20,7 +20,7 @@ from rovsim.application.intake.write import write_proposal
 from rovsim.application.intake.yaml_file import as_yaml
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import RovsimError
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording.readers import mocap_readers
 from said import unfolded
 

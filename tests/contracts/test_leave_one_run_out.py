@@ -18,7 +18,7 @@ from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.bounded_cache import ReadAgain
 from rovsim.core.errors import BadInput
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.reporting.figures import kind

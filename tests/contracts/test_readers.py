@@ -1,8 +1,11 @@
 """What every registered reader owes: the same swim, whatever the format and the axes."""
 
+import sys
+
 import numpy as np
 import pytest
 
+import rovsim.measurement.recording as recording_package
 from recordings import (
     AXES,
     FORMATS,
@@ -15,13 +18,14 @@ from recordings import (
     write_poses,
     write_run,
 )
+from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
-from rovsim.core.rotations import matrix
-from rovsim.measurement.campaign import load_campaign
+from rovsim.core.rotations import from_matrix, matrix
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality import assess, usable_reason
 from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.readers import command_readers, mocap_readers
-from rovsim.measurement.survey.look import BODIES, OTHERS
+from rovsim.measurement.survey import look
 
 every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
 every_text = pytest.mark.parametrize("name", sorted(TEXT))
@@ -30,7 +34,62 @@ every_text = pytest.mark.parametrize("name", sorted(TEXT))
 def test_the_formats_of_this_version_are_registered():
     assert set(command_readers()) >= {"csv", "rosbag2", "ardupilot"}
     assert set(mocap_readers()) == set(FORMATS)
-    assert set(mocap_readers()) == {*BODIES, *OTHERS}  # what `rovsim init` can look into
+
+
+ONE_FILE = '''
+"""Lines of "time x y z qw qx qy qz" below the word PLAIN, one body."""
+
+import numpy as np
+
+from rovsim.measurement.recording.readers import Export, FileAxes, MocapReader
+from rovsim.measurement.recording.signature import Signature, starts_with
+
+
+def read(path, mocap):
+    table = np.loadtxt(path, skiprows=1)
+    seen = np.ones(len(table), bool)
+    return Export(table[:, 0], table[:, 1:4], table[:, 4:], seen)
+
+
+MOCAP_READER = MocapReader(
+    "plain", read, (Signature(starts_with(b"PLAIN")),), axes=FileAxes(("ned",), ("frd",), said="so")
+)
+'''
+
+
+@pytest.fixture
+def plain_reader(tmp_path, monkeypatch):
+    """A format that one more file in the folder of readers declares."""
+    folder = tmp_path / "readers"
+    write_lines(folder / "plain.py", [ONE_FILE])
+    monkeypatch.setattr(recording_package, "__path__", [*recording_package.__path__, str(folder)])
+    yield "plain"
+    sys.modules.pop(f"{recording_package.__name__}.plain", None)
+    vars(recording_package).pop("plain", None)
+
+
+def test_a_reader_is_one_file(tmp_path, plain_reader):
+    swim = Swim.ned(frames=1200)
+    poses = np.column_stack([swim.time, swim.position, from_matrix(swim.rotation)])
+    raw = tmp_path / "raw"
+    lines = ["PLAIN", *(" ".join(f"{v:.9f}" for v in row) for row in poses)]
+    write_lines(raw / "dive.txt", lines)
+    write_lines(raw / "dive_commands.csv", command_lines(12.0))
+    held = look(raw / "dive.txt", tmp_path)
+    assert (held.format, [track.body for track in held.tracks]) == ("plain", [""])
+    main(["init", str(raw), "-q"])
+    file = raw / "campaign.yaml"
+    text = file.read_text()
+    assert "world_axes: ned" in text
+    assert "body_axes: frd" in text
+    file.write_text(text.replace("vehicle: ANSWER", "vehicle: bluerov2"))
+    campaign = load_campaign(raw)
+    recording, _ = read_run(campaign, campaign.runs[0].id)
+    assert campaign.mocap.format == plain_reader
+    np.testing.assert_allclose(recording.position, swim.position, atol=1e-6)
+    file.write_text(file.read_text().replace("world_axes: ned", "world_axes: y_up"))
+    with pytest.raises(BadInput, match=r"'y_up' with 'mocap.format: plain'"):
+        load_campaign(raw)
 
 
 def swum(recording):

@@ -23,7 +23,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import read_model
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.held_out.published_errors import read_published
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.readers import mocap_readers
 

@@ -20,7 +20,7 @@ from rovsim.core.run import Site
 from rovsim.core.shipped import conf_file
 from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.catalogue import built_in
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings

@@ -14,7 +14,7 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.scored import score
 from rovsim.evaluation.scores import Sums, subtract
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay

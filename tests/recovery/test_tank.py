@@ -14,7 +14,7 @@ from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle, vehicle_file
 from rovsim.evaluation.scores import rms, subtract
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean

@@ -11,11 +11,12 @@ from recordings import Swim, campaign_content, write_campaign
 from rovsim.core import extras
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
-from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
-from rovsim.measurement.recording.ardupilot import read_commands, read_log
+from rovsim.measurement.recording.ardupilot.commands import read_commands
 from rovsim.measurement.recording.ardupilot.dataflash import read_dataflash
+from rovsim.measurement.recording.ardupilot.motion import read_log
 
 MOCAP = Mocap(format="ardupilot", world_axes="ned", body_axes="frd")
 SWIM = Swim.ned(60)

@@ -18,8 +18,8 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Commands
-from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality import assess, report_quality, usable_reason
 from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.channels import KINDS, Channel, to_ned

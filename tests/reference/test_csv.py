@@ -9,8 +9,8 @@ import pytest
 from recordings import Swim, csv_lines, write_lines, write_run
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix, matrix, rotate
-from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality import assess
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.commands_csv import read_commands

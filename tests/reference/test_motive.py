@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 from recordings import Swim, campaign_content, motive_lines, write_campaign, write_lines, write_run
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
-from rovsim.measurement.campaign import load_campaign
 from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.motive_csv import read_motive
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rovsim.application.pipeline.reading import read_recording
 from rovsim.application.snakemake_job import job
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.signals.outliers import OutlierSettings
 
 if __name__ == "__main__":

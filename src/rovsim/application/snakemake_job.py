@@ -91,7 +91,7 @@ class Job:
     @property
     def campaign(self) -> "Campaign":
         """That of the input `campaign`."""
-        from rovsim.measurement.campaign import load_campaign
+        from rovsim.measurement.loading import load_campaign
 
         return load_campaign(self.path("campaign"))
 

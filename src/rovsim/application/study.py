@@ -18,7 +18,9 @@ from rovsim.dynamics.vehicle import vehicle_file
 from rovsim.learning.learner import learner, learner_settings
 from rovsim.learning.pairs import flown_with
 from rovsim.learning.settings import LearnerSettings
-from rovsim.measurement.campaign import Campaign, CampaignFile, load_campaign
+from rovsim.measurement.campaign import Campaign
+from rovsim.measurement.campaign_file import CampaignFile
+from rovsim.measurement.loading import load_campaign
 from rovsim.reporting.report_data import list_run_figures
 from rovsim.results.ladder import EFFECTS
 from rovsim.simulation.synthetic_tank.description import SEALED, VEHICLE, describe, own_vehicle

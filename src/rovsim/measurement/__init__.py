@@ -3,6 +3,7 @@
 campaign_file  the keys of `campaign.yaml`
 unanswered     lines that `rovsim init` left to its reader
 campaign       a campaign: one folder of recordings
+loading        from that file to a checked campaign
 sensors        where sensors sit, and how late they are
 recording      raw exports in, recordings in NED and FRD out
 signals        from poses to velocities and accelerations

@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
 from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE
+from rovsim.measurement.recording.readers import FileAxes
 from rovsim.measurement.survey.contents import Track
 
 # Columns: forward, starboard, down in the file's body axes.
@@ -34,19 +35,13 @@ class Axes:
     likely: tuple[tuple[str, str], ...] = ()  # pairs of both that are possible
 
 
-def allowed(name: str) -> tuple[list[str], list[str]]:
-    """World and body axes that campaign.yaml takes for a format."""
-    if name == "ardupilot":
-        return ["ned"], ["frd"]
-    extra = name == "motive_csv"
-    return ["z_up", "ned", *["y_up"] * extra], ["flu", "frd", *["fur"] * extra]
-
-
-def find_axes(name: str, tracks: Sequence[Track], turned: Sequence[tuple[float, Array]]) -> Axes:
-    """The axes of files of one format; `turned`: likeness along each of the 24 body axes."""
-    if name == "ardupilot":
-        return Axes("ned", "frd", "ArduPilot logs in these axes")
-    worlds, bodies = allowed(name)
+def find_axes(
+    own: FileAxes, tracks: Sequence[Track], turned: Sequence[tuple[float, Array]]
+) -> Axes:
+    """The axes of files of a format that may have these; `turned`: likeness along each of 24."""
+    worlds, bodies = own.world, own.body
+    if own.fixed:
+        return Axes(worlds[0], bodies[0], own.said)
     body, said = _body(_upright(turned, tracks, worlds), bodies)
     if not body:
         body, by_force = _by_force(tracks, bodies)
@@ -64,13 +59,13 @@ def find_axes(name: str, tracks: Sequence[Track], turned: Sequence[tuple[float, 
         return Axes(
             world, match[0][1], f"{AXIS[-1]} goes with the depth, and the vehicle is upright"
         )
-    if name == "rosbag2" and ("z_up", "flu") in pairs:
-        return Axes("z_up", "flu", "guess: what ROS means by default (REP 103)")
+    if own.usual in pairs:
+        return Axes(*own.usual, own.said)
     return Axes(world, "", said, tuple(pairs))
 
 
 def _upright(
-    turned: Sequence[tuple[float, Array]], tracks: Sequence[Track], worlds: list[str]
+    turned: Sequence[tuple[float, Array]], tracks: Sequence[Track], worlds: Sequence[str]
 ) -> list[tuple[float, Array]]:
     """The turns in which the vehicle is upright or upside down on average, if any is."""
     mean = _mean_attitude(tracks)
@@ -87,7 +82,7 @@ def _mean_attitude(tracks: Sequence[Track]) -> Array | None:
     return np.mean(turns, axis=0) if turns else None
 
 
-def _body(turned: Sequence[tuple[float, Array]], bodies: list[str]) -> tuple[str, str]:
+def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple[str, str]:
     """Body axes by the motion that the commands cause, and what it says."""
     if not turned or turned[0][0] < ALIKE:
         best = f" (likeness {turned[0][0]:.2f})" if turned else ""
@@ -117,7 +112,7 @@ def _named(column: Array) -> str:
     return f"{'-' if column[k] < 0 else '+'}{AXIS[k]}"
 
 
-def _by_force(tracks: Sequence[Track], bodies: list[str]) -> tuple[str, str]:
+def _by_force(tracks: Sequence[Track], bodies: Sequence[str]) -> tuple[str, str]:
     """Body axes by gravity: specific force at rest points up."""
     found = [
         t.export.channels["specific_force"].value
@@ -131,7 +126,9 @@ def _by_force(tracks: Sequence[Track], bodies: list[str]) -> tuple[str, str]:
     return (name if name in bodies else ""), f"specific force along z is {up:+.1f} m/s² on average"
 
 
-def _level(tracks: Sequence[Track], worlds: list[str], bodies: list[str]) -> list[tuple[str, str]]:
+def _level(
+    tracks: Sequence[Track], worlds: Sequence[str], bodies: Sequence[str]
+) -> list[tuple[str, str]]:
     """Pairs of world and body axes in which the vehicle is upright on average."""
     mean = _mean_attitude(tracks)
     if mean is None:
@@ -154,7 +151,7 @@ def _attitudes(track: Track) -> Array | None:
     )
 
 
-def _by_depth(tracks: Sequence[Track], worlds: list[str]) -> str:
+def _by_depth(tracks: Sequence[Track], worlds: Sequence[str]) -> str:
     """World axes by a logged depth beside the height."""
     signs = []
     for track in tracks:

@@ -16,6 +16,7 @@ from rovsim.application.intake.survey import Survey
 from rovsim.application.intake.together import list_stems
 from rovsim.application.intake.vehicles import Fit, fitting
 from rovsim.core.errors import BadInput
+from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.survey import Contents
 
 
@@ -63,9 +64,8 @@ def find_facts(found: Survey) -> Facts:
     pairs = pair(motions, logs, score)
     choice = choose(fits, pairs) if fits else _no_choice(logs)
     known = body.name or body.choices == ("",)
-    axes = find_axes(
-        found.motions[0].format, [m.track for m in motions], choice.turned if known else ()
-    )
+    own = mocap_readers()[found.motions[0].format].axes
+    axes = find_axes(own, [m.track for m in motions], choice.turned if known else ())
     ids = run_ids(list_stems(found.motions))
     return Facts(found, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
 

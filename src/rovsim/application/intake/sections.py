@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.intake.axes import allowed
 from rovsim.application.intake.draft import Draft
 from rovsim.application.intake.facts import Facts
 from rovsim.core.shipped import conf_names
+from rovsim.measurement.recording.readers import mocap_readers
 
 MEANING = {
     "z_up": "right-handed, z up",
@@ -54,7 +54,7 @@ def mocap(facts: Facts, draft: Draft) -> None:
     if track.topics:
         section["topics"] = dict(track.topics)
     _axes(facts, draft, section)
-    if first.format == "csv" and track.export.nu is not None:
+    if track.export.nu is not None:
         section["velocity"] = "mean"
         draft.say(
             "mocap.velocity",
@@ -72,7 +72,7 @@ def _extent(position: Array) -> str:
 
 def _axes(facts: Facts, draft: Draft, section: dict[str, Any]) -> None:
     axes = facts.axes
-    worlds, bodies = allowed(section["format"])
+    own = mocap_readers()[section["format"]].axes
     if axes.body and axes.world:
         section |= {"world_axes": axes.world, "body_axes": axes.body}
         draft.say("mocap.world_axes", axes.said)
@@ -81,11 +81,11 @@ def _axes(facts: Facts, draft: Draft, section: dict[str, Any]) -> None:
     level = f" The vehicle is upright on average in {pairs}." if pairs else ""
     why = f" ({axes.said})" if axes.said else ""
     for key, known, choices, what in (
-        ("world_axes", axes.world, worlds, "world"),
-        ("body_axes", axes.body, bodies, "rigid body"),
+        ("world_axes", axes.world, own.world, "world"),
+        ("body_axes", axes.body, own.body, "rigid body"),
     ):
         asks = f"Which way do the axes of the {what} point{why}?{level}"
-        meant = {name: MEANING[name] for name in choices}
+        meant: dict[str, str] = {name: MEANING[name] for name in choices}
         section[key] = known or draft.ask(f"mocap.{key}", asks, meant)
 
 

@@ -11,7 +11,8 @@ from rovsim.core.bounded_cache import Remade
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.measurement.campaign import Campaign, load_campaign
+from rovsim.measurement.campaign import Campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import (
     SignalSettings,

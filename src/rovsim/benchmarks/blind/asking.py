@@ -12,7 +12,7 @@ from rovsim.diagnosis.apply import add_effects
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.results.bands import Bands
 from rovsim.results.diagnosis import Diagnosis
 

@@ -19,7 +19,7 @@ from rovsim.application.pipeline.reading import load_campaign_vehicle
 from rovsim.benchmarks.blind.library import Problem, problem
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.results.base import or_nan

@@ -1,6 +1,7 @@
 """Raw exports in, recordings out: one module per format, axes converted once.
 
-readers       the formats; a new one is a module here with a registered function
+readers       the formats; a new one is a module here that declares its reader
+signature     what stands at the start of the files of a format
 qtm_tsv       Qualisys Track Manager
 motive_csv    OptiTrack Motive
 c3d           C3D with rigid bodies

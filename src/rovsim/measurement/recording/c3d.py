@@ -18,11 +18,12 @@ from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.foreign import read_by
 from rovsim.measurement.recording.readers import (
     Export,
+    MocapReader,
     choose_body,
     finite_rows,
-    mocap_reader,
     orthonormal,
 )
+from rovsim.measurement.recording.signature import Signature
 
 BLOCK, KEY = 512, 0x50
 INTEL, SUN = 84, 86  # processor types; 85 is DEC, with floats of its own
@@ -56,7 +57,6 @@ class Content:
         )
 
 
-@mocap_reader("c3d")
 def read_c3d(path: Path, mocap: Mocap) -> Export:
     """Read one rigid body; frames in which it was not seen are marked.
 
@@ -172,3 +172,10 @@ def body_names(path: Path) -> list[str]:
     """
     with read_by("C3D", path, "a whole C3D file", RE_EXPORT):
         return _bodies(_open(path))
+
+
+def _recognised(head: bytes) -> bool:
+    return len(head) > 2 and head[1] == KEY and head[0] < 32
+
+
+MOCAP_READER = MocapReader("c3d", read_c3d, (Signature(_recognised),), body_names)

@@ -11,14 +11,13 @@ from rovsim.core import pwm
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import ALLOWED, as_commands, as_logged
-from rovsim.measurement.recording.readers import CommandExport, command_reader
+from rovsim.measurement.recording.readers import CommandExport, CommandReader
 from rovsim.measurement.recording.table import column_places, csv_lines, numbers, without_cut_line
 from rovsim.measurement.recording.times import times
 
 HEAVE = AXES.index("heave")
 
 
-@command_reader("csv")
 def read_commands(path: Path, log: CommandLog) -> CommandExport:
     """Read commands; lines with an empty or NaN cell are left out and counted.
 
@@ -68,3 +67,6 @@ def format_commands(commands: Commands, log: CommandLog) -> str:
     table = np.column_stack([commands.time, as_logged(commands, log)])
     np.savetxt(text, table, fmt=",".join(["%.4f", *shapes]))
     return text.getvalue()
+
+
+COMMAND_READER = CommandReader("csv", read_commands, auxiliary=True)

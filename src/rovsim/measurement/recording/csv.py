@@ -1,5 +1,6 @@
 """Measured channels in a csv file whose column names carry their units, as `time_s, x_m, …`."""
 
+import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import partial
@@ -21,11 +22,12 @@ from rovsim.measurement.recording.csv_checks import (
 )
 from rovsim.measurement.recording.readers import (
     Export,
+    MocapReader,
     check_units,
     finite_rows,
-    mocap_reader,
     unit_quaternions,
 )
+from rovsim.measurement.recording.signature import Signature, head_lines
 from rovsim.measurement.recording.table import (
     Lines,
     column_places,
@@ -64,7 +66,6 @@ class Columns:
         return np.stack([self.values.get(name, missing) for name in names], axis=1)
 
 
-@mocap_reader("csv")
 def read_csv(path: Path, mocap: Mocap) -> Export:
     """Read poses where position and attitude share their lines, and any other channel.
 
@@ -229,3 +230,11 @@ def _near_misses(names: list[str]) -> tuple[str, ...]:
     return tuple(
         f"The column '{name}' is not read: was '{meant}' meant?" for name, meant in near.items()
     )
+
+
+def _recognised(head: bytes) -> bool:
+    lines = head_lines(head)
+    return len(lines) > 1 and bool(re.search(r"[,;\t]", lines[0]))
+
+
+MOCAP_READER = MocapReader("csv", read_csv, (Signature(_recognised),), general=True)

@@ -15,12 +15,14 @@ from rovsim.core.rotations import conjugate, multiply, rotate
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.readers import (
     Export,
+    FileAxes,
+    MocapReader,
     check_units,
     choose_body,
     finite_rows,
-    mocap_reader,
     unit_quaternions,
 )
+from rovsim.measurement.recording.signature import Signature, head_lines
 from rovsim.measurement.recording.table import numbers, split_lines, without_cut_line
 from rovsim.measurement.recording.times import times
 
@@ -49,7 +51,6 @@ class Layout:
     bodies: dict[str, tuple[list[int], list[int]]]
 
 
-@mocap_reader("motive_csv")
 def read_motive(path: Path, mocap: Mocap) -> Export:
     """Read one rigid body; `y_up` and `fur` are turned into `z_up` and `flu` here.
 
@@ -209,3 +210,16 @@ def body_names(path: Path) -> list[str]:
         BadInput: not such a file.
     """
     return list(_layout(path, read_text(path).split("\n")).bodies)
+
+
+def _recognised(head: bytes) -> bool:
+    return any(line.lstrip('"').startswith("Format Version") for line in head_lines(head)[:1])
+
+
+MOCAP_READER = MocapReader(
+    "motive_csv",
+    read_motive,
+    (Signature(_recognised),),
+    body_names,
+    FileAxes(("z_up", "ned", "y_up"), ("flu", "frd", "fur")),
+)

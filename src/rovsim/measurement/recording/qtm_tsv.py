@@ -1,5 +1,6 @@
 """Qualisys Track Manager 6DOF export (tab separated, millimetres)."""
 
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,11 +13,12 @@ from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.readers import (
     Export,
+    MocapReader,
     choose_body,
     finite_rows,
-    mocap_reader,
     orthonormal,
 )
+from rovsim.measurement.recording.signature import Signature, head_lines
 from rovsim.measurement.recording.table import Lines, numbers, split_lines, without_cut_line
 from rovsim.measurement.recording.times import times
 
@@ -35,7 +37,6 @@ class Layout:
     bodies: dict[str, dict[str, int]]
 
 
-@mocap_reader("qtm_tsv")
 def read_qtm(path: Path, mocap: Mocap) -> Export:
     """Read one rigid body; its attitude comes from the rotation matrix, not the Euler angles.
 
@@ -180,3 +181,12 @@ def body_names(path: Path) -> list[str]:
         BadInput: not such a file.
     """
     return list(_layout(path, read_text(path).split("\n")).bodies)
+
+
+def _recognised(head: bytes) -> bool:
+    lines = head_lines(head)
+    headed = any(re.match(r"(NO_OF_FRAMES|FILE_VERSION)\b", line) for line in lines[:1])
+    return headed or any("Rot[0]" in line for line in lines[:40])
+
+
+MOCAP_READER = MocapReader("qtm_tsv", read_qtm, (Signature(_recognised),), body_names)

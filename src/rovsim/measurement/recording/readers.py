@@ -1,4 +1,4 @@
-"""The formats that can be read. A new one is a new module here with a registered function."""
+"""The formats that can be read. A new one is a new module here that declares its reader."""
 
 import pkgutil
 from dataclasses import dataclass, field
@@ -10,10 +10,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest, unlisted
-from rovsim.core.rotations import normalized
+from rovsim.core.rotations import BodyAxes, WorldAxes, normalized
 from rovsim.core.run import CommandKind, Logged
 from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.channels import Channels
+from rovsim.measurement.recording.signature import Signature
 
 # A rotation matrix printed to six digits is orthonormal to about 1e-6; a cut or damaged line is
 # not. The same bound holds for the length of quaternions.
@@ -93,34 +94,67 @@ class CommandExport:
     auxiliary: Mapping[str, Logged] = field(default_factory=dict)
 
 
-MocapReader = Callable[[Path, Mocap], Export]
-CommandReader = Callable[[Path, CommandLog], CommandExport]
+@dataclass(frozen=True)
+class FileAxes:
+    """Axes that files of a format may have, and those that they have where nothing tells.
+
+    `said` is why, of these and of the only ones.
+    """
+
+    world: tuple[WorldAxes, ...] = ("z_up", "ned")
+    body: tuple[BodyAxes, ...] = ("flu", "frd")
+    usual: tuple[WorldAxes, BodyAxes] | None = None
+    said: str = ""
+
+    @property
+    def every(self) -> tuple[str, ...]:
+        """Of the world, then of the body."""
+        return (*self.world, *self.body)
+
+    @property
+    def fixed(self) -> bool:
+        """Whether there are no others to choose from."""
+        return len(self.world) == len(self.body) == 1
+
+
+@dataclass(frozen=True)
+class MocapReader:
+    """A format of motions, declared as `MOCAP_READER` where it is read.
+
+    `bodies` lists the rigid bodies of a file ('' where the format names none). `general`: a form
+    that other formats have as well, so theirs are tried first; `folder`: a run is a folder.
+    """
+
+    name: str
+    read: Callable[[Path, Mocap], Export]
+    signatures: tuple[Signature, ...]
+    bodies: Callable[[Path], Sequence[str]] = lambda path: [""]
+    axes: FileAxes = FileAxes()
+    general: bool = False
+    folder: bool = False
+
+
+@dataclass(frozen=True)
+class CommandReader:
+    """A format of commands, declared as `COMMAND_READER`; `auxiliary`: it has further columns."""
+
+    name: str
+    read: Callable[[Path, CommandLog], CommandExport]
+    auxiliary: bool = False
+
+
 R = TypeVar("R", MocapReader, CommandReader)
-
-_mocap: dict[str, MocapReader] = {}
-_commands: dict[str, CommandReader] = {}
-
-
-def mocap_reader(name: str) -> Callable[[MocapReader], MocapReader]:
-    """Register a function that reads poses of the format `name`."""
-    return lambda reader: _mocap.setdefault(name, reader)
-
-
-def command_reader(name: str) -> Callable[[CommandReader], CommandReader]:
-    """Register a function that reads commands of the format `name`."""
-    return lambda reader: _commands.setdefault(name, reader)
 
 
 def mocap_readers() -> dict[str, MocapReader]:
-    """Every format of poses that can be read."""
-    _discover()
-    return dict(_mocap)
+    """Every format of motions that can be read, general ones last."""
+    found = _declared("MOCAP_READER", MocapReader)
+    return {one.name: one for one in sorted(found, key=lambda one: one.general)}
 
 
 def command_readers() -> dict[str, CommandReader]:
     """Every format of commands that can be read."""
-    _discover()
-    return dict(_commands)
+    return {one.name: one for one in _declared("COMMAND_READER", CommandReader)}
 
 
 def reader_of(name: str, readers: dict[str, R], where: object) -> R:
@@ -186,8 +220,10 @@ def orthonormal(R: Array) -> Array:
         return (deviation < ORTHONORMAL_WITHIN) & (np.linalg.det(R) > 0.0)
 
 
-def _discover() -> None:
+def _declared(name: str, kind: type[R]) -> list[R]:
+    """What the modules of this package declare under a name."""
     import rovsim.measurement.recording as package
 
-    for module in pkgutil.iter_modules(package.__path__):
-        import_module(f"{package.__name__}.{module.name}")
+    modules = [f"{package.__name__}.{one.name}" for one in pkgutil.iter_modules(package.__path__)]
+    found = [getattr(import_module(module), name, None) for module in modules]
+    return [one for one in found if isinstance(one, kind)]

@@ -67,9 +67,9 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
         BadInput: a file cannot be used; names the file, the place in it and the remedy.
     """
     run, mocap = campaign.run(run_id), campaign.mocap
-    read = reader_of(mocap.format, mocap_readers(), f"{campaign.file}, mocap.format")
+    reader = reader_of(mocap.format, mocap_readers(), f"{campaign.file}, mocap.format")
     paths = campaign.mocap_paths(run)
-    export, counts = tidy_export(join({path: read(path, mocap) for path in paths}), paths[0])
+    export, counts = tidy_export(join({path: reader.read(path, mocap) for path in paths}), paths[0])
     commands, command_counts, notes = _read_commands(campaign, run)
     if run.commanded:
         _check_clocks(export.time, commands.time, campaign.commands_path(run))
@@ -95,9 +95,9 @@ def _read_commands(
     log = campaign.commands
     if not run.commanded or log is None:
         return _no_commands(log), {}, ()
-    read = reader_of(log.format, command_readers(), f"{campaign.file}, commands.format")
+    reader = reader_of(log.format, command_readers(), f"{campaign.file}, commands.format")
     path = campaign.commands_path(run)
-    export = read(path, log)
+    export = reader.read(path, log)
     return *tidy_commands(export, path), export.notes
 
 

@@ -1,7 +1,7 @@
 """What is in files that nobody has described yet.
 
 gather        the files and bags that were named, also by their folder
-sniff         which format a file has, by what stands in it
+sniff         which format a file has, by what its readers declare
 contents      what it holds: motions, and what looks like commands
 look          that, by the readers of `recording`
 bags          in ROS 2 bags

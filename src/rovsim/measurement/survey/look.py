@@ -1,12 +1,11 @@
 """What a file holds, by the reader of its format."""
 
 from pathlib import Path
-from typing import Callable, Iterator
+from typing import Callable, Iterator, Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording import c3d, motive_csv, qtm_tsv
-from rovsim.measurement.recording.readers import mocap_readers
+from rovsim.measurement.recording.readers import MocapReader, mocap_readers
 from rovsim.measurement.recording.tidying import tidy_export
 from rovsim.measurement.survey.bags import look_into_bag
 from rovsim.measurement.survey.contents import Contents, Track
@@ -14,12 +13,8 @@ from rovsim.measurement.survey.csv_files import look_into_csv
 from rovsim.measurement.survey.logs import look_into_log
 from rovsim.measurement.survey.sniff import sniff
 
-BODIES: dict[str, Callable[[Path], list[str]]] = {
-    "qtm_tsv": qtm_tsv.body_names,
-    "motive_csv": motive_csv.body_names,
-    "c3d": c3d.body_names,
-}
-OTHERS: dict[str, Callable[[Path, Path], Contents]] = {
+# Formats whose files may hold commands, or sensors to choose from; of others a reader says enough.
+WITH_COMMANDS: dict[str, Callable[[Path, Path], Contents]] = {
     "csv": look_into_csv,
     "rosbag2": lambda path, scratch: look_into_bag(path),
     "ardupilot": lambda path, scratch: look_into_log(path),
@@ -34,7 +29,9 @@ def look(path: Path, scratch: Path) -> Contents:
     """
     try:
         name = sniff(path)
-        return OTHERS[name](path, scratch) if name in OTHERS else _of_bodies(path, name)
+        if name in WITH_COMMANDS:
+            return WITH_COMMANDS[name](path, scratch)
+        return _of_bodies(path, mocap_readers()[name])
     except OSError as error:
         raise BadInput(
             f"cannot be read ({error.strerror})",
@@ -44,11 +41,11 @@ def look(path: Path, scratch: Path) -> Contents:
         ) from None
 
 
-def _of_bodies(path: Path, name: str) -> Contents:
-    names = BODIES[name](path)
-    tracks = tuple(_tracks(path, name, names))
+def _of_bodies(path: Path, reader: MocapReader) -> Contents:
+    names = reader.bodies(path)
+    tracks = tuple(_tracks(path, reader, names))
     if tracks:
-        return Contents(path, name, tracks)
+        return Contents(path, reader.name, tracks)
     raise BadInput(
         f"none of the rigid bodies {', '.join(names)} was ever found",
         where=path,
@@ -57,14 +54,14 @@ def _of_bodies(path: Path, name: str) -> Contents:
     )
 
 
-def _tracks(path: Path, name: str, bodies: list[str]) -> Iterator[Track]:
+def _tracks(path: Path, reader: MocapReader, bodies: Sequence[str]) -> Iterator[Track]:
     """The bodies that were found in at least two frames; one that is alone may say why not."""
-    read = mocap_readers()[name]
+    world, own = reader.axes.world[0], reader.axes.body[0]
     for body in bodies:
         # signs, and the axes y_up and fur of Motive, are applied later: these are the file's own
-        mocap = Mocap(format=name, body=body, world_axes="z_up", body_axes="flu")
+        mocap = Mocap(format=reader.name, body=body, world_axes=world, body_axes=own)
         try:
-            yield Track(body, tidy_export(read(path, mocap), path)[0])
+            yield Track(body, tidy_export(reader.read(path, mocap), path)[0])
         except BadInput:
             if len(bodies) == 1:
                 raise

@@ -1,14 +1,11 @@
 """Which format a file has, by what stands in it and not by its name."""
 
-import re
 from pathlib import Path
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.c3d import KEY
+from rovsim.measurement.recording.readers import mocap_readers
+from rovsim.measurement.recording.signature import HEAD, Signature, decoded, head_lines
 
-ENOUGH = 1 << 16  # bytes from the start of a file: more than any header
-SQLITE, MCAP, DATAFLASH = b"SQLite format 3\0", b"\x89MCAP", b"\xa3\x95\x80"
-MAVLINK = (0xFD, 0xFE)
 # First bytes of files that people take for recordings, and what to do about them.
 KNOWN = {
     b"#ROSBAG V": ("a ROS 1 bag", "Turn it into a ROS 2 bag with `rosbags-convert`."),
@@ -20,11 +17,6 @@ KNOWN = {
     b"\x89PNG": ("a picture", "Name a recording."),
     b"%PDF": ("a PDF", "Name a recording."),
 }
-ENDINGS = {
-    SQLITE: ("rosbag2", (".db3",), "a ROS 2 bag (sqlite3)"),
-    MCAP: ("rosbag2", (".mcap",), "a ROS 2 bag (MCAP)"),
-    DATAFLASH: ("ardupilot", (".bin",), "an ArduPilot dataflash log"),
-}
 FORMATS = "a QTM, Motive, C3D or csv export, a ROS 2 bag or an ArduPilot log"
 
 
@@ -34,81 +26,50 @@ def sniff(path: Path) -> str:
     Raises:
         BadInput: none of ours; says what it seems to be.
     """
+    readers = mocap_readers().values()
     if path.is_dir():
-        return "rosbag2"
+        return next(reader.name for reader in readers if reader.folder)
     with path.open("rb") as file:
-        start = file.read(ENOUGH)
-    for magic, (name, endings, what) in ENDINGS.items():
-        if start.startswith(magic):
-            return _ending(path, name, endings, what)
-    for magic, (what, remedy) in KNOWN.items():
-        if start.startswith(magic):
-            raise BadInput(what, where=path, expected=FORMATS, remedy=remedy)
-    if _telemetry(start):
-        return _ending(path, "ardupilot", (".tlog",), "an ArduPilot telemetry log")
-    if len(start) > 2 and start[1] == KEY and start[0] < 32:
-        return "c3d"
-    return _of_text(path, start)
+        head = file.read(HEAD)
+    for reader in readers:
+        if reader.general:
+            _refuse_known(path, head)
+        for signature in reader.signatures:
+            if signature.matches(head):
+                _check_ending(path, signature)
+                return reader.name
+    raise _unknown(path, head)
 
 
-def _ending(path: Path, name: str, endings: tuple[str, ...], what: str) -> str:
-    if path.suffix.lower() in endings:
-        return name
-    raise BadInput(
-        f"{what}, by what stands in it, whose name ends in '{path.suffix}'",
-        where=path,
-        expected=f"a name that ends in {' or '.join(endings)}",
-        remedy="Rename the file.",
-    )
-
-
-def _telemetry(start: bytes) -> bool:
-    """Whether packets of MAVLink follow times: 8 bytes of us since 1970 before each marker."""
-    if len(start) < 20 or start[8] not in MAVLINK:
-        return False
-    year = int.from_bytes(start[:8], "big") / (365.25 * 86400e6)
-    return 30.0 < year < 130.0
-
-
-def _of_text(path: Path, start: bytes) -> str:
-    try:
-        # the last character may be cut
-        text = start.decode("utf-8-sig", errors="strict" if len(start) < ENOUGH else "ignore")
-    except UnicodeDecodeError:
-        text = "\0"
-    if "\0" in text:
+def _check_ending(path: Path, signature: Signature) -> None:
+    if signature.endings and path.suffix.lower() not in signature.endings:
         raise BadInput(
-            "binary data of no known kind",
+            f"{signature.what}, by what stands in it, whose name ends in '{path.suffix}'",
             where=path,
-            expected=FORMATS,
-            remedy="Export the run again in one of these formats.",
+            expected=f"a name that ends in {' or '.join(signature.endings)}",
+            remedy="Rename the file.",
         )
-    lines = [line for line in text.split("\n") if line.strip()]
-    lines = [line for line in lines if not line.startswith("#")] or lines
-    if not lines:
-        raise BadInput("the file is empty", where=path, expected=FORMATS, remedy="Export it again.")
-    return _of_lines(path, lines)
 
 
-def _of_lines(path: Path, lines: list[str]) -> str:
-    if lines[0].lstrip('"').startswith("Format Version"):
-        return "motive_csv"
-    if re.match(r"(NO_OF_FRAMES|FILE_VERSION)\b", lines[0]) or any(
-        "Rot[0]" in line for line in lines[:40]
-    ):
-        return "qtm_tsv"
-    if lines[0].startswith(("Trajectories", "PathFileType")):
+def _refuse_known(path: Path, head: bytes) -> None:
+    for magic, (what, remedy) in KNOWN.items():
+        if head.startswith(magic):
+            raise BadInput(what, where=path, expected=FORMATS, remedy=remedy)
+    if "".join(head_lines(head)[:1]).startswith(("Trajectories", "PathFileType")):
         raise BadInput(
             "an export of markers (Vicon or TRC), not of rigid bodies",
             where=path,
             expected=FORMATS,
             remedy="Export the rigid body (segment): position and attitude, as csv.",
         )
-    if re.search(r"[,;\t]", lines[0]) and len(lines) > 1:
-        return "csv"
-    raise BadInput(
-        f"text that starts with {lines[0].strip()[:40]!r}",
-        where=path,
-        expected=FORMATS,
-        remedy="Export the run again in one of these formats.",
-    )
+
+
+def _unknown(path: Path, head: bytes) -> BadInput:
+    lines, remedy = head_lines(head), "Export the run again in one of these formats."
+    if decoded(head) is None:
+        found = "binary data of no known kind"
+    elif lines:
+        found = f"text that starts with {lines[0].strip()[:40]!r}"
+    else:
+        found, remedy = "the file is empty", "Export it again."
+    return BadInput(found, where=path, expected=FORMATS, remedy=remedy)

@@ -20,7 +20,7 @@ from rovsim.evaluation.error_conditions.conditions import (
     average_blocks,
     list_shown_conditions,
 )
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.measurement.signals.motion import Motion

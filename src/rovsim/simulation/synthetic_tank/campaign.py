@@ -16,7 +16,7 @@ from rovsim.dynamics.effect_entry import build_effects
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.measurement.campaign import check_ids
+from rovsim.measurement.loading import check_ids
 from rovsim.simulation.synthetic_tank.description import (
     SEALED,
     VEHICLE,

@@ -26,7 +26,7 @@ from rovsim.core.making import describe_machine
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.results.timing import Bench
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.synthetic_tank.campaign import make_campaign

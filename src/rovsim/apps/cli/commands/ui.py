@@ -18,7 +18,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.measurement.campaign import load_campaign
+from rovsim.measurement.loading import load_campaign
 from rovsim.results.diagnosis import Diagnosis
 
 

@@ -8,7 +8,7 @@ motion     what was measured
 commands   outputs to thrusters, or the radio of the pilot
 """
 
-from rovsim.measurement.recording.ardupilot.commands import read_commands
-from rovsim.measurement.recording.ardupilot.motion import read_log
+from rovsim.measurement.recording.ardupilot.commands import COMMAND_READER
+from rovsim.measurement.recording.ardupilot.motion import MOCAP_READER
 
-__all__ = ["read_commands", "read_log"]
+__all__ = ["COMMAND_READER", "MOCAP_READER"]

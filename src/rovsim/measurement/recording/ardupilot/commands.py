@@ -12,7 +12,7 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.ardupilot.logs import needs, open_log
 from rovsim.measurement.recording.ardupilot.series import Log, Series
 from rovsim.measurement.recording.commands import as_commands
-from rovsim.measurement.recording.readers import CommandExport, command_reader
+from rovsim.measurement.recording.readers import CommandExport, CommandReader
 
 # Kind of log -> kind of column -> type of message, and the field of a number.
 SOURCES = {
@@ -24,7 +24,6 @@ SOURCES = {
 }
 
 
-@command_reader("ardupilot")
 def read_commands(path: Path, log: CommandLog) -> CommandExport:
     """Read columns SERVO1, SERVO2, … or RC1, RC2, …, pulses in us.
 
@@ -81,3 +80,6 @@ def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
         return np.where(none, np.nan, value), ()
     said = f"{int(none.sum())} outputs without a pulse stand for no command."
     return np.where(none, pwm.CENTER, value), (said,)
+
+
+COMMAND_READER = CommandReader("ardupilot", read_commands)

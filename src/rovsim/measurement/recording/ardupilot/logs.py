@@ -3,10 +3,11 @@
 from pathlib import Path
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.ardupilot.dataflash import read_dataflash
+from rovsim.measurement.recording.ardupilot.dataflash import HEAD, read_dataflash
 from rovsim.measurement.recording.ardupilot.series import RE_RECORD, Log, no_log
-from rovsim.measurement.recording.ardupilot.telemetry import read_telemetry
+from rovsim.measurement.recording.ardupilot.telemetry import MARKERS, read_telemetry
 from rovsim.measurement.recording.foreign import read_by
+from rovsim.measurement.recording.signature import Signature, starts_with
 
 READERS = {".bin": read_dataflash, ".tlog": read_telemetry}
 
@@ -32,3 +33,17 @@ def needs(log: Log, names: list[str], what: str) -> BadInput:
         expected=f"some of them; the log holds {', '.join(sorted(log.series))}",
         remedy="Set LOG_BITMASK (dataflash) or the stream rates (telemetry) so that they are kept.",
     )
+
+
+def _telemetry(head: bytes) -> bool:
+    """Whether packets of MAVLink follow times: 8 bytes of us since 1970 before each marker."""
+    if len(head) < 20 or head[8] not in MARKERS:
+        return False
+    year = int.from_bytes(head[:8], "big") / (365.25 * 86400e6)
+    return 30.0 < year < 130.0
+
+
+SIGNATURES = (
+    Signature(starts_with(HEAD + b"\x80"), "an ArduPilot dataflash log", (".bin",)),
+    Signature(_telemetry, "an ArduPilot telemetry log", (".tlog",)),
+)

@@ -9,10 +9,10 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.ardupilot.logs import needs, open_log
+from rovsim.measurement.recording.ardupilot.logs import SIGNATURES, needs, open_log
 from rovsim.measurement.recording.ardupilot.series import Log, Series
 from rovsim.measurement.recording.channels import Channel, measured
-from rovsim.measurement.recording.readers import Export, mocap_reader
+from rovsim.measurement.recording.readers import Export, FileAxes, MocapReader
 
 DEGREE = np.pi / 180.0
 MILLI_G = 9.80665e-3  # m/s2: RAW_IMU of ArduPilot is in milli-g
@@ -56,7 +56,6 @@ MODES = {0: "STABILIZE", 1: "ACRO", 2: "ALT_HOLD", 3: "AUTO", 4: "GUIDED", 7: "C
 MODES |= {9: "SURFACE", 16: "POSHOLD", 19: "MANUAL", 20: "MOTOR_DETECT", 21: "SURFTRAK"}
 
 
-@mocap_reader("ardupilot")
 def read_log(path: Path, mocap: Mocap) -> Export:
     """Read the channels of a log.
 
@@ -153,3 +152,11 @@ def _modes(log: Log) -> tuple[str, ...]:
         return ()
     named = ", ".join(MODES.get(int(n), f"number {n}") for n in number)
     return (f"Flight modes in this log: {named}. In all but MANUAL the autopilot adds its own.",)
+
+
+MOCAP_READER = MocapReader(
+    "ardupilot",
+    read_log,
+    SIGNATURES,
+    axes=FileAxes(("ned",), ("frd",), said="ArduPilot logs in these axes"),
+)

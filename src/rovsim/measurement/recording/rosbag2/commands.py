@@ -12,7 +12,7 @@ from rovsim.core import pwm
 from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
-from rovsim.measurement.recording.readers import CommandExport, command_reader
+from rovsim.measurement.recording.readers import CommandExport, CommandReader
 from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 
 LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
@@ -30,7 +30,6 @@ FORCES = dict(zip(AXES, [f"{kind}.{axis}" for kind in ("force", "torque") for ax
 Get = Callable[[Any], float]
 
 
-@command_reader("rosbag2")
 def read_commands(path: Path, log: CommandLog) -> CommandExport:
     """Read the topic `commands.topic`, by default the only one that looks like commands.
 
@@ -139,3 +138,6 @@ def _number(get: Get, message: Any) -> float:
         return get(message)
     except IndexError:
         return float("nan")
+
+
+COMMAND_READER = CommandReader("rosbag2", read_commands)

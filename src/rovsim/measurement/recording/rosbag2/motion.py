@@ -9,18 +9,19 @@ from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.readers import (
     Export,
+    FileAxes,
+    MocapReader,
     check_units,
     finite_rows,
-    mocap_reader,
     unit_quaternions,
 )
 from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 from rovsim.measurement.recording.rosbag2.messages import Reading, pose, readings
+from rovsim.measurement.recording.signature import Signature, starts_with
 
 POSES = ("PoseStamped", "PoseWithCovarianceStamped", "TransformStamped", "Odometry")
 
 
-@mocap_reader("rosbag2")
 def read_bag(path: Path, mocap: Mocap) -> Export:
     """Read the topics that `mocap.topics` and `mocap.body` name.
 
@@ -81,3 +82,15 @@ def _channels(found: Samples, reading: Reading) -> dict[str, Channel]:
         turns, good = unit_quaternions(values["attitude"])
         values["attitude"] = np.where(good[:, None], turns, np.nan)
     return {kind: measured(found.time, value) for kind, value in values.items()}
+
+
+MOCAP_READER = MocapReader(
+    "rosbag2",
+    read_bag,
+    (
+        Signature(starts_with(b"SQLite format 3\0"), "a ROS 2 bag (sqlite3)", (".db3",)),
+        Signature(starts_with(b"\x89MCAP"), "a ROS 2 bag (MCAP)", (".mcap",)),
+    ),
+    axes=FileAxes(usual=("z_up", "flu"), said="guess: what ROS means by default (REP 103)"),
+    folder=True,
+)
