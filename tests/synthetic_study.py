@@ -10,7 +10,6 @@ from scipy.signal import lfilter
 
 from rovsim import AXES
 from rovsim.diagnosis.equations.spectrum import find_spectrum
-from rovsim.evaluation.budget import Budget
 from rovsim.evaluation.error_conditions.conditions import SPEEDS, THROUGHOUT, Blocks, Condition
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.findings import explain
@@ -19,6 +18,7 @@ from rovsim.evaluation.held_out.published_errors import METRICS, Published, comp
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import BLOCK, ErrorConditions
+from rovsim.results.force_budget import ForceBudget
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Ladder
 from rovsim.results.quality import Quality
@@ -114,12 +114,12 @@ def where(models: tuple[str, ...], seconds: float, seed: int) -> ErrorConditions
     return list_conditions(found)
 
 
-def _budget(motion: dict[str, Any], rng: np.random.Generator) -> Budget:
+def _budget(motion: dict[str, Any], rng: np.random.Generator) -> ForceBudget:
     names = ("weight and buoyancy", "Coriolis", "quadratic damping", "thrusters", "+lift")
     parts = {n: motion["nu"] * rng.uniform(-20, 20, 6) for n in names}
     parts["+current"] = 1e-3 * motion["nu"]
     missing = np.where(motion["usable"][:, None], 3 * motion["nu_dot"], np.nan)
-    return Budget("nominal", "3dof-2", motion["time"], parts, missing)
+    return ForceBudget("nominal", "3dof-2", motion["time"], parts, missing)
 
 
 def _level(model: str) -> float:

@@ -6,15 +6,14 @@ import pytest
 from rovsim.core.rotations import exp
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot, Stick
-from rovsim.evaluation.budget import Budget
-from rovsim.evaluation.force_balance import RESTORING, balance_forces
+from rovsim.evaluation.force_budget import RESTORING, balance_forces
 from rovsim.measurement.signals.chain import SignalSettings
+from rovsim.results.force_budget import ForceBudget
 from rovsim.simulation.measured_states import (
     accelerate_as_measured,
     as_true,
     drive_as_measured,
 )
-from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 
@@ -29,9 +28,7 @@ def run(kind="thruster", columns=8):
 
 def made(world, found=None):
     found = found or run()
-    return balance_forces(
-        world, found, sample_run(world, found, SignalSettings(), ReplaySettings()), ReplaySettings()
-    )
+    return balance_forces(world, found, SignalSettings(), ReplaySettings())
 
 
 @pytest.mark.parametrize("cls", built_in().values(), ids=lambda cls: cls.id)
@@ -60,7 +57,7 @@ def test_each_part_is_what_its_equation_says(tmp_path):
     weight = world.body.weight - world.body.buoyancy
     assert np.linalg.norm(found.parts[RESTORING][0, :3]) == pytest.approx(abs(weight))
     found.write(tmp_path / "b.npz")
-    again = Budget.read(tmp_path / "b.npz")
+    again = ForceBudget.read(tmp_path / "b.npz")
     assert again.rms() == found.rms()
     assert list(again.parts) == list(found.parts)
 
@@ -75,10 +72,8 @@ def test_the_missing_force_is_the_one_that_was_left_out():
     pushed = model(ConstantWrench(surge=3.0, yaw=-1.0))
     at = drive_as_measured(pushed, measured, ReplaySettings())
     moved = replace(measured, nu_dot=accelerate_as_measured(pushed, measured, at))
-    settings = SignalSettings()
-    found = sample_run(world, moved, settings, ReplaySettings())
-    plain = sample_run(world, measured, settings, ReplaySettings())
-    both = [balance_forces(world, moved, s, ReplaySettings()).missing for s in (found, plain)]
+    how = (SignalSettings(), ReplaySettings())
+    both = [balance_forces(world, one, *how).missing for one in (moved, measured)]
     change = (both[0] - both[1] - moved.nu_dot @ world.body.M.T)[5:-5]
     np.testing.assert_allclose(change, 0.0, atol=1e-9)
     assert "+constant_wrench" in made(pushed).parts

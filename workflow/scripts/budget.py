@@ -1,14 +1,16 @@
 """Budget of forces of the nominal model over one run."""
 
-from rovsim.application.pipeline.forces import balance_run
 from rovsim.application.sections import SimulationSettings
 from rovsim.application.snakemake_job import job
+from rovsim.evaluation.force_budget import balance_forces
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         (motion,) = rule.motions("motion")
-        balance_run(
+        how = rule.section(SimulationSettings)
+        balance_forces(
             model=rule.model("nominal"),
             motion=motion,
-            settings=rule.section(SimulationSettings),
+            signals=how.signals,
+            settings=how.replay,
         ).write(rule.output())

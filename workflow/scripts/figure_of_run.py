@@ -2,7 +2,7 @@
 
 from rovsim.application.pipeline.drawing import draw_run
 from rovsim.application.snakemake_job import job
-from rovsim.evaluation.budget import Budget
+from rovsim.results.force_budget import ForceBudget
 from rovsim.simulation.prediction import Replay
 
 if __name__ == "__main__":
@@ -12,6 +12,6 @@ if __name__ == "__main__":
             figure=rule.params.figure,
             motion=motion,
             replays=[Replay.read(path) for path in rule.paths("replays")],
-            budgets=[Budget.read(path) for path in rule.paths("budget")],
+            budgets=[ForceBudget.read(path) for path in rule.paths("budget")],
             out=rule.output("png"),
         )

@@ -4,8 +4,7 @@ scores            errors and metrics: one definition of each number
 scored            all that is said of some models, run by run
 ladder            the error falling, model by model
 growth            how the error grows with the time since the start of a window
-budget            forces of a model along a run, part by part, and what is missing
-force_balance     the same from measured accelerations: every effect's share
+force_budget      who pushes how much along a run, part by part, and what is missing
 coverage          do bands hold what they promise?
 latency           how long one prediction takes
 error_conditions  where a model fails: its error by axis and condition

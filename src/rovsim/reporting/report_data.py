@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING, Mapping, TypeVar
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures import Kind, kind, kinds
 from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
-from rovsim.results.budget import BudgetTotals
 from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
 from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.force_budget import BudgetTotals, ForceBudget
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Ladder, Step
 from rovsim.results.pitfalls import Pitfalls
@@ -43,7 +42,7 @@ class ReportData:
     motions: Mapping[str, Motion] = field(default_factory=dict)
     replays: Mapping[str, Mapping[str, Replay]] = field(default_factory=dict)
     bands: Mapping[str, Mapping[str, Band | None]] = field(default_factory=dict)
-    budgets: Mapping[str, Budget] = field(default_factory=dict)
+    budgets: Mapping[str, ForceBudget] = field(default_factory=dict)
     quality: Mapping[str, Quality] = field(default_factory=dict)
     comparison: Comparison | None = None
     coverage: Bands | None = None
@@ -170,7 +169,7 @@ class RunData:
         return {model: band.nu for model, band in each.items() if band is not None}
 
     @property
-    def budget(self) -> Budget | None:
+    def budget(self) -> ForceBudget | None:
         """Forces of one model."""
         return self.known.budgets.get(self.run)
 

@@ -7,7 +7,7 @@ comparison        `comparison.json`
 ladder            `ladder.json`
 error_conditions  `where.json`
 growth            `growth.json`
-budget            `budget.json`
+force_budget      `budget.json`, and the forces over the time
 bands             `bands.json`
 experiment        `experiment.json`
 quality           `quality/RUN.json`

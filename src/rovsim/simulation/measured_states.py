@@ -58,6 +58,12 @@ def accelerate_as_measured(model: Model, motion: Motion, drive: Drive) -> Array:
     return Batch([model], motion.site).accelerations(drive, times, motion.state, memory)
 
 
+def accelerate_as_logged(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
+    """Acceleration (n, 6) of a model at the states of a true motion, driven as the log says."""
+    drive = drive_as_measured(model, motion, settings)
+    return accelerate_as_measured(model, motion, drive)
+
+
 def drive_as_measured(model: Model, motion: Motion, settings: ReplaySettings) -> Drive:
     """What the log does to a model at every measured instant: means of the steps around it.
 

@@ -18,7 +18,7 @@ from rovsim.dynamics.effects.base import Autopilot, Sensing, Smoothing, Stick
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.measured_states import accelerate_as_measured, as_true, drive_as_measured
+from rovsim.simulation.measured_states import accelerate_as_logged, as_true
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import SUITABLE, Box, Log, TankSettings, Turbulence
 from rovsim.simulation.synthetic_tank.true_run import LeftTank, fly_run
@@ -102,13 +102,9 @@ def _rms(left: Left, motions: Sequence[Motion]) -> tuple[float, ...]:
 
 def _force(left: Left, motion: Motion) -> Array:
     """The force (n, 6) that is left out, at the states of a motion."""
-    before, after = (_accelerate(model, motion) for model in (left.before, left.after))
+    both = (left.before, left.after)
+    before, after = (accelerate_as_logged(model, motion, ReplaySettings()) for model in both)
     force = (before - after) @ left.before.M.T
     if left.missing is not None:
         force = force + left.missing(left.before, motion.state)
     return np.asarray(force)
-
-
-def _accelerate(model: Model, motion: Motion) -> Array:
-    drive = drive_as_measured(model, motion, ReplaySettings())
-    return accelerate_as_measured(model, motion, drive)

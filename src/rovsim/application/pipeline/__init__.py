@@ -6,7 +6,6 @@ models            names and files -> models; effects added to one
 replays           models x motions -> replays -> scores, growth of errors, steps of the ladder
 bands             how surely models predict, and what of the test runs lies inside
 error_conditions  under which conditions a model fails
-forces            who pushes how much
 diagnosis         which effects a model lacks
 given_diagnosis   one that a user gives, of the open campaign
 shown_diagnosis   the same with figures, tracked, while the command goes on

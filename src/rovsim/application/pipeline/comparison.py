@@ -5,7 +5,6 @@ from typing import Sequence
 import numpy as np
 
 from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
-from rovsim.application.pipeline.forces import balance_run
 from rovsim.application.pipeline.recordings import Measured
 from rovsim.application.pipeline.replays import replay_when_asked, score_run
 from rovsim.application.sections import SimulationSettings
@@ -14,10 +13,11 @@ from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch
+from rovsim.evaluation.force_budget import balance_forces
 from rovsim.evaluation.scored import Scored
 from rovsim.reporting.report_data import ReportData
-from rovsim.results.budget import BudgetTotals
 from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
+from rovsim.results.force_budget import BudgetTotals
 
 DRAWN = 12  # runs: a report of fifty figures can still be read
 
@@ -30,7 +30,8 @@ def compare(data: Measured, models: Sequence[Model], settings: SimulationSetting
     scored = Scored(model.name for model in models)
     searches = _searches(data, models, settings)
     shown = replay_when_asked(models, data.motions, settings)
-    budgets = Remade(data.motions, lambda run: balance_run(models[-1], data.motions[run], settings))
+    how = (settings.signals, settings.replay)
+    budgets = Remade(data.motions, lambda run: balance_forces(models[-1], data.motions[run], *how))
     forces = {}
     for run in counted(list(data.motions), "comparing"):
         motion = data.motions[run]

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Mapping, Sequence
 
-from rovsim.evaluation.budget import Budget
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.report_data import ReportData
+from rovsim.results.force_budget import ForceBudget
 from rovsim.simulation.prediction import Replay
 
 
@@ -18,7 +18,11 @@ def draw_study(
 
 
 def draw_run(
-    figure: str, motion: Motion, replays: Sequence[Replay], budgets: Sequence[Budget], out: Path
+    figure: str,
+    motion: Motion,
+    replays: Sequence[Replay],
+    budgets: Sequence[ForceBudget],
+    out: Path,
 ) -> None:
     """Draw a figure of one run into `out`, as PNG and PDF."""
     run = motion.run.id

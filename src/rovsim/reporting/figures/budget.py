@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
-from rovsim.evaluation.budget import Budget
 from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import (
     BLACK,
@@ -24,6 +23,7 @@ from rovsim.reporting.figures.series import excerpt
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.units import FORCE, FORCE_UNITS
 from rovsim.reporting.wording import significant
+from rovsim.results.force_budget import ForceBudget
 
 SECTION = "where"
 CAPTION = (
@@ -46,7 +46,7 @@ ADDED = (Look(PURPLE, "-"), Look(OLIVE, "-"), Look(PURPLE, (0, (4, 1.5))))
 
 
 @styled()
-def draw(*, budget: Budget) -> Figure:
+def draw(*, budget: ForceBudget) -> Figure:
     """Draw a model's parts and the missing force over time."""
     time, parts, missing = budget.time, budget.parts, budget.missing
     known = np.isfinite(missing).any(axis=1)

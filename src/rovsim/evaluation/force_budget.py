@@ -17,16 +17,18 @@ from numpy import ndarray as Array
 
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.budget import Budget
+from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
+from rovsim.results.force_budget import ForceBudget
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.measured_states import (
+    accelerate_as_logged,
     accelerate_as_measured,
     as_true,
     drive_as_measured,
 )
-from rovsim.simulation.samples import Samples
+from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
@@ -46,9 +48,10 @@ NOMINAL = {  # parts of the vehicle's own effects, in the order in which they ar
 
 
 def balance_forces(
-    model: Model, motion: Motion, found: Samples, settings: ReplaySettings
-) -> Budget:
-    """Budget of one model over one run, of which `found` are the samples."""
+    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
+) -> ForceBudget:
+    """Budget of a model's forces at the measured states of a run."""
+    found = sample_run(model, motion, signals, settings)
     parts: dict[str, Array] = {}
     before = np.zeros((len(motion.time), 6))
     for name, force in _cumulative(model, as_true(model, motion), settings):
@@ -56,7 +59,7 @@ def balance_forces(
         before = force
     missing = np.full((len(motion.time), 6), np.nan)
     missing[found.index] = blank(motion.measured, found.a_res @ model.M.T, np.nan)
-    return Budget(model.name, motion.run.id, motion.time, parts, missing)
+    return ForceBudget(model.name, motion.run.id, motion.time, parts, missing)
 
 
 def _cumulative(
@@ -93,7 +96,7 @@ def _with(model: Model, effects: Sequence[Effect]) -> Model:
 
 
 def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
-    return _force(model, motion, drive_as_measured(model, motion, settings))
+    return accelerate_as_logged(model, motion, settings) @ model.M.T
 
 
 def _force(model: Model, motion: Motion, drive: Drive) -> Array:

@@ -1,20 +1,39 @@
-"""Forces of one model along one run, part by part, and what is missing."""
+"""Who pushes how much: `budget.json`, and over the time, part by part, what figures show."""
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy import ndarray as Array
+from pydantic import Field
 
 from rovsim.core.array_files import read_arrays, write_arrays
-from rovsim.results.base import ByAxis
-from rovsim.results.budget import RunBudget
+from rovsim.core.schema import Section
+from rovsim.results.base import ByAxis, Result
 
 MISSING = "missing"
 
 
+class RunBudget(Section):
+    """RMS force of every part of a model on one run, and of what is missing, N and N m."""
+
+    model: str
+    rms: dict[str, ByAxis]
+
+
+class BudgetTotals(Result):
+    """Budgets of one model, by run."""
+
+    noun: ClassVar[str] = "budget of forces"
+    command: ClassVar[str] = "`rovsim compare`"
+
+    schema_: Literal["rovsim.budget/1"] = Field(default="rovsim.budget/1", alias="schema")
+    runs: dict[str, RunBudget]
+
+
 @dataclass(frozen=True, eq=False)
-class Budget:
+class ForceBudget:
     """Forces of one model at the measured states of one run, FRD at CO, N and N m.
 
     `time` (n,) s; `parts` (n, 6) by name, which add up to M nu_dot of the model; `missing` (n, 6)
@@ -51,8 +70,8 @@ class Budget:
         write_arrays(path, label=label, time=self.time, missing=self.missing, **parts)
 
     @staticmethod
-    def read(path: Path) -> "Budget":
+    def read(path: Path) -> "ForceBudget":
         """Read what `write` wrote."""
         a = read_arrays(path)
         parts = {key.removeprefix("part/"): a[key] for key in a if key.startswith("part/")}
-        return Budget(str(a["label"][0]), str(a["label"][1]), a["time"], parts, a["missing"])
+        return ForceBudget(str(a["label"][0]), str(a["label"][1]), a["time"], parts, a["missing"])
