@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rovsim.application.pipeline.reading import read_recording
+from rovsim.application.pipeline.reading import judge_recording, read_recording
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.core.yaml_files import read_yaml, write_yaml
@@ -33,7 +33,8 @@ def campaign(sound, tmp_path):
 def doubts(folder: Path, place: int = 0) -> str:
     """What is said against one of its runs."""
     campaign = load_campaign(folder)
-    quality = read_recording(campaign, campaign.runs[place].id, KeepAll(kind="none"))[1]
+    read = read_recording(campaign, campaign.runs[place].id)
+    quality = judge_recording(campaign, *read, KeepAll(kind="none"))
     assert quality.remarks[: len(quality.doubts)] == quality.doubts
     return " ".join(quality.doubts)
 

@@ -1,8 +1,8 @@
 """The way of the data, one step a file: commands, workbench and workflow call the same functions.
 
-reading           raw exports -> recordings, quality
+reading           raw exports -> recordings; what speaks for and against them
 recordings        a campaign -> motions, poses before the filter, quality
-models            names and files -> models; effects added to one
+models            names and files -> models; a model file with effects added
 replays           models x motions -> replays -> scores, growth of errors, steps of the ladder
 bands             how surely models predict, and what of the test runs lies inside
 error_conditions  under which conditions a model fails

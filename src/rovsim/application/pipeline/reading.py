@@ -1,12 +1,11 @@
-"""Raw exports in, recordings and quality reports out."""
+"""Raw exports in, recordings out; then what speaks for and against them."""
 
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.held_out import doubt_test_run
 from rovsim.measurement.quality import report_quality
-from rovsim.measurement.recording import read_run
-from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording import Anomalies, Recording, read_run
 from rovsim.measurement.signals.outliers import Outliers
 from rovsim.results.quality import Quality
 from rovsim.simulation.command_columns import mark_angles
@@ -17,17 +16,21 @@ def load_campaign_vehicle(campaign: Campaign) -> Vehicle:
     return load_vehicle(campaign.vehicle, named_in=campaign.file)
 
 
-def read_recording(campaign: Campaign, run: str, outliers: Outliers) -> tuple[Recording, Quality]:
-    """One raw export in NED and FRD, nothing filtered, and its quality report.
+def read_recording(campaign: Campaign, run: str) -> tuple[Recording, Anomalies]:
+    """One raw export in NED and FRD, nothing filtered, and what was wrong with its files.
 
     Raises:
         BadInput: it cannot be read.
     """
-    vehicle = load_campaign_vehicle(campaign)
-    known = mark_angles(campaign, vehicle)
-    recording, anomalies = read_run(known, run)
+    return read_run(mark_angles(campaign, load_campaign_vehicle(campaign)), run)
+
+
+def judge_recording(
+    campaign: Campaign, recording: Recording, anomalies: Anomalies, outliers: Outliers
+) -> Quality:
+    """How good a recording is; of one that can be used also whether it follows its commands."""
     quality = report_quality(recording, anomalies, outliers)
-    if quality.unusable is None:
-        repeats = doubt_test_run(campaign, campaign.run(run))
-        quality = quality.doubted(*find_doubts(recording, vehicle), *repeats)
-    return recording, quality
+    if quality.unusable is not None:
+        return quality
+    repeats = doubt_test_run(campaign, campaign.run(recording.run.id))
+    return quality.doubted(*find_doubts(recording, load_campaign_vehicle(campaign)), *repeats)

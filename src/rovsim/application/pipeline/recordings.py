@@ -6,7 +6,11 @@ from typing import Mapping
 
 import numpy as np
 
-from rovsim.application.pipeline.reading import load_campaign_vehicle, read_recording
+from rovsim.application.pipeline.reading import (
+    judge_recording,
+    load_campaign_vehicle,
+    read_recording,
+)
 from rovsim.core.bounded_cache import Remade
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
@@ -78,14 +82,15 @@ def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = 
     quality: dict[str, Quality] = {}
 
     def read(run: str) -> Stage:
-        return resampled(read_recording(campaign, run, settings.outliers)[0], settings)
+        return resampled(read_recording(campaign, run)[0], settings)
 
     def derive(run: str) -> Motion:
         return derive_motion(filtered(stages[run], settings), quality[run], settings)
 
     stages, motions = Remade((), read), Remade((), derive)
     for run in counted(campaign.runs, "reading"):
-        recording, quality[run.id] = read_recording(campaign, run.id, settings.outliers)
+        recording, anomalies = read_recording(campaign, run.id)
+        quality[run.id] = judge_recording(campaign, recording, anomalies, settings.outliers)
         if quality[run.id].unusable is None:
             stages.keep(run.id, resampled(recording, settings))
             motions.keep(run.id, derive(run.id))
