@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from os.path import relpath
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Mapping, Sequence
 
 import rovsim
 from rovsim.core.schema import Section
@@ -108,33 +108,45 @@ def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
 
 
 def provenance(
-    settings: Section, catalogue: Catalogue, campaign: Campaign | None
+    settings: Section,
+    catalogue: Catalogue,
+    campaign: Campaign | None,
+    recordings: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
     """Recordings, vehicle file, settings, code and versions behind a result.
 
     Settings without influence are left out; so are recordings that these make (None).
+    `recordings`: their digests, where these are known (`digest_recordings`).
     """
     chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
     origin = {"settings": chosen, **describe_origin(catalogue)}
     if campaign is None:
         return origin
     vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
-    return origin | {"recordings": digest_files(campaign), "vehicle": _sha256(vehicle)[:16]}
+    return origin | {
+        "recordings": digest_files(campaign, recordings),
+        "vehicle": _sha256(vehicle)[:16],
+    }
 
 
-def digest_files(campaign: Campaign) -> dict[str, str]:
-    """The first 16 digits of the SHA-256 of every file of a campaign, by its path from there."""
-    return _digest_each(campaign, campaign.files)
+def digest_files(campaign: Campaign, known: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The first 16 digits of the SHA-256 of every file of a campaign, by its path from there.
+
+    Those that are `known` are not read again.
+    """
+    return _digest_each(campaign, campaign.files, known or {})
 
 
 def digest_recordings(campaign: Campaign) -> dict[str, str]:
     """The same of the files of its runs alone, without the campaign file."""
-    return _digest_each(campaign, [path for path in campaign.files if path != campaign.file])
+    return _digest_each(campaign, [path for path in campaign.files if path != campaign.file], {})
 
 
-def _digest_each(campaign: Campaign, files: Sequence[Path]) -> dict[str, str]:
-    there = (path for path in files if path.is_file())
-    return {relpath(path, campaign.folder): _sha256(path)[:16] for path in there}
+def _digest_each(
+    campaign: Campaign, files: Sequence[Path], known: Mapping[str, str]
+) -> dict[str, str]:
+    there = {relpath(path, campaign.folder): path for path in files if path.is_file()}
+    return {name: known.get(name) or _sha256(path)[:16] for name, path in there.items()}
 
 
 def _sha256(path: Path) -> str:

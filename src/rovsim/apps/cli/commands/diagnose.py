@@ -86,7 +86,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         told = join_files(text, files, kept)
         say(settings, told, found.diagnosis.to_json())
         drawn = [future.result() for future in counted(list(drawing.values()), "drawing")]
-        origin = provenance(settings, catalogue, data.campaign)
+        origin = provenance(settings, catalogue, data.campaign, read)
         last = other.submit(
             call, f"{SHOWING}:show_diagnosis",
             out, data.campaign.name, base.name, shown, drawn, origin, settings.effect_files,
