@@ -8,7 +8,7 @@ from rovsim.application.intake.proposal import Proposal
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_models, load_one_model
-from rovsim.application.pipeline.recordings import measure, open_campaign
+from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.sections import TrainingSettings
@@ -16,7 +16,8 @@ from rovsim.application.settings import CampaignSettings, WorkbenchSettings, sel
 from rovsim.core.progress import reported
 from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
-from rovsim.dynamics.catalogue import built_in, load_catalogue
+from rovsim.dynamics.catalogue import Catalogue, built_in, load_catalogue
+from rovsim.dynamics.model import Model
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Ladder
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
@@ -25,9 +26,7 @@ from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
     """Diagnose settings.model; writes it to `path`, a proposed effect beside it, and returns it."""
-    catalogue = load_catalogue(settings.effect_files)
-    data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
-    base = load_one_model(settings.model, data.vehicle, catalogue)
+    catalogue, data, base = _open(settings, even_unusable=True)
     how = select(settings, DiagnosisSettings)
     found = diagnose(data.runs, base, how, catalogue, digest_recordings(data.campaign))
     found.write(path)
@@ -36,9 +35,7 @@ def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
 
 def train_into(settings: WorkbenchSettings, path: Path) -> Path:
     """Train a residual on top of settings.model; returns the model file, `path`."""
-    catalogue = load_catalogue(settings.effect_files)
-    data = measure(open_campaign(settings.campaign), settings.signals)
-    base = load_one_model(settings.model, data.vehicle, catalogue)
+    catalogue, data, base = _open(settings)
     how = select(settings, TrainingSettings)
     story = provenance(how, catalogue, data.campaign)
     train(data.motions.values(), base, how, catalogue, path, story)
@@ -49,9 +46,7 @@ def design_into(settings: WorkbenchSettings, question: Question, out: Path) -> P
     """Plan the flight that answers a question; writes it as `rovsim design` does; returns `out`."""
     from rovsim.application.pipeline.design import design, write_flight  # a second, for a few
 
-    catalogue = load_catalogue(settings.effect_files)
-    data = measure(open_campaign(settings.campaign), settings.signals)
-    model = load_one_model(settings.model, data.vehicle, catalogue)
+    catalogue, data, model = _open(settings)
     write_flight(out, design(data, model, question, catalogue))
     return out
 
@@ -74,6 +69,15 @@ def report_into(
         if result := getattr(shown, name):
             result.write(out / f"{name}.json")
     return out / "report.html"
+
+
+def _open(
+    settings: WorkbenchSettings, even_unusable: bool = False
+) -> tuple[Catalogue, Measured, Model]:
+    """All effects, the campaign as measured, and the one model that settings name."""
+    catalogue = load_catalogue(settings.effect_files)
+    data = measure(open_campaign(settings.campaign), settings.signals, even_unusable)
+    return catalogue, data, load_one_model(settings.model, data.vehicle, catalogue)
 
 
 def look_into(folder: Path, scratch: Path) -> Proposal:
