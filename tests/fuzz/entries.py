@@ -14,7 +14,7 @@ from fuzz.hostile import value_of
 from fuzz.models import step
 from recordings import Swim, campaign_content, write_campaign, write_run
 from rovsim.application.intake.compose import propose
-from rovsim.application.pipeline.models import add_effects
+from rovsim.application.pipeline.models import write_with_effects
 from rovsim.application.settings import compose
 from rovsim.apps.cli.main import override
 from rovsim.core.array_files import read_arrays, write_arrays
@@ -108,7 +108,7 @@ class DiagnosisJson(Text):
         )
 
     def enter(self) -> None:
-        add_effects(self.file, "nominal", None, built_in(), self.folder / "new.yaml", {})
+        write_with_effects(self.file, "nominal", None, built_in(), self.folder / "new.yaml", {})
         step(read_model(self.folder / "new.yaml", built_in()))
 
 

@@ -46,7 +46,7 @@ def test_a_diagnosis_goes_on_without_what_was_lost(flight, monkeypatch):
 
     monkeypatch.setattr(procedure, "require_held", lose_once)
     few = Catalogue({"net_buoyancy": built_in()["net_buoyancy"]})
-    found = procedure.diagnose(base, [run], SearchSettings(), catalogue=few)
+    found = procedure.diagnose_train_runs(base, [run], SearchSettings(), catalogue=few)
     assert found.fit is not None
     assert found.usable.lost == {"a": pytest.approx(21.0, abs=0.1)}
     assert found.usable.seconds < 21.0

@@ -7,7 +7,7 @@ from flown import observed
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.procedure import diagnose
+from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
@@ -64,5 +64,5 @@ def test_a_filter_that_replays_worse_than_nothing_is_refused(tmp_path, monkeypat
         cutoff=1.5, std=0.01, gain=100.0, told=1.5, lowest=1.49, highest=1.51, frame=0.01
     )
     monkeypatch.setattr("rovsim.diagnosis.procedure.find_smoothing", lambda base, runs: wrong)
-    found = diagnose(base, runs, SearchSettings(most_effects=1), catalogue=built_in())
+    found = diagnose_train_runs(base, runs, SearchSettings(most_effects=1), catalogue=built_in())
     assert found.verdict == "adequate"

@@ -13,7 +13,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE, DriftingCurrent, Path
 from rovsim.diagnosis.observer.random_walk import list_terms
-from rovsim.diagnosis.procedure import diagnose
+from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.steady_current import prefer_steady
@@ -40,7 +40,7 @@ def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path):
     rate = 0.004  # (m/s) / s^0.5: as slow as one that can be told from turbulence
     hidden = (hide("current_drift", rate=rate), hide("net_buoyancy", force=4.0))
     base, runs = observed(tmp_path, duration=60.0, effects=hidden)
-    found = diagnose(base, runs, SearchSettings(), catalogue=built_in())
+    found = diagnose_train_runs(base, runs, SearchSettings(), catalogue=built_in())
     assert found.verdict == "missing_effects"
     named = {one.term.id: one for one in found.selected}
     assert set(named) == {"net_buoyancy", "current_drift"}
@@ -64,7 +64,7 @@ def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path):
 )  # fmt: skip
 def test_nothing_else_is_taken_for_it(tmp_path, hidden):
     base, runs = observed(tmp_path, duration=60.0, effects=hidden)
-    found = diagnose(base, runs, SearchSettings(), catalogue=built_in())
+    found = diagnose_train_runs(base, runs, SearchSettings(), catalogue=built_in())
     assert {one.term.id for one in found.selected} == {one.effect for one in hidden}
     assert found.fit.noise.drift is None
 

@@ -11,7 +11,7 @@ from rovsim.core.run import Site
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
 from rovsim.evaluation.error_conditions.conditions import average_blocks
 from rovsim.evaluation.error_conditions.findings import explain
-from rovsim.evaluation.error_conditions.search import search_conditions
+from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.evaluation.error_conditions.sentences import summarize
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.error_conditions import BLOCK
@@ -170,19 +170,21 @@ def test_blocks_are_means_over_half_a_second():
 def test_models_are_searched_on_train_runs():
     run = motion(sticks(), seconds=3.0, start=at_rest())
     train = replace(run, run=replace(run.run, id="t", split="train"))
-    assert search_conditions(model(), [run, train], SignalSettings(), ReplaySettings()).runs == (
-        "t",
-    )
-    assert search_conditions(model(), [run], SignalSettings(), ReplaySettings()).split == "test"
+    search = ConditionSearch(model(), ["test", "train"], SignalSettings(), ReplaySettings())
+    for one in (run, train):
+        search.add(one)
+    assert search.found.runs == ("t",)
+    assert ConditionSearch(model(), ["test"], SignalSettings(), ReplaySettings()).split == "test"
 
 
 def test_forces_of_a_search_are_those_of_the_model():
     run = motion(np.zeros((1, 8)), seconds=40.0, start=at_rest())
     lifted = model().body.M_inv @ [0.0, 0.0, -60.0, 0.0, 0.0, 0.0]
     run = replace(run, nu_dot=run.nu_dot + lifted)
-    searched = search_conditions(model(), [run], SignalSettings(), ReplaySettings()).explanation
-    heave = next(f for f in searched.findings if f.axis == "heave")
+    search = ConditionSearch(model(), ["test"], SignalSettings(), ReplaySettings())
+    search.add(run)
+    heave = next(f for f in search.found.explanation.findings if f.axis == "heave")
     assert heave.condition == "throughout"
-    mean = searched.blocks.error.mean(axis=0)
+    mean = search.found.blocks.error.mean(axis=0)
     assert heave.push == pytest.approx(model().M[2] @ mean)
     assert heave.push < -50.0

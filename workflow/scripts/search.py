@@ -7,7 +7,7 @@ from rovsim.application.snakemake_job import job
 if __name__ == "__main__":
     with job(snakemake) as rule:
         found = find_error_conditions(
-            models=[rule.model(rule.wildcards.model)],
+            model=rule.model(rule.wildcards.model),
             motions=rule.motions(),
             settings=rule.section(SimulationSettings),
         )

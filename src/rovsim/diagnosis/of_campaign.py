@@ -12,7 +12,7 @@ from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
 from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
-from rovsim.diagnosis.procedure import diagnose
+from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
@@ -83,7 +83,7 @@ def diagnose_campaign(
     train = prepare_train(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
-    found = diagnose(
+    found = diagnose_train_runs(
         base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
     )
     stage("scoring")

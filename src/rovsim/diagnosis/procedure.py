@@ -75,7 +75,7 @@ from rovsim.results.fitted import Correlation
 Stages = Callable[[str], None]
 
 
-def diagnose(
+def diagnose_train_runs(
     base: Model,
     train: Sequence[ObservedRun],
     settings: SearchSettings,

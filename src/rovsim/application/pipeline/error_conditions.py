@@ -1,4 +1,4 @@
-"""Under which conditions models fail."""
+"""Under which conditions a model fails."""
 
 from typing import Sequence
 
@@ -6,18 +6,17 @@ from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
-from rovsim.evaluation.error_conditions.search import search_conditions
+from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.error_conditions import ErrorConditions
 
 
 def find_error_conditions(
-    models: Sequence[Model], motions: Sequence[Motion], settings: SimulationSettings
+    model: Model, motions: Sequence[Motion], settings: SimulationSettings
 ) -> ErrorConditions:
-    """What the errors of models vary with, each on the runs it may be judged on."""
-    return list_conditions(
-        [
-            search_conditions(model, motions, settings.signals, settings.replay)
-            for model in counted(models, "searching")
-        ]
-    )
+    """What the errors of a model vary with, on the runs it may be judged on."""
+    splits = [motion.run.split for motion in motions]
+    search = ConditionSearch(model, splits, settings.signals, settings.replay)
+    for motion in counted(motions, "searching"):
+        search.add(motion)
+    return list_conditions([search.found])

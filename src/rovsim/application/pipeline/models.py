@@ -97,7 +97,7 @@ def require_physics(model: Model, doing: str) -> None:
         )
 
 
-def add_effects(
+def write_with_effects(
     diagnosis: Path,
     base: str,
     effects: Sequence[str] | None,

@@ -13,7 +13,7 @@ from rovsim.application.export.targets import target
 from rovsim.application.export.write import export_model, model_parts, write_export
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
-from rovsim.application.pipeline.models import add_effects, load_models, load_one_model
+from rovsim.application.pipeline.models import load_models, load_one_model, write_with_effects
 from rovsim.application.pipeline.recordings import (
     Measured,
     measure,
@@ -113,7 +113,7 @@ class Campaign:
         """
         story = {"diagnosis": str(diagnosis.path), **describe_origin(self.catalogue)}
         out = Path(path)
-        add_effects(diagnosis.path, fspath(to), effects, self.catalogue, out, story)
+        write_with_effects(diagnosis.path, fspath(to), effects, self.catalogue, out, story)
         return self.model(out)
 
     def train(

@@ -145,7 +145,7 @@ class Flight:
         )  # fmt: skip
         button = jobs.Beginning(
             self.bench, "Plan the flight", icon="route",
-            on_click=lambda: jobs.design(self.bench, self.chosen["model"], question),
+            on_click=lambda: jobs.start_design(self.bench, self.chosen["model"], question),
         )  # fmt: skip
         button.props("unelevated no-caps").classes("onward")
 

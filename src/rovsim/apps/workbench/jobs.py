@@ -34,13 +34,13 @@ class Beginning(ui.button):
             self.props.set_optional(name, told)
 
 
-def diagnose(bench: Workbench) -> None:
+def start_diagnosis(bench: Workbench) -> None:
     """Begin to look for what the base lacks."""
     settings, path = bench.only(bench.base.name), bench.diagnosis_path
     bench.work.begin("Finding what is missing", bench.found, tasks.diagnose_into, settings, path)
 
 
-def train(bench: Workbench, kind: str, name: str) -> None:
+def start_training(bench: Workbench, kind: str, name: str) -> None:
     """Begin to train a residual on top of one of the models."""
     trained = f"{kind}_{bench.settings.control}"
     trained = trained if name == bench.base.name else f"{name}+{trained}"
@@ -54,7 +54,7 @@ def train(bench: Workbench, kind: str, name: str) -> None:
     bench.work.begin(f"Training {title(trained)}", take, tasks.train_into, settings, path)
 
 
-def report(bench: Workbench) -> None:
+def start_report(bench: Workbench) -> None:
     """Begin to write the report and the JSON files behind it."""
 
     def take(path: Path) -> None:
@@ -65,7 +65,7 @@ def report(bench: Workbench) -> None:
     bench.work.begin("Writing the report", take, tasks.report_into, settings, *known, bench.out)
 
 
-def design(bench: Workbench, name: str, question: Question) -> None:
+def start_design(bench: Workbench, name: str, question: Question) -> None:
     """Begin to plan the flight that answers a question about one of the models."""
 
     given = (bench.only(name), question, bench.flight_folder(name, question))

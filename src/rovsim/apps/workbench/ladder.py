@@ -75,7 +75,9 @@ def _train(bench: Workbench) -> None:
         on.props("outlined dense")
         for kind, name in KINDS.items():
             train = jobs.Beginning(
-                bench, f"Train {name}", on_click=lambda _, k=kind: jobs.train(bench, k, on.value)
+                bench,
+                f"Train {name}",
+                on_click=lambda _, k=kind: jobs.start_training(bench, k, on.value),
             )
             train.props("outline no-caps")
 
@@ -88,7 +90,7 @@ def _report(bench: Workbench) -> None:
     )
     with ui.row().classes("controls"):
         write = jobs.Beginning(
-            bench, "Write the report", icon="description", on_click=lambda: jobs.report(bench)
+            bench, "Write the report", icon="description", on_click=lambda: jobs.start_report(bench)
         )
         write.props("outline no-caps")
         if "report" in bench.choices:

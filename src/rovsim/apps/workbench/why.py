@@ -72,7 +72,7 @@ async def show(bench: Workbench, place: Place) -> None:
         onward("Plan the flight", "/flight")
     paragraphs("What else to know", said.remarks)
     _ranking(found)
-    again = jobs.Beginning(bench, "Diagnose again", on_click=lambda: jobs.diagnose(bench))
+    again = jobs.Beginning(bench, "Diagnose again", on_click=lambda: jobs.start_diagnosis(bench))
     again.props("flat no-caps").classes("onward")
     for effect, room in seen.items():
         with room:
@@ -86,7 +86,7 @@ def _ask(bench: Workbench) -> None:
         "end. This takes from ten seconds to some minutes."
     )
     button = jobs.Beginning(
-        bench, "Find what is missing", icon="search", on_click=lambda: jobs.diagnose(bench)
+        bench, "Find what is missing", icon="search", on_click=lambda: jobs.start_diagnosis(bench)
     )
     button.props("unelevated no-caps").classes("onward")
 

@@ -1,7 +1,7 @@
 """Search the runs of a campaign for conditions in which a model fails."""
 
 from dataclasses import dataclass
-from typing import Collection, Sequence
+from typing import Collection
 
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.conditions import Blocks, average_blocks, join_blocks
@@ -83,14 +83,4 @@ def search_runs(
     search = ConditionSearch(model, set(runs.splits.values()), signals, settings)
     for name in runs.of(search.split):
         search.add(runs.motions[name])
-    return search.found
-
-
-def search_conditions(
-    model: Model, motions: Sequence[Motion], signals: SignalSettings, settings: ReplaySettings
-) -> SearchedModel:
-    """Search the runs of a campaign for conditions in which the model fails."""
-    search = ConditionSearch(model, [m.run.split for m in motions], signals, settings)
-    for motion in motions:
-        search.add(motion)
     return search.found

@@ -10,7 +10,7 @@ is asked.
 
 from pathlib import Path
 
-from rovsim.application.pipeline.models import add_effects
+from rovsim.application.pipeline.models import write_with_effects
 from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import say
@@ -50,7 +50,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
-    new, names, diagnosed, one_by_one = add_effects(
+    new, names, diagnosed, one_by_one = write_with_effects(
         Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
     )
     text = f"{base} + {' + '.join(names)}"
