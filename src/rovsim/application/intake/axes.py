@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
-from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE
+from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
 from rovsim.measurement.recording.readers import FileAxes
 from rovsim.measurement.survey.contents import Track
 
@@ -38,7 +38,7 @@ class Axes:
 def find_axes(
     own: FileAxes, tracks: Sequence[Track], turned: Sequence[tuple[float, Array]]
 ) -> Axes:
-    """The axes of files of a format that may have these; `turned`: likeness along each of 24."""
+    """The axes of files of a format that may have these; `turned`: correlation along each of 24."""
     worlds, bodies = own.world, own.body
     if own.fixed:
         return Axes(worlds[0], bodies[0], own.said)
@@ -84,7 +84,7 @@ def _mean_attitude(tracks: Sequence[Track]) -> Array | None:
 
 def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple[str, str]:
     """Body axes by the motion that the commands cause, and what it says."""
-    if not turned or turned[0][0] < ALIKE:
+    if not turned or turned[0][0] < MIN_CORRELATION:
         best = f" (likeness {turned[0][0]:.2f})" if turned else ""
         return "", f"no motion that its commands explain{best}" if turned else ""
     score, axes = turned[0]

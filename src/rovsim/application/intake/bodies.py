@@ -6,7 +6,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim.core.errors import BadInput
-from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE
+from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
 from rovsim.measurement.quality import STILL_POSITION
 from rovsim.measurement.survey.contents import Contents, Track
 
@@ -34,7 +34,7 @@ def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Bod
         return Body(common[0], "" if len(names) == 1 else "the only one in all files", (common[0],))
     scores = {name: score(name) for name in common}
     first, second = sorted(common, key=lambda name: -scores[name])[:2]
-    if scores[first] >= ALIKE and scores[first] > AHEAD * scores[second]:
+    if scores[first] >= MIN_CORRELATION and scores[first] > AHEAD * scores[second]:
         said = f"of {', '.join(common)} the one that follows the commands ({scores[first]:.2f})"
         return Body(first, said, tuple(common))
     moving = [name for name in common if any(_moves(m, name) for m in motions)]

@@ -12,7 +12,7 @@ from rovsim.application.intake.vehicles import Fit, as_logged
 from rovsim.core.rotations import unrotate
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.commanded_motion.clocks import tell_following
-from rovsim.evaluation.commanded_motion.likeness import ALIKE, orientations
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, orientations
 from rovsim.evaluation.commanded_motion.predicted import held, respond, wrench
 from rovsim.measurement.quality import EXCITED, usable_reason
 from rovsim.measurement.recording import Recording
@@ -20,7 +20,7 @@ from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.survey.grid import even_poses, slopes
 
-BETTER = 0.12  # likeness by which another order or sign must be better to be told
+BETTER = 0.12  # correlation by which another order or sign must be better to be told
 
 
 def unusable(motion: Motion) -> str | None:
@@ -59,7 +59,7 @@ def check_mirror(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) ->
         scores.append((_alike(seen @ axes, other[:, :3])[excited].mean(), mirror))
     own = next(score for score, mirror in scores if np.array_equal(mirror, np.eye(3)))
     best, mirror = max(scores)
-    if best < max(own + BETTER, ALIKE):
+    if best < max(own + BETTER, MIN_CORRELATION):
         return ""
     return (
         f"positions and attitudes do not go together: with {_told(np.array(mirror))} in place of "
@@ -95,7 +95,7 @@ def check_order(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) -> 
     }
     own = scores.pop("")
     label = max(scores, key=lambda key: scores[key])
-    if scores[label] < max(own + BETTER, ALIKE):
+    if scores[label] < max(own + BETTER, MIN_CORRELATION):
         return ""
     return (
         f"with {label} the motion would follow the commands better (likeness {scores[label]:.2f} "

@@ -6,24 +6,28 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.intake.motions import alike, turned
+from rovsim.application.intake.motions import correlate, turned
 from rovsim.application.intake.pairing import Pair
 from rovsim.application.intake.vehicles import Fit
 from rovsim.dynamics.vehicle import default_vehicle
-from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE, Likeness
+from rovsim.evaluation.commanded_motion.cross_correlation import (
+    AHEAD,
+    MIN_CORRELATION,
+    CrossCorrelation,
+)
 
-SAME = 0.03  # likeness by which vehicles of one hull differ
+SAME = 0.03  # correlation by which vehicles of one hull differ
 
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """The vehicle, None where nobody can tell; the likeness of its runs along each body axes."""
+    """The vehicle, None where nobody can tell; the correlation of its runs along each body axes."""
 
     fit: Fit | None
     said: str
     fits: tuple[Fit, ...]
     turned: tuple[tuple[float, Array], ...]
-    runs: dict[int, Likeness]
+    runs: dict[int, CrossCorrelation]
 
 
 def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
@@ -38,14 +42,14 @@ def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
     told = Choice(None, _told(ordered, scores), tuple(ordered), tuple(turns.get(first.name, [])),
                   compared[first.name])  # fmt: skip
     rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, first)]
-    known = scores.get(first.name, 0.0) >= ALIKE
+    known = scores.get(first.name, 0.0) >= MIN_CORRELATION
     alone = scores.get(first.name, 0.0) >= AHEAD * max(rivals, default=0.0)
     named = first.by_name and len(ordered) == 1
     return replace(told, fit=first) if named or (known and alone) else told
 
 
-def _score(found: dict[int, Likeness], turns: Sequence[tuple[float, Array]]) -> float:
-    """Likeness along the best axes, less where the vehicle is too fast or too slow (Lin 1989).
+def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Array]]) -> float:
+    """Correlation along the best axes, less where the vehicle is too fast or too slow (Lin 1989).
 
     The concordance of two series is their correlation times 2 r / (1 + r^2), r the ratio of their
     standard deviations.
@@ -64,8 +68,8 @@ def _first(ordered: Sequence[Fit], scores: dict[str, float]) -> Fit:
     return best
 
 
-def _compared(fit: Fit, pairs: Sequence[Pair]) -> dict[int, Likeness]:
-    found = {k: alike(p.motion, log, fit) for k, p in enumerate(pairs) if (log := p.shown)}
+def _compared(fit: Fit, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
+    found = {k: correlate(p.motion, log, fit) for k, p in enumerate(pairs) if (log := p.shown)}
     return {k: one for k, one in found.items() if one is not None and one.excited.any()}
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from rovsim.application.intake.axes import Axes, find_axes
 from rovsim.application.intake.bodies import Body, find_body, track_of
 from rovsim.application.intake.choice import Choice, choose
-from rovsim.application.intake.motions import Log, Motion, alike, highest
+from rovsim.application.intake.motions import Log, Motion, correlate, highest
 from rovsim.application.intake.names import run_ids
 from rovsim.application.intake.pairing import Pair, pair
 from rovsim.application.intake.survey import Survey
@@ -54,7 +54,7 @@ def find_facts(found: Survey) -> Facts:
     fits = _fits(logs)
 
     def score(motion: Motion, log: Log) -> float:
-        return max((highest(alike(motion, log, fit)) for fit in fits), default=0.0)
+        return max((highest(correlate(motion, log, fit)) for fit in fits), default=0.0)
 
     body = find_body(found.motions, lambda name: _of_body(found, name, logs, score))
     motions = [

@@ -9,11 +9,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.intake.vehicles import Fit, as_logged
-from rovsim.evaluation.commanded_motion.likeness import (
+from rovsim.evaluation.commanded_motion.cross_correlation import (
     REACH,
     SHORTEST,
-    Likeness,
-    likeness,
+    CrossCorrelation,
+    cross_correlate,
     rotations,
 )
 from rovsim.evaluation.commanded_motion.predicted import cause
@@ -72,8 +72,8 @@ class Log:
         return cause(fit.vehicle, commands, float(commands.time[0]), LONGEST)
 
 
-def alike(motion: Motion, log: Log, fit: Fit) -> Likeness | None:
-    """How alike a motion and what a log would cause are; clocks that never meet are moved first."""
+def correlate(motion: Motion, log: Log, fit: Fit) -> CrossCorrelation | None:
+    """A motion and what a log would cause, correlated; clocks that never meet are moved first."""
     caused = log.caused(fit)
     if motion.measured is None or caused is None:
         return None
@@ -84,10 +84,10 @@ def alike(motion: Motion, log: Log, fit: Fit) -> Likeness | None:
     apart = clock[-1] < time[0] or time[-1] < clock[0]
     shift = float(clock[0] - time[0]) if apart else 0.0
     reach = max(REACH, abs(np.ptp(time) - np.ptp(clock))) if apart else REACH
-    return likeness(motion.measured, time, nu, shift, min(reach, LONGEST))
+    return cross_correlate(motion.measured, time, nu, shift, min(reach, LONGEST))
 
 
-def turned(found: Mapping[int, Likeness]) -> list[tuple[float, Array]]:
+def turned(found: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
     """Mean of the best correlation over runs along each of the 24 axes, the best first."""
     scored = [
         (float(np.mean([one.best(axes)[0] for one in found.values()])), axes)
@@ -96,6 +96,6 @@ def turned(found: Mapping[int, Likeness]) -> list[tuple[float, Array]]:
     return sorted(scored, key=lambda pair: -pair[0])
 
 
-def highest(found: Likeness | None) -> float:
+def highest(found: CrossCorrelation | None) -> float:
     """Best mean correlation along any axes; 0 without a comparison."""
     return 0.0 if found is None else max(found.best(axes)[0] for axes in rotations())

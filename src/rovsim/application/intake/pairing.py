@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.application.intake.motions import Log, Motion
 from rovsim.application.intake.names import run_key, sensor_key
-from rovsim.evaluation.commanded_motion.likeness import AHEAD, ALIKE
+from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ def _by_content(table: Array) -> list[int | None]:
     for k, row in enumerate(table):
         best = int(np.argmax(row))
         rivals = [*np.delete(row, best), *np.delete(table[:, best], k)]
-        sure = row[best] >= ALIKE and row[best] >= AHEAD * max(rivals, default=0.0)
+        sure = row[best] >= MIN_CORRELATION and row[best] >= AHEAD * max(rivals, default=0.0)
         found.append(best if sure else None)
     return found
 
@@ -115,7 +115,9 @@ def _decided(
     for place, said in ((name, "by its name"), (clock, "the only log at that time")):
         if place is not None:
             weak = f"; the motion does not show it (likeness {scores[place]:.2f})"
-            return Pair(motion, logs[place], said + (weak if 0 < scores[place] < ALIKE else ""))
+            return Pair(
+                motion, logs[place], said + (weak if 0 < scores[place] < MIN_CORRELATION else "")
+            )
     if len(logs) == 1:
         return Pair(motion, logs[0], "the only log of commands")
     order = np.argsort(-scores)

@@ -2,25 +2,25 @@
 
 from numpy import ndarray as Array
 
-from rovsim.evaluation.commanded_motion.likeness import ALIKE, Likeness
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, CrossCorrelation
 
 # A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
-# of the likeness is known to about a tenth of a second.
+# of the correlation is known to about a tenth of a second.
 EARLIEST, LATEST = -0.25, 0.6  # s
 # Of periodic commands a peak some seconds away may be as high as that of the true lag.
-CLEARER, AWAY = 0.03, 1.0  # likeness by which it must be higher, s beyond the usual lags
+CLEARER, AWAY = 0.03, 1.0  # correlation by which it must be higher, s beyond the usual lags
 QUARTER = 900.0  # s: time zones differ by whole quarters of an hour
 LOOSE = 60.0  # s by which clocks that were set by hand differ beside it
 FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
 
 
-def tell_following(found: Likeness, axes: Array) -> str:
+def tell_following(found: CrossCorrelation, axes: Array) -> str:
     """That a motion hardly follows its commands, or too late or too early; else nothing.
 
     Body axes being `axes` (3, 3).
     """
     score, lag = found.best(axes)
-    if score < ALIKE:
+    if score < MIN_CORRELATION:
         return (
             f"the motion hardly follows its commands (likeness {score:.2f}): another log, another "
             "vehicle, a tether that pulls?"

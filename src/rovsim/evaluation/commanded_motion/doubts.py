@@ -9,12 +9,12 @@ from rovsim.core.rotations import matrix
 from rovsim.core.signs import minus
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.evaluation.commanded_motion.clocks import tell_following
-from rovsim.evaluation.commanded_motion.likeness import (
+from rovsim.evaluation.commanded_motion.cross_correlation import (
     AHEAD,
-    ALIKE,
+    MIN_CORRELATION,
     SHORTEST,
-    Likeness,
-    likeness,
+    CrossCorrelation,
+    cross_correlate,
     orientations,
 )
 from rovsim.evaluation.commanded_motion.predicted import cause, righting
@@ -52,7 +52,7 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
         return
     own = found.best(np.eye(3))[0]
     best, axes = max(((found.best(a := np.array(o))[0], a) for o in orientations()), key=_first)
-    if best >= ALIKE and best > AHEAD * own:
+    if best >= MIN_CORRELATION and best > AHEAD * own:
         yield (
             f"The vehicle moves along other axes than those commanded: {_told(axes)} (likeness "
             f"{best:.2f}; as described {own:.2f}). Check 'mocap.body_axes', 'mocap.world_axes' and "
@@ -66,8 +66,8 @@ def _first(pair: tuple[float, Array]) -> float:
     return pair[0]
 
 
-def _compared(recording: Recording, vehicle: Vehicle) -> Likeness | None:
-    """How alike the run and what its commands would cause are; None where there is too little."""
+def _compared(recording: Recording, vehicle: Vehicle) -> CrossCorrelation | None:
+    """The run and what its commands would cause, correlated; None where there is too little."""
     commands = recording.commands
     if len(commands.time) < 2 or np.ptp(recording.time) < SHORTEST:
         return None
@@ -75,7 +75,7 @@ def _compared(recording: Recording, vehicle: Vehicle) -> Likeness | None:
     if not np.isfinite(measured.nu).any():
         return None
     begin = max(float(commands.time[0]), float(measured.time[0]))
-    return likeness(measured, *cause(vehicle, commands, begin, LONGEST))
+    return cross_correlate(measured, *cause(vehicle, commands, begin, LONGEST))
 
 
 def _told(axes: Array) -> str:

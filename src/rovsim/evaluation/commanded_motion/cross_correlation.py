@@ -1,4 +1,4 @@
-"""How alike a measured and a commanded motion are: along which axes, and how late."""
+"""Cross-correlation of a measured and a commanded motion: along which axes, and how late."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -20,12 +20,12 @@ AFTER = 2.0  # s for which a motion goes on after its last command
 SPARSE = 1e-9
 # Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
 # most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).
-ALIKE = 0.38
-AHEAD = 1.3  # times the likeness of the next best
+MIN_CORRELATION = 0.38
+AHEAD = 1.3  # times the correlation of the next best
 
 
 @dataclass(frozen=True, eq=False)
-class Likeness:
+class CrossCorrelation:
     """Correlations (l, 6, 6) of measured along file axes with commanded along FRD, by lag (l,) s.
 
     A positive lag: the motion comes after its commands. `excited` (6,): the axes that the commands
@@ -82,9 +82,9 @@ def rotations() -> list[Array]:
     return [a for o in orientations() if np.linalg.det(a := np.array(o)) > 0]
 
 
-def likeness(
+def cross_correlate(
     measured: Velocities, time: Array, commanded: Array, shift: float = 0.0, reach: float = REACH
-) -> Likeness:
+) -> CrossCorrelation:
     """Compare measured velocities with commanded ones (m, 6) at times (m,) s, at lags in `reach`.
 
     `shift` s is added to the commanded times first.
@@ -105,7 +105,9 @@ def likeness(
     known = np.isfinite(table).all(axis=(1, 2))
     excited = here & (commanded.std(axis=0) > EXCITED)
     table = np.where(known[:, None, None], table, 0.0)
-    return Likeness(lags[::-1] + shift, table[::-1], excited, _strength(nu, commanded, excited))
+    return CrossCorrelation(
+        lags[::-1] + shift, table[::-1], excited, _strength(nu, commanded, excited)
+    )
 
 
 def _strength(nu: Array, commanded: Array, excited: Array) -> float:
