@@ -15,7 +15,7 @@ from damage import damaged
 from recordings import FORMATS, Swim, command_lines, write_lines, write_poses
 from rovsim.application.intake.compose import propose
 from rovsim.application.intake.names import run_ids, run_key
-from rovsim.application.intake.proposal import ANSWER, Proposal, Question
+from rovsim.application.intake.proposal import ANSWER, CampaignProposal, Question
 from rovsim.application.intake.write import write_proposal
 from rovsim.application.intake.yaml_file import as_yaml
 from rovsim.apps.cli.main import main
@@ -49,7 +49,9 @@ def test_whatever_is_written_is_read_back_the_same(name, column, comments, asked
     told = tuple(comments)
     places = ("name", "mocap", "mocap.body", "commands.columns", "runs", "runs.0", "runs.1")
     question = Question("mocap.world_axes", f"which? {column}", (("ned", name), (column, "")))
-    proposal = Proposal(content, dict.fromkeys(places, told), (question,) * asked, checks=told)
+    proposal = CampaignProposal(
+        content, dict.fromkeys(places, told), (question,) * asked, checks=told
+    )
     assert YAML(typ="safe", pure=True).load(as_yaml(proposal)) == content
 
 

@@ -15,7 +15,7 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
+from rovsim.application.pipeline.recordings import MeasuredCampaign, measure, open_campaign
 from rovsim.application.settings import Settings, compose
 from rovsim.benchmarks.blind.case import Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
@@ -124,12 +124,12 @@ def run_case(case: str, seeds: Range, out: Path) -> dict[str, Any]:
     return result
 
 
-def _measure(folder: Path, settings: Settings) -> Measured:
+def _measure(folder: Path, settings: Settings) -> MeasuredCampaign:
     return measure(open_campaign(str(folder)), settings.signals)
 
 
 def _fly(
-    name: str, tried: Tried, tank: TankSettings, folder: Path, found: Plan, data: Measured,
+    name: str, tried: Tried, tank: TankSettings, folder: Path, found: Plan, data: MeasuredCampaign,
     question: Question, settings: Settings,
 ) -> dict[str, Any]:  # fmt: skip
     """Fly a log in the same tank, and fit all that was asked to both runs."""

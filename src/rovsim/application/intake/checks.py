@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.intake.choice import Choice
-from rovsim.application.intake.motions import Log, Motion
+from rovsim.application.intake.motions import CommandFile, MotionFile
 from rovsim.application.intake.vehicles import Fit, as_logged
 from rovsim.core.rotations import unrotate
 from rovsim.core.run import Commands, RunInfo, Site
@@ -23,7 +23,7 @@ from rovsim.measurement.survey.grid import even_poses, slopes
 BETTER = 0.12  # correlation by which another order or sign must be better to be told
 
 
-def unusable(motion: Motion) -> str | None:
+def unusable(motion: MotionFile) -> str | None:
     """Why rovsim will not use a motion: too short, or it does not move."""
     export = motion.track.export
     commands = Commands(np.empty(0), np.empty((0, 6)), "wrench")
@@ -42,7 +42,7 @@ def check_clocks(choice: Choice, axes: Array, names: Sequence[str]) -> Iterator[
             yield f"{names[k]}: {said}"
 
 
-def check_mirror(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) -> str:
+def check_mirror(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag: float) -> str:
     """Whether the commanded motion shows better with the position's axes swapped or mirrored."""
     caused = log.caused(fit)
     if caused is None or not motion.track.posed:
@@ -81,7 +81,7 @@ def _alike(a: Array, b: Array) -> Array:
     return (a * b).mean(axis=0) / np.maximum(a.std(axis=0) * b.std(axis=0), 1e-12)
 
 
-def check_order(motion: Motion, log: Log, fit: Fit, axes: Array, lag: float) -> str:
+def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag: float) -> str:
     """Whether two outputs swapped, or one reversed, would explain the motion better."""
     commands, measured = as_logged(log.drive, fit, log.path), motion.measured
     if commands is None or measured is None or any(fit.vehicle.angles):

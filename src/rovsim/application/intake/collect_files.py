@@ -12,7 +12,7 @@ from rovsim.measurement.survey.csv_files import UnknownColumns
 
 
 @dataclass(frozen=True, eq=False)
-class Survey:
+class CollectedFiles:
     """Files with motions, files with commands alone, and why others of a folder were left out.
 
     `apart`: files that may belong together, and why they were not taken for one run. `unknown`:
@@ -26,7 +26,7 @@ class Survey:
     unknown: tuple[str, ...] = ()
 
 
-def survey(paths: Sequence[Path], scratch: Path) -> Survey:
+def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
     """Look into files, bags and folders; copies of files that need one are put into `scratch`.
 
     Raises:
@@ -59,7 +59,7 @@ def survey(paths: Sequence[Path], scratch: Path) -> Survey:
         for path in inside
         if isinstance(refused.get(path), UnknownColumns)
     ]
-    return Survey(runs, logs, left_out, apart, tuple(unknown))
+    return CollectedFiles(runs, logs, left_out, apart, tuple(unknown))
 
 
 def _check(

@@ -5,16 +5,16 @@ from typing import Iterator, Sequence
 
 from rovsim.application.intake import checks, sections
 from rovsim.application.intake.axes import BODY
+from rovsim.application.intake.collect_files import collect_files
 from rovsim.application.intake.draft import Draft
 from rovsim.application.intake.facts import Facts, find_facts
 from rovsim.application.intake.places import Places
-from rovsim.application.intake.proposal import Proposal
+from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.intake.runs import missing, runs
-from rovsim.application.intake.survey import survey
 from rovsim.measurement.survey.timing import Timing
 
 
-def propose(paths: Sequence[Path], out: Path, scratch: Path) -> Proposal:
+def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal:
     """What a campaign.yaml in the folder `out` would say of these files.
 
     Copies of files that only rovsim cannot read as they are lie in `scratch` until it is written.
@@ -22,7 +22,7 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> Proposal:
     Raises:
         RovsimError: files that cannot be used, a message for each.
     """
-    found = survey(paths, scratch)
+    found = collect_files(paths, scratch)
     facts, places, draft = find_facts(found), Places.beside(found, out), Draft()
     draft.content["name"] = places.name
     sections.vehicle(facts, draft)
@@ -33,7 +33,7 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> Proposal:
     sections.commands(facts, draft)
     runs(facts, places, draft)
     notes = dict.fromkeys(note for one in (*found.motions, *found.logs) for note in one.notes)
-    return Proposal(
+    return CampaignProposal(
         draft.content,
         {place: tuple(lines) for place, lines in draft.comments.items()},
         tuple(draft.questions),
@@ -54,7 +54,7 @@ def _lines(facts: Facts) -> Iterator[str]:
 def _unused(facts: Facts) -> Iterator[str]:
     """What may hold commands, and is no run's."""
     if not facts.logs:
-        for one in facts.survey.unknown:
+        for one in facts.collected.unknown:
             yield f"not used as commands: {one}. The runs say 'commands: none'"
     used = [one.log for one in facts.pairs]
     if not any(one.options for one in facts.pairs):

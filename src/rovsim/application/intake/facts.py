@@ -9,10 +9,10 @@ import numpy as np
 from rovsim.application.intake.axes import Axes, find_axes
 from rovsim.application.intake.bodies import Body, find_body, track_of
 from rovsim.application.intake.choice import Choice, choose
-from rovsim.application.intake.motions import Log, Motion, correlate, highest
+from rovsim.application.intake.collect_files import CollectedFiles
+from rovsim.application.intake.motions import CommandFile, MotionFile, correlate, highest
 from rovsim.application.intake.names import run_ids
 from rovsim.application.intake.pairing import Pair, pair
-from rovsim.application.intake.survey import Survey
 from rovsim.application.intake.together import list_stems
 from rovsim.application.intake.vehicles import Fit, fitting
 from rovsim.core.errors import BadInput
@@ -24,8 +24,8 @@ from rovsim.measurement.survey import Contents
 class Facts:
     """Runs with their commands, the body, the vehicle and the axes; what is not known is empty."""
 
-    survey: Survey
-    logs: tuple[Log, ...]
+    collected: CollectedFiles
+    logs: tuple[CommandFile, ...]
     body: Body
     pairs: tuple[Pair, ...]
     choice: Choice
@@ -35,16 +35,16 @@ class Facts:
     @property
     def motions(self) -> tuple[Contents, ...]:
         """The files of the motions, in the order of the runs."""
-        return self.survey.motions
+        return self.collected.motions
 
     @property
-    def log(self) -> Log | None:
+    def log(self) -> CommandFile | None:
         """A log that stands for all of them."""
         paired = [one.log for one in self.pairs if one.log is not None]
         return next(iter([*paired, *self.logs]), None)
 
 
-def find_facts(found: Survey) -> Facts:
+def find_facts(found: CollectedFiles) -> Facts:
     """All that the files tell.
 
     Raises:
@@ -53,12 +53,12 @@ def find_facts(found: Survey) -> Facts:
     logs = _logs(found)
     fits = _fits(logs)
 
-    def score(motion: Motion, log: Log) -> float:
+    def score(motion: MotionFile, log: CommandFile) -> float:
         return max((highest(correlate(motion, log, fit)) for fit in fits), default=0.0)
 
     body = find_body(found.motions, lambda name: _of_body(found, name, logs, score))
     motions = [
-        Motion(one.named, track_of(one, body.name), tuple(file.named for file in one.beside))
+        MotionFile(one.named, track_of(one, body.name), tuple(file.named for file in one.beside))
         for one in found.motions
     ]
     pairs = pair(motions, logs, score)
@@ -70,37 +70,37 @@ def find_facts(found: Survey) -> Facts:
     return Facts(found, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
 
 
-def _of_body(found: Survey, name: str, logs: Sequence[Log], score) -> float:
+def _of_body(found: CollectedFiles, name: str, logs: Sequence[CommandFile], score) -> float:
     """How alike a body's motions are to the commands in the same files, or to those of any."""
     scores = []
     for contents in found.motions:
-        motion = Motion(contents.named, track_of(contents, name))
+        motion = MotionFile(contents.named, track_of(contents, name))
         own = [log for log in logs if log.path == contents.named] or logs
         scores.append(max((score(motion, log) for log in own), default=0.0))
     return float(np.mean(scores))
 
 
-def _logs(found: Survey) -> list[Log]:
+def _logs(found: CollectedFiles) -> list[CommandFile]:
     """Logs of commands: files of their own, else those in the files of the motions."""
-    alone = [Log(one.named, one.drives[0]) for one in found.logs if one.drives]
+    alone = [CommandFile(one.named, one.drives[0]) for one in found.logs if one.drives]
     if alone:
         return alone
     inside = []
     for one in (file for motion in found.motions for file in motion.files):
         moving = [drive for drive in one.drives if drive.moves]
         for drive in (moving or list(one.drives))[:1]:
-            inside.append(Log(one.named, drive))
+            inside.append(CommandFile(one.named, drive))
     return inside
 
 
-def _fits(logs: Sequence[Log]) -> list[Fit]:
+def _fits(logs: Sequence[CommandFile]) -> list[Fit]:
     """Vehicles that fit every log."""
     for log in logs[1:]:
         _check_same(logs[0], log)
     return fitting(logs[0].drive) if logs else []
 
 
-def _check_same(first: Log, log: Log) -> None:
+def _check_same(first: CommandFile, log: CommandFile) -> None:
     if set(log.drive.columns) != set(first.drive.columns):
         raise BadInput(
             f"the commands {', '.join(log.drive.columns)}; those of {Path(first.path).name} are "
@@ -111,6 +111,6 @@ def _check_same(first: Log, log: Log) -> None:
         )
 
 
-def _no_choice(logs: Sequence[Log]) -> Choice:
+def _no_choice(logs: Sequence[CommandFile]) -> Choice:
     said = "no vehicle file takes such commands" if logs else "there are no commands that tell"
     return Choice(None, said, (), (), {})

@@ -17,14 +17,14 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
     rotations,
 )
 from rovsim.evaluation.commanded_motion.predicted import cause
-from rovsim.measurement.survey.contents import Drive, Track
+from rovsim.measurement.survey.contents import CommandCandidate, Track
 from rovsim.measurement.survey.grid import Velocities, velocities
 
 LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class MotionFile:
     """One run's motion; its rough velocities are computed when they are needed.
 
     `beside`: further files of the run.
@@ -49,11 +49,11 @@ class Motion:
 
 
 @dataclass(frozen=True, eq=False)
-class Log:
+class CommandFile:
     """One log of commands, and the velocity that each vehicle would get of it."""
 
     path: Path
-    drive: Drive
+    drive: CommandCandidate
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_caused", {})
@@ -72,7 +72,7 @@ class Log:
         return cause(fit.vehicle, commands, float(commands.time[0]), LONGEST)
 
 
-def correlate(motion: Motion, log: Log, fit: Fit) -> CrossCorrelation | None:
+def correlate(motion: MotionFile, log: CommandFile, fit: Fit) -> CrossCorrelation | None:
     """A motion and what a log would cause, correlated; clocks that never meet are moved first."""
     caused = log.caused(fit)
     if motion.measured is None or caused is None:

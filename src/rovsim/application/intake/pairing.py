@@ -7,7 +7,7 @@ from typing import Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.intake.motions import Log, Motion
+from rovsim.application.intake.motions import CommandFile, MotionFile
 from rovsim.application.intake.names import run_key, sensor_key
 from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
 
@@ -19,20 +19,22 @@ class Pair:
     `likely`: the log that its motion speaks for, though something else speaks against it.
     """
 
-    motion: Motion
-    log: Log | None
+    motion: MotionFile
+    log: CommandFile | None
     said: str
-    options: tuple[Log, ...] = ()
-    likely: Log | None = None
+    options: tuple[CommandFile, ...] = ()
+    likely: CommandFile | None = None
 
     @property
-    def shown(self) -> Log | None:
+    def shown(self) -> CommandFile | None:
         """The log whose commands show in the motion, as far as anybody can tell."""
         return self.log or self.likely
 
 
 def pair(
-    motions: Sequence[Motion], logs: Sequence[Log], score: Callable[[Motion, Log], float]
+    motions: Sequence[MotionFile],
+    logs: Sequence[CommandFile],
+    score: Callable[[MotionFile, CommandFile], float],
 ) -> list[Pair]:
     """The commands of each motion; `score` tells how alike two are, 0 where nobody knows."""
     own = {log.path: log for log in logs}
@@ -61,7 +63,7 @@ def _by_content(table: Array) -> list[int | None]:
     return found
 
 
-def _by_name(motions: Sequence[Motion], logs: Sequence[Log]) -> list[int | None]:
+def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
     """The log whose name differs only in the words for motion, sensor and commands.
 
     Where that tells nothing, the only log in the folder of a motion that is alone there.
@@ -87,7 +89,7 @@ def _by_folder(path: Path) -> str:
     return str(path.absolute().parent)
 
 
-def _by_clock(motions: Sequence[Motion], logs: Sequence[Log]) -> list[int | None]:
+def _by_clock(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
     """The only log that runs while a motion does, where clocks go on from run to run."""
     spans = [(log.drive.time.min(), log.drive.time.max()) for log in logs]
     meets = np.array([[m.track.start < b and a < m.track.end for a, b in spans] for m in motions])
@@ -98,7 +100,7 @@ def _by_clock(motions: Sequence[Motion], logs: Sequence[Log]) -> list[int | None
 
 
 def _decided(
-    motion: Motion, logs: list[Log], scores: Array,
+    motion: MotionFile, logs: list[CommandFile], scores: Array,
     content: int | None, name: int | None, clock: int | None,
 ) -> Pair:  # fmt: skip
     if content is not None and name in (None, content):

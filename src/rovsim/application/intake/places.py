@@ -4,8 +4,8 @@ import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rovsim.application.intake.collect_files import CollectedFiles
 from rovsim.application.intake.names import campaign_name
-from rovsim.application.intake.survey import Survey
 from rovsim.measurement.survey.contents import Contents
 
 CONVERTED = "converted"  # folder of copies whose columns have rovsim's names and units
@@ -27,8 +27,8 @@ class Places:
     names: dict[Path, str] = field(default_factory=dict)
 
     @staticmethod
-    def beside(found: Survey, out: Path) -> "Places":
-        """Of the files of a survey: they stay where they are."""
+    def beside(found: CollectedFiles, out: Path) -> "Places":
+        """Of the files that were collected: they stay where they are."""
         out = out.absolute()
         every = [file for one in (*found.motions, *found.logs) for file in one.files]
         files = [one.path.absolute() for one in every if one.original is None]

@@ -22,7 +22,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Proposal:
+class CampaignProposal:
     """The content of campaign.yaml with `ANSWER` where something is asked.
 
     `comments` by place (`mocap.body`, `runs.0`); `found` are lines about the files, `checks` what
@@ -37,7 +37,7 @@ class Proposal:
     checks: tuple[str, ...] = ()
     copies: Mapping[Path, str] = field(default_factory=dict)
 
-    def fully(self, answers: Mapping[str, str]) -> "Proposal":
+    def fully(self, answers: Mapping[str, str]) -> "CampaignProposal":
         """The proposal with an answer to every question.
 
         Raises:
@@ -48,7 +48,7 @@ class Proposal:
             raise _ask_for(question)
         return found
 
-    def answered(self, answers: Mapping[str, str]) -> "Proposal":
+    def answered(self, answers: Mapping[str, str]) -> "CampaignProposal":
         """The proposal with answers by place; those that are empty stay open.
 
         Raises:
@@ -104,4 +104,4 @@ def _copied(content: Any) -> Any:
     return [_copied(value) for value in content] if isinstance(content, list) else content
 
 
-__all__ = ["ANSWER", "Proposal", "Question"]
+__all__ = ["ANSWER", "CampaignProposal", "Question"]

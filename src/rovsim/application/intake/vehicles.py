@@ -13,7 +13,7 @@ from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.tidying import tidy_commands
-from rovsim.measurement.survey.contents import Drive, Kind
+from rovsim.measurement.survey.contents import CommandCandidate, LoggedKind
 from rovsim.measurement.survey.csv_files import within
 
 OUTPUTS = "SERVO"  # columns of a log that may hold more outputs than thrusters
@@ -29,17 +29,17 @@ class Fit:
     name: str
     vehicle: Vehicle
     columns: tuple[str, ...]
-    kind: Kind
+    kind: LoggedKind
     by_name: bool
 
 
-def fitting(drive: Drive) -> list[Fit]:
+def fitting(drive: CommandCandidate) -> list[Fit]:
     """Vehicles of conf/vehicle/ that the columns allow; only those with the same names, if any."""
     fits = [fit for name in conf_names("vehicle") if (fit := _fit(name, drive)) is not None]
     return [fit for fit in fits if fit.by_name] or fits
 
 
-def _fit(name: str, drive: Drive) -> Fit | None:
+def _fit(name: str, drive: CommandCandidate) -> Fit | None:
     vehicle = load_vehicle(name)
     expected = vehicle.command_columns
     if drive.kind in ("demand", "wrench"):
@@ -63,15 +63,15 @@ def _fit(name: str, drive: Drive) -> Fit | None:
     return None
 
 
-def _kind(drive: Drive, vehicle: Vehicle) -> Kind | None:
+def _kind(drive: CommandCandidate, vehicle: Vehicle) -> LoggedKind | None:
     """Kind by the columns of thrusters; those of angles are rad in any log."""
     own = [n for n, angle in zip(vehicle.command_columns, vehicle.angles, strict=True) if not angle]
     value = drive.of(own).ravel()
-    kinds: tuple[Kind, ...] = ("pwm", "normalized")
+    kinds: tuple[LoggedKind, ...] = ("pwm", "normalized")
     return next((kind for kind in kinds if within(value, kind)), None)
 
 
-def _drives(vehicle: Vehicle, drive: Drive) -> bool:
+def _drives(vehicle: Vehicle, drive: CommandCandidate) -> bool:
     """Whether the vehicle can do what the log asks of it."""
     log = drive.log()
     moving = {axis for k, axis in enumerate(log.axis_numbers) if np.nanstd(drive.value[:, k]) > 0}
@@ -83,7 +83,7 @@ def _drives(vehicle: Vehicle, drive: Drive) -> bool:
     return mixer is not None and all(vehicle.thrusters.mixing()[:, axis].any() for axis in moving)
 
 
-def as_logged(drive: Drive, fit: Fit, path: Path) -> Commands | None:
+def as_logged(drive: CommandCandidate, fit: Fit, path: Path) -> Commands | None:
     """The commands of a log as the vehicle takes them; None where they are not of that kind."""
     log = drive.log(fit.columns, fit.kind)
     angles = [

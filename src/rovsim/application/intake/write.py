@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.application.intake.proposal import Proposal
+from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.intake.yaml_file import as_yaml
 from rovsim.core.errors import BadInput
 from rovsim.core.files import copy_file, write_text
@@ -30,7 +30,7 @@ def check_place(out: Path, force: bool = False) -> None:
         )
 
 
-def write_proposal(proposal: Proposal, out: Path, force: bool = False) -> Path:
+def write_proposal(proposal: CampaignProposal, out: Path, force: bool = False) -> Path:
     """Write campaign.yaml into the folder `out`, which is made if need be; returns the file.
 
     Raises:

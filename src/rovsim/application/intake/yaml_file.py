@@ -7,7 +7,7 @@ from typing import Any, Mapping
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from rovsim.application.intake.proposal import Proposal, Question
+from rovsim.application.intake.proposal import CampaignProposal, Question
 
 WIDTH = 110
 HEAD = (
@@ -17,7 +17,7 @@ HEAD = (
 )
 
 
-def as_yaml(proposal: Proposal) -> str:
+def as_yaml(proposal: CampaignProposal) -> str:
     """The text of campaign.yaml; every question is a comment above the line it asks for."""
     document = CommentedMap()
     for key, value in proposal.content.items():
@@ -35,7 +35,7 @@ def as_yaml(proposal: Proposal) -> str:
     return text.getvalue()
 
 
-def _open(proposal: Proposal) -> list[str]:
+def _open(proposal: CampaignProposal) -> list[str]:
     count = len(proposal.questions)
     asked = f"{count} line{'s' * (count > 1)} to be answered: look for ANSWER." if count else ""
     return [*([asked] if asked else []), *(f"CHECK: {check}" for check in proposal.checks)]

@@ -3,7 +3,7 @@
 from functools import partial
 from typing import Mapping, Sequence
 
-from rovsim.application.pipeline.recordings import Measured
+from rovsim.application.pipeline.recordings import MeasuredCampaign
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Recent, Remade
 from rovsim.core.progress import counted
@@ -36,7 +36,7 @@ def bands_when_asked(
 
 
 def cover_test_runs(
-    models: Sequence[Model], data: Measured, settings: SimulationSettings
+    models: Sequence[Model], data: MeasuredCampaign, settings: SimulationSettings
 ) -> Bands | None:
     """What the bands of models hold of the test runs, in windows of 2 s and longer.
 

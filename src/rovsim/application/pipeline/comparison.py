@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 
 from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
-from rovsim.application.pipeline.recordings import Measured
+from rovsim.application.pipeline.recordings import MeasuredCampaign
 from rovsim.application.pipeline.replays import replay_when_asked, score_run
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Remade
@@ -22,7 +22,9 @@ from rovsim.results.force_budget import BudgetTotals
 DRAWN = 12  # runs: a report of fifty figures can still be read
 
 
-def compare(data: Measured, models: Sequence[Model], settings: SimulationSettings) -> ReportData:
+def compare(
+    data: MeasuredCampaign, models: Sequence[Model], settings: SimulationSettings
+) -> ReportData:
     """Replays, scores and findings of all models, forces of the last.
 
     Once over the runs, one after the other: what memory holds does not grow with their number.
@@ -69,7 +71,7 @@ def _choose_drawn(comparison: Comparison, model: str, runs: Sequence[str]) -> tu
 
 
 def _searches(
-    data: Measured, models: Sequence[Model], settings: SimulationSettings
+    data: MeasuredCampaign, models: Sequence[Model], settings: SimulationSettings
 ) -> list[ConditionSearch]:
     splits = [data.quality[run].split for run in data.motions]
     moving = [model for model in models if not model.inert]

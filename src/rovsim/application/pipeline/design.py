@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim.application.pipeline.models import require_physics
-from rovsim.application.pipeline.recordings import Measured
+from rovsim.application.pipeline.recordings import MeasuredCampaign
 from rovsim.core.errors import BadInput
 from rovsim.core.files import appearing_together, write_text
 from rovsim.core.progress import staged
@@ -39,7 +39,9 @@ class Designed:
     picture: PlannedFlight
 
 
-def design(data: Measured, model: Model, question: Question, catalogue: Catalogue) -> Designed:
+def design(
+    data: MeasuredCampaign, model: Model, question: Question, catalogue: Catalogue
+) -> Designed:
     """Plan the next flight of a campaign.
 
     Raises:

@@ -30,7 +30,7 @@ from rovsim.results.quality import Quality
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class MeasuredCampaign:
     """A campaign as measured: motions by run, their poses before the filter, quality reports.
 
     Runs beyond what memory should hold are read again when they are asked for.
@@ -73,7 +73,9 @@ def derive_motion(poses: Stage, quality: Quality, settings: SignalSettings) -> M
     return motion
 
 
-def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = False) -> Measured:
+def measure(
+    campaign: Campaign, settings: SignalSettings, even_unusable: bool = False
+) -> MeasuredCampaign:
     """Read, check and clean all usable runs of a campaign.
 
     Raises:
@@ -94,13 +96,13 @@ def measure(campaign: Campaign, settings: SignalSettings, even_unusable: bool = 
         if quality[run.id].unusable is None:
             stages.keep(run.id, resampled(recording, settings))
             motions.keep(run.id, derive(run.id))
-    found = Measured(campaign, load_campaign_vehicle(campaign), motions, quality, stages)
+    found = MeasuredCampaign(campaign, load_campaign_vehicle(campaign), motions, quality, stages)
     if not even_unusable:
         refuse_unusable(found)
     return found
 
 
-def refuse_unusable(data: Measured) -> None:
+def refuse_unusable(data: MeasuredCampaign) -> None:
     """Refuse a campaign without a run that can be used.
 
     Raises:

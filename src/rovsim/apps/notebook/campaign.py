@@ -15,7 +15,7 @@ from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_models, load_one_model, write_with_effects
 from rovsim.application.pipeline.recordings import (
-    Measured,
+    MeasuredCampaign,
     measure,
     open_campaign,
     refuse_unusable,
@@ -50,7 +50,7 @@ class Campaign:
 
     settings: Settings
     catalogue: Catalogue
-    data: Measured
+    data: MeasuredCampaign
     _compared: dict[tuple[str, ...], ShownComparison] = field(default_factory=dict)
 
     @property

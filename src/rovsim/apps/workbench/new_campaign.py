@@ -5,7 +5,7 @@ from typing import Any, Callable, Mapping, Sequence
 
 from nicegui import ui
 
-from rovsim.application.intake.proposal import Proposal, Question
+from rovsim.application.intake.proposal import CampaignProposal, Question
 from rovsim.apps.workbench.folders import DESCRIPTION, shown
 from rovsim.apps.workbench.parts import Failure, heading, section, text
 from rovsim.core.errors import RovsimError
@@ -26,7 +26,7 @@ TOPICS = {
 
 
 def show(
-    proposal: Proposal,
+    proposal: CampaignProposal,
     folder: Path,
     write: Callable[[Mapping[str, str]], None],
     leave: Callable[[], None],
@@ -67,7 +67,7 @@ def show(
     failure = Failure()
 
 
-def _guesses(proposal: Proposal) -> None:
+def _guesses(proposal: CampaignProposal) -> None:
     """What was taken for a reason that may be wrong."""
     told = list_guesses(proposal)
     if not told:
@@ -78,7 +78,7 @@ def _guesses(proposal: Proposal) -> None:
             text(line)
 
 
-def list_guesses(proposal: Proposal) -> list[str]:
+def list_guesses(proposal: CampaignProposal) -> list[str]:
     """What was taken and why, a line each: of the campaign, then of runs, alike ones together."""
     told: list[str] = []
     runs: dict[str, list[str]] = {}  # that a reason is of
@@ -103,12 +103,12 @@ def tell_unanswered(questions: Sequence[Question], answers: Mapping[str, str]) -
     return f"No answer yet: {names}. Answer every question; no file does." if left else ""
 
 
-def _run(proposal: Proposal, place: str) -> str:
+def _run(proposal: CampaignProposal, place: str) -> str:
     """Id of the run that a key is of."""
     return _find(proposal, ".".join(place.split(".")[:2]))["id"]
 
 
-def _find(proposal: Proposal, place: str) -> Any:
+def _find(proposal: CampaignProposal, place: str) -> Any:
     """What campaign.yaml would hold at a place."""
     value: Any = proposal.content
     for part in place.split("."):
@@ -116,7 +116,7 @@ def _find(proposal: Proposal, place: str) -> Any:
     return value
 
 
-def _value(proposal: Proposal, place: str) -> str:
+def _value(proposal: CampaignProposal, place: str) -> str:
     value = _find(proposal, place)
     is_list = isinstance(value, list) and value and isinstance(value[0], str)
     told = ", ".join(value) if is_list else value

@@ -11,7 +11,7 @@ from rovsim.apps.workbench.parts import chart, computed
 from rovsim.apps.workbench.where import ERRORS, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.entries import tabulate
 from rovsim.evaluation.error_conditions.lowered import Lowered, find_most_lowered
 from rovsim.reporting.charts import chart_bins
@@ -87,7 +87,7 @@ def lowered_chart(found: Lowered) -> Options:
     }  # fmt: skip
 
 
-def _curve(name: str, color: str, dash: str, table: Table, size: bool) -> list[Options]:
+def _curve(name: str, color: str, dash: str, table: BinnedErrors, size: bool) -> list[Options]:
     curve = chart_bins(tabulate(table))
     height = table.rms if size else curve.mean
     at, mean, error = (x[curve.judged] for x in (curve.center, height, curve.error))

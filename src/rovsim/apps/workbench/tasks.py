@@ -4,11 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from rovsim.application.intake.compose import propose
-from rovsim.application.intake.proposal import Proposal
+from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_models, load_one_model
-from rovsim.application.pipeline.recordings import Measured, measure, open_campaign
+from rovsim.application.pipeline.recordings import MeasuredCampaign, measure, open_campaign
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.sections import TrainingSettings
@@ -73,14 +73,14 @@ def report_into(
 
 def _open(
     settings: WorkbenchSettings, even_unusable: bool = False
-) -> tuple[Catalogue, Measured, Model]:
+) -> tuple[Catalogue, MeasuredCampaign, Model]:
     """All effects, the campaign as measured, and the one model that settings name."""
     catalogue = load_catalogue(settings.effect_files)
     data = measure(open_campaign(settings.campaign), settings.signals, even_unusable)
     return catalogue, data, load_one_model(settings.model, data.vehicle, catalogue)
 
 
-def look_into(folder: Path, scratch: Path) -> Proposal:
+def look_into(folder: Path, scratch: Path) -> CampaignProposal:
     """What a campaign.yaml in a folder of recordings would say; copies lie in `scratch`."""
     return propose([folder], folder, scratch)
 

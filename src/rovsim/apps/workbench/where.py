@@ -22,7 +22,7 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.signs import minus
-from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.reporting.charts import chart_bins
@@ -114,7 +114,7 @@ class Where:
         """Show the bins of one condition."""
         self.chosen |= {"axis": axis, "condition": condition}
         self.place.tell(self.chosen)
-        found: Table = self.searched.explanation.tables[axis][condition]
+        found: BinnedErrors = self.searched.explanation.tables[axis][condition]
         unit = ACCELERATION_UNITS[AXES.index(axis)]
         self.bins.clear()
         with self.bins:
@@ -134,7 +134,7 @@ class Where:
             toggle.props('no-caps dense flat toggle-color=primary aria-label="Bin"').classes("bins")
             self.series = ui.column().classes("area")
 
-    def _samples(self, axis: str, found: Table, chosen: int) -> None:
+    def _samples(self, axis: str, found: BinnedErrors, chosen: int) -> None:
         """The blocks of a bin among all others, over time, run by run."""
         blocks = self.searched.explanation.blocks
         assert blocks is not None  # a table was made of them
@@ -149,7 +149,7 @@ class Where:
                     chart(options, f"Samples of run {run} over time", 170)
 
 
-def _span(found: Table, k: int) -> str:
+def _span(found: BinnedErrors, k: int) -> str:
     edges, unit = found.binning.edges, found.binning.condition.unit
     low, high = (np.degrees(edges[k : k + 2]) if unit == "rad" else edges[k : k + 2]).tolist()
     if len(edges) == 2:

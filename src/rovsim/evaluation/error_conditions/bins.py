@@ -39,7 +39,7 @@ class Binning:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class BinnedErrors:
     """One axis by one condition, b bins: `mean`, `error` of the mean, `rms`, `effective` (b,)."""
 
     binning: Binning
@@ -114,7 +114,7 @@ def sums(binning: Binning, error: Array, stretch: Array) -> Array:
     return total
 
 
-def bin_errors(binning: Binning, error: Array, stretch: Array) -> Table:
+def bin_errors(binning: Binning, error: Array, stretch: Array) -> BinnedErrors:
     """Means, their standard errors and the explained share of the errors (n,) of one axis."""
     total, safe = sums(binning, error, stretch), np.maximum(binning.count, 1)
     mean = total.sum(axis=1) / safe
@@ -128,7 +128,7 @@ def bin_errors(binning: Binning, error: Array, stretch: Array) -> Table:
     gained = np.sum((binning.count * (mean**2 - spread))[binning.judged])
     power = float(np.sum(error**2))
     share = max(float(gained) / power, 0.0) if power > 0 else 0.0
-    return Table(binning, mean, np.sqrt(spread), np.sqrt(square), alone, share)
+    return BinnedErrors(binning, mean, np.sqrt(spread), np.sqrt(square), alone, share)
 
 
 def weigh_evidence(cuts: Sequence[Binning], error: Array, stretch: Array, signs: Array) -> Array:

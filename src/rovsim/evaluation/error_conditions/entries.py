@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.findings import Explanation, Finding
 from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.evaluation.error_conditions.sentences import UNITS, say, summarize
@@ -62,7 +62,7 @@ def _finding(found: Finding) -> ConditionFinding:
     )
 
 
-def tabulate(one: Table) -> ConditionTable:
+def tabulate(one: BinnedErrors) -> ConditionTable:
     """One axis by one condition; a value for each bin."""
     at = one.binning
     return ConditionTable(

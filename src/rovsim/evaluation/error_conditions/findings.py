@@ -14,8 +14,8 @@ from threadpoolctl import threadpool_limits
 
 from rovsim import AXES
 from rovsim.evaluation.error_conditions.bins import (
+    BinnedErrors,
     Binning,
-    Table,
     bin_errors,
     cut_bins,
     number_stretches,
@@ -48,7 +48,7 @@ class Finding:
     condition: str
     share_of_error: float
     chance: float
-    table: Table
+    table: BinnedErrors
     alike: tuple[Condition, ...] = ()
     after: tuple[str, ...] = ()
     constant: float = 0.0
@@ -69,7 +69,7 @@ class Explanation:
     """Errors of one model by axis and condition, and the findings, largest share first."""
 
     blocks: Blocks | None
-    tables: dict[str, dict[str, Table]]
+    tables: dict[str, dict[str, BinnedErrors]]
     findings: list[Finding] = field(default_factory=list)
     enough: bool = True  # False: too little was recorded to judge anything
 
@@ -89,7 +89,7 @@ def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Expl
     """
     if len(blocks.time) < 2:
         return Explanation.nothing()
-    tables: dict[str, dict[str, Table]] = {axis: {} for axis in AXES}
+    tables: dict[str, dict[str, BinnedErrors]] = {axis: {} for axis in AXES}
     found: list[Finding] = []
     enough = True
     for k in np.flatnonzero(blocks.axes).tolist():

@@ -7,7 +7,12 @@ import numpy as np
 
 from rovsim import AXES
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.evaluation.error_conditions.bins import Table, bin_errors, cut_bins, number_stretches
+from rovsim.evaluation.error_conditions.bins import (
+    BinnedErrors,
+    bin_errors,
+    cut_bins,
+    number_stretches,
+)
 from rovsim.evaluation.error_conditions.conditions import (
     HEADING,
     Blocks,
@@ -28,8 +33,8 @@ class Lowered:
 
     axis: str
     condition: Condition
-    before: Table
-    after: Table
+    before: BinnedErrors
+    after: BinnedErrors
     size: bool
     removed: float
 
@@ -104,7 +109,7 @@ def _compare(
             yield Lowered(axis, condition, *tables, size, removed)
 
 
-def _removed(before: Table, after: Table, size: bool) -> float:
+def _removed(before: BinnedErrors, after: BinnedErrors, size: bool) -> float:
     """Mean square that is gone from the bins that were judged; zero where there is only one."""
     count = before.binning.count * before.binning.judged
     if len(count) < 2:

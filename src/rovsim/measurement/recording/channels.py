@@ -17,7 +17,7 @@ Axes = Literal["world", "body", "none"]
 
 
 @dataclass(frozen=True)
-class Kind:
+class ChannelKind:
     """A kind of channel: its columns in order, their unit, and whose axes they go along."""
 
     columns: tuple[str, ...]
@@ -29,15 +29,15 @@ class Kind:
 # `specific_force` that of `sensors.imu_at` (acceleration less gravity: (0, 0, -g) at rest and
 # level), `depth` that of `sensors.depth_at` below the surface, whatever the world's axes. Angles
 # are R = Rz(yaw) Ry(pitch) Rx(roll); `euler` holds attitudes of which some angles are missing.
-KINDS: Mapping[str, Kind] = {
-    "position": Kind(("x", "y", "z"), "m", "world"),
-    "attitude": Kind(("qw", "qx", "qy", "qz"), "1", "body"),
-    "euler": Kind(("roll", "pitch", "yaw"), "rad", "body"),
-    "depth": Kind(("depth",), "m", "none"),
-    "velocity": Kind(("u", "v", "w"), "m/s", "body"),
-    "rates": Kind(("p", "q", "r"), "rad/s", "body"),
-    "specific_force": Kind(("ax", "ay", "az"), "m/s2", "body"),
-    "voltage": Kind(("voltage",), "V", "none"),
+KINDS: Mapping[str, ChannelKind] = {
+    "position": ChannelKind(("x", "y", "z"), "m", "world"),
+    "attitude": ChannelKind(("qw", "qx", "qy", "qz"), "1", "body"),
+    "euler": ChannelKind(("roll", "pitch", "yaw"), "rad", "body"),
+    "depth": ChannelKind(("depth",), "m", "none"),
+    "velocity": ChannelKind(("u", "v", "w"), "m/s", "body"),
+    "rates": ChannelKind(("p", "q", "r"), "rad/s", "body"),
+    "specific_force": ChannelKind(("ax", "ay", "az"), "m/s2", "body"),
+    "voltage": ChannelKind(("voltage",), "V", "none"),
 }
 
 

@@ -15,8 +15,8 @@ grid          rough velocities on an even clock, to compare recordings with
 timing        rates, jitter, gaps
 """
 
-from rovsim.measurement.survey.contents import Contents, Drive, Track
+from rovsim.measurement.survey.contents import CommandCandidate, Contents, Track
 from rovsim.measurement.survey.gather import gather
 from rovsim.measurement.survey.look import look
 
-__all__ = ["Contents", "Drive", "Track", "gather", "look"]
+__all__ = ["CommandCandidate", "Contents", "Track", "gather", "look"]

@@ -15,7 +15,7 @@ from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 from rovsim.measurement.recording.rosbag2.commands import MANUAL, PULSES, pushed
 from rovsim.measurement.recording.rosbag2.motion import POSES, read_bag
 from rovsim.measurement.recording.tidying import tidy_export
-from rovsim.measurement.survey.contents import Contents, Drive, Kind, Track
+from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.csv_files import within
 
 # Topics that say where the vehicle should be, or where something else is.
@@ -112,7 +112,7 @@ def _of_channels(path: Path, beside: dict[str, str], notes: list[str]) -> Iterat
         notes.append(f"{', '.join(beside.values())}: {error.found}.")
 
 
-def _drives(bag: Bag, notes: list[str]) -> Iterator[Drive]:
+def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
     found = [t for t in bag.topics if _place(bag.topics[t]) < len(OUTPUTS) and not WISHES.search(t)]
     for topic in sorted(found, key=lambda topic: _place(bag.topics[topic])):
         try:
@@ -128,7 +128,7 @@ def _place(kind: str) -> int:
     return min(matching, default=len(OUTPUTS))
 
 
-def _drive(bag: Bag, topic: str) -> Drive:
+def _drive(bag: Bag, topic: str) -> CommandCandidate:
     kind, first = bag.first(topic, "commands.topic")
     name = _short(kind)
     if name in PULSES:
@@ -137,16 +137,29 @@ def _drive(bag: Bag, topic: str) -> Drive:
         )
         return _outputs(found) if name == "RCOut" else _pilot(found)
     if "Wrench" in name:
-        return Drive("rosbag2", tuple(AXES), *_numbers(bag, topic, _forces), "wrench",
-                     f"messages of the type {name}", topic)  # fmt: skip
+        return CommandCandidate(
+            "rosbag2",
+            tuple(AXES),
+            *_numbers(bag, topic, _forces),
+            "wrench",
+            f"messages of the type {name}",
+            topic,
+        )
     if name == "ManualControl":
         time, value = _numbers(bag, topic, lambda m: [pushed(m, axis) for axis in MANUAL])
-        return Drive("rosbag2", tuple(MANUAL), time, value, "demand",
-                     "the pilot's sticks (ManualControl)", topic)  # fmt: skip
+        return CommandCandidate(
+            "rosbag2",
+            tuple(MANUAL),
+            time,
+            value,
+            "demand",
+            "the pilot's sticks (ManualControl)",
+            topic,
+        )
     time, value = _numbers(bag, topic, _padded("data", len(first.data)))
     columns = tuple(f"t{k + 1}" for k in range(value.shape[1]))
     how, said = _kind(value)
-    return Drive("rosbag2", columns, time, value, how, f"{name}: {said}", topic)
+    return CommandCandidate("rosbag2", columns, time, value, how, f"{name}: {said}", topic)
 
 
 def _padded(field: str, count: int) -> Callable[[Any], list[float]]:
@@ -167,7 +180,7 @@ def _numbers(bag: Bag, topic: str, numbers: Callable) -> tuple[Array, Array]:
     return found.time, found.value
 
 
-def _kind(value: Array) -> tuple[Kind | None, str]:
+def _kind(value: Array) -> tuple[LoggedKind | None, str]:
     for kind, said in (("pwm", "pulses in us"), ("normalized", "within -1 and 1")):
         if within(value.ravel(), kind):  # type: ignore[arg-type]
             return kind, said  # type: ignore[return-value]
@@ -179,20 +192,34 @@ def _given(found: Samples) -> Array:
     return (~absent(found.value) & np.isfinite(found.value)).any(axis=0)
 
 
-def _outputs(found: Samples) -> Drive:
+def _outputs(found: Samples) -> CommandCandidate:
     numbers = np.flatnonzero(_given(found)) + 1
     columns = tuple(f"SERVO{k}" for k in numbers)
-    return Drive("rosbag2", columns, found.time, found.value[:, numbers - 1], "pwm",
-                 "outputs to thrusters (RCOut), in their order", found.topic)  # fmt: skip
+    return CommandCandidate(
+        "rosbag2",
+        columns,
+        found.time,
+        found.value[:, numbers - 1],
+        "pwm",
+        "outputs to thrusters (RCOut), in their order",
+        found.topic,
+    )
 
 
-def _pilot(found: Samples) -> Drive:
+def _pilot(found: Samples) -> CommandCandidate:
     given = _given(found)
     columns = [c for c in PILOT if (k := _channel_number(c)) <= len(given) and given[k - 1]]
     value = found.value[:, [_channel_number(c) - 1 for c in columns]]
-    return Drive("rosbag2", tuple(columns), found.time, value, "demand",
-                 "the pilot's radio by ArduSub's order of channels", found.topic,
-                 tuple(PILOT[c] for c in columns))  # fmt: skip
+    return CommandCandidate(
+        "rosbag2",
+        tuple(columns),
+        found.time,
+        value,
+        "demand",
+        "the pilot's radio by ArduSub's order of channels",
+        found.topic,
+        tuple(PILOT[c] for c in columns),
+    )
 
 
 def _channel_number(column: str) -> int:

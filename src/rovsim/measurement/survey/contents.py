@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.readers import Export
 
-Kind = Literal["pwm", "normalized", "demand", "wrench"]
+LoggedKind = Literal["pwm", "normalized", "demand", "wrench"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Track:
 
 
 @dataclass(frozen=True, eq=False)
-class Drive:
+class CommandCandidate:
     """What looks like commands: `time` (m,) s and `value` (m, c) as logged.
 
     `kind` None: their size does not say. `said` is how the rest is known. `axes` and `topic` as in
@@ -53,7 +53,7 @@ class Drive:
     columns: tuple[str, ...]
     time: Array
     value: Array
-    kind: Kind | None
+    kind: LoggedKind | None
     said: str
     topic: str | None = None
     axes: tuple[str, ...] = ()
@@ -70,7 +70,9 @@ class Drive:
         """Columns without the minus that turns their sign."""
         return tuple(name.removeprefix("-") for name in self.columns)
 
-    def log(self, columns: tuple[str, ...] | None = None, kind: Kind | None = None) -> CommandLog:
+    def log(
+        self, columns: tuple[str, ...] | None = None, kind: LoggedKind | None = None
+    ) -> CommandLog:
         """The section `commands` that reads it."""
         content: dict[str, Any] = {
             "format": self.format,
@@ -101,7 +103,7 @@ class Contents:
     path: Path
     format: str
     tracks: tuple[Track, ...] = ()
-    drives: tuple[Drive, ...] = ()
+    drives: tuple[CommandCandidate, ...] = ()
     original: Path | None = None
     notes: tuple[str, ...] = ()
     beside: tuple["Contents", ...] = ()

@@ -22,7 +22,7 @@ from rovsim.measurement.recording.table import (
 )
 from rovsim.measurement.recording.tidying import tidy_export
 from rovsim.measurement.recording.times import times
-from rovsim.measurement.survey.contents import Contents, Drive, Kind, Track
+from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.headings import rewritten
 
 # Columns that count or watch something, whatever their size.
@@ -131,7 +131,7 @@ def _unknown(lines: Lines) -> str:
     return _some(told) + (f". They may be {unit}" if unit else "")
 
 
-def _drive(lines: Lines) -> Drive | None:
+def _drive(lines: Lines) -> CommandCandidate | None:
     """Columns that look like commands, if there are any."""
     if "time_s" not in lines.names:
         return None
@@ -141,14 +141,24 @@ def _drive(lines: Lines) -> Drive | None:
         value = np.stack([columns[name] for name in radio.values()], axis=1)
         signed = tuple("-" * (c[0] == "-") + name for c, name in radio.items())
         said = "the pilot's radio by ArduSub's order of channels"
-        return Drive("csv", signed, time, value, "demand", said,
-                     axes=tuple(PILOT[c] for c in radio), auxiliary=voltage)  # fmt: skip
+        return CommandCandidate(
+            "csv",
+            signed,
+            time,
+            value,
+            "demand",
+            said,
+            axes=tuple(PILOT[c] for c in radio),
+            auxiliary=voltage,
+        )
     kind, chosen, said = _kind(columns)
     if not chosen:
         return None
     value = np.stack([columns[name] for name in chosen], axis=1)
     rest = {name: column for name, column in columns.items() if name not in chosen}
-    return Drive("csv", tuple(chosen), time, value, kind, said, auxiliary=voltage, rest=rest)
+    return CommandCandidate(
+        "csv", tuple(chosen), time, value, kind, said, auxiliary=voltage, rest=rest
+    )
 
 
 def _numbers(table: Lines, place: int) -> Array | None:
@@ -167,7 +177,7 @@ def _radio(columns: dict[str, Array]) -> dict[str, str]:
     return {c: numbered[c.lstrip("-")] for c in PILOT if c.lstrip("-") in numbered}
 
 
-def _kind(columns: dict[str, Array]) -> tuple[Kind | None, list[str], str]:
+def _kind(columns: dict[str, Array]) -> tuple[LoggedKind | None, list[str], str]:
     """Kind, columns and how both are known."""
     axes = [name for name in columns if name in AXES]
     if len(axes) > 1 or (axes and len(columns) == 1):
@@ -191,7 +201,7 @@ def _kind(columns: dict[str, Array]) -> tuple[Kind | None, list[str], str]:
     return None, ordered(numbered), _sizes([columns[name] for name in numbered])
 
 
-def within(value: Array, kind: Kind) -> bool:
+def within(value: Array, kind: LoggedKind) -> bool:
     """Whether a column can be of that kind, by the size of its numbers."""
     low, high = ALLOWED[kind][:2]
     known = value[np.isfinite(value)]

@@ -20,7 +20,7 @@ HALF_WINDOW = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Poses:
+class ResampledPoses:
     """Poses on the even clock `time` (n,) s: `position` (n, 3), `attitude` (n, 4); NaN unknown."""
 
     time: Array
@@ -36,7 +36,7 @@ class Velocities:
     nu: Array
 
 
-def even_poses(export: Export | Recording) -> Poses:
+def even_poses(export: Export | Recording) -> ResampledPoses:
     """Found poses as medians over steps of the even clock; short gaps are bridged."""
     seen = export.found
     time, position, attitude = (
@@ -50,7 +50,7 @@ def even_poses(export: Export | Recording) -> Poses:
     known = np.flatnonzero(np.isfinite(middle).all(axis=1))
     filled = np.stack([np.interp(clock, middle[known, 0], c) for c in middle[known, 1:].T], axis=1)
     filled[_far(clock, time)] = np.nan
-    return Poses(clock, filled[:, :3], normalized(filled[:, 3:]))
+    return ResampledPoses(clock, filled[:, :3], normalized(filled[:, 3:]))
 
 
 def even_clock(time: Array) -> Array:

@@ -10,9 +10,9 @@ from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.ardupilot.commands import SOURCES
 from rovsim.measurement.recording.ardupilot.logs import open_log
 from rovsim.measurement.recording.ardupilot.motion import read_log
-from rovsim.measurement.recording.ardupilot.series import Log
+from rovsim.measurement.recording.ardupilot.series import ArduPilotLog
 from rovsim.measurement.recording.tidying import tidy_export
-from rovsim.measurement.survey.contents import Contents, Drive, Track
+from rovsim.measurement.survey.contents import CommandCandidate, Contents, Track
 
 MOST = 16  # outputs and channels of a log
 
@@ -29,7 +29,7 @@ def look_into_log(path: Path) -> Contents:
     return Contents(path, "ardupilot", (track,), drives)
 
 
-def _drives(log: Log) -> Iterator[Drive]:
+def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
     for kind, (name, field) in SOURCES[log.kind].items():
         if name not in log.series:
             continue
@@ -39,11 +39,20 @@ def _drives(log: Log) -> Iterator[Drive]:
         if kind == "SERVO" and len(given):
             columns = tuple(f"SERVO{k}" for k in given)
             said = f"outputs ({name}), in their order"
-            yield Drive("ardupilot", columns, series.time, value[:, given - 1], "pwm", said)
+            yield CommandCandidate(
+                "ardupilot", columns, series.time, value[:, given - 1], "pwm", said
+            )
         elif len(given):
             pilot = {c: k for c in PILOT if (k := int(c.lstrip("-RC"))) in given}
             if pilot:
                 chosen = value[:, [k - 1 for k in pilot.values()]]
                 said = f"the pilot's radio ({name}) by ArduSub's order of channels"
-                yield Drive("ardupilot", tuple(pilot), series.time, chosen, "demand", said,
-                            axes=tuple(PILOT[c] for c in pilot))  # fmt: skip
+                yield CommandCandidate(
+                    "ardupilot",
+                    tuple(pilot),
+                    series.time,
+                    chosen,
+                    "demand",
+                    said,
+                    axes=tuple(PILOT[c] for c in pilot),
+                )

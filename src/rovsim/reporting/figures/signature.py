@@ -17,7 +17,7 @@ from PIL import Image
 from rovsim import AXES
 from rovsim.core.files import write_bytes
 from rovsim.dynamics.effects.parameters import Signature
-from rovsim.evaluation.error_conditions.bins import Table
+from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import MM, WIDTH, styled
 from rovsim.reporting.units import ACCELERATION_UNITS
@@ -41,8 +41,8 @@ class Seen:
     """
 
     signature: Signature
-    missed: Table
-    effect: Table
+    missed: BinnedErrors
+    effect: BinnedErrors
     condition: Array
     time: Array
     error: Array
@@ -96,7 +96,7 @@ def _bins(axes: Axes, seen: Seen) -> None:
     axes.set_ylabel(f"{what} ({ACCELERATION_UNITS[AXES.index(axis)]})")
 
 
-def _height(table: Table, size: bool) -> Array:
+def _height(table: BinnedErrors, size: bool) -> Array:
     return table.rms if size else table.mean
 
 

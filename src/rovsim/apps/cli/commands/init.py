@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 from rovsim.application.intake.compose import propose
-from rovsim.application.intake.proposal import Proposal
+from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.intake.write import check_place, write_proposal
 from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import choose_folder, say
@@ -61,7 +61,7 @@ def _bag(path: Path) -> bool:
     return (path / "metadata.yaml").is_file()
 
 
-def _told(proposal: Proposal, file: Path) -> str:
+def _told(proposal: CampaignProposal, file: Path) -> str:
     parts = ["\n".join(f"  {line}" for line in proposal.found)]
     if proposal.checks:
         parts.append("\n".join(f"CHECK  {line}" for line in proposal.checks))
@@ -75,7 +75,7 @@ def _told(proposal: Proposal, file: Path) -> str:
     return "\n\n".join(parts)
 
 
-def _content(proposal: Proposal, file: Path) -> dict:
+def _content(proposal: CampaignProposal, file: Path) -> dict:
     return {
         "campaign": str(file),
         "found": proposal.found,

@@ -10,7 +10,7 @@ from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.ardupilot.logs import needs, open_log
-from rovsim.measurement.recording.ardupilot.series import Log, Series
+from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.readers import CommandExport, CommandReader
 
@@ -65,7 +65,7 @@ def _wanted(path: Path, log: CommandLog) -> tuple[str, list[int]]:
     return kinds.pop(), [int(part[2]) for part in parts if part]
 
 
-def _series(held: Log, wanted: str) -> tuple[Series, str]:
+def _series(held: ArduPilotLog, wanted: str) -> tuple[Series, str]:
     name, field = SOURCES[held.kind][wanted]
     if name not in held.series:
         raise needs(held, [name], "no commands")

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.measurement.recording.ardupilot.series import Log, Series, no_log
+from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series, no_log
 
 HEAD = b"\xa3\x95"
 FORMAT = 128
@@ -40,7 +40,7 @@ class Format:
     factors: dict[str, float]
 
 
-def read_dataflash(path: Path) -> Log:
+def read_dataflash(path: Path) -> ArduPilotLog:
     """Read the types of messages that matter.
 
     Raises:
@@ -67,7 +67,7 @@ def read_dataflash(path: Path) -> Log:
     if not series:
         raise no_log(path, f"no message of a known type in {len(raw)} bytes")
     notes = (f"{skipped} bytes of the log are damaged and were skipped.",) if skipped else ()
-    return Log(path, "dataflash", series, _submarine(texts), notes)
+    return ArduPilotLog(path, "dataflash", series, _submarine(texts), notes)
 
 
 def _submarine(texts: bytes) -> bool | None:

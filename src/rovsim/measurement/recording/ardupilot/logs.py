@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.ardupilot.dataflash import HEAD, read_dataflash
-from rovsim.measurement.recording.ardupilot.series import RE_RECORD, Log, no_log
+from rovsim.measurement.recording.ardupilot.series import RE_RECORD, ArduPilotLog, no_log
 from rovsim.measurement.recording.ardupilot.telemetry import MARKERS, read_telemetry
 from rovsim.measurement.recording.foreign import read_by
 from rovsim.measurement.recording.signature import Signature, starts_with
@@ -12,7 +12,7 @@ from rovsim.measurement.recording.signature import Signature, starts_with
 READERS = {".bin": read_dataflash, ".tlog": read_telemetry}
 
 
-def open_log(path: Path) -> Log:
+def open_log(path: Path) -> ArduPilotLog:
     """Read a log.
 
     Raises:
@@ -25,7 +25,7 @@ def open_log(path: Path) -> Log:
         return READERS[ending](path)
 
 
-def needs(log: Log, names: list[str], what: str) -> BadInput:
+def needs(log: ArduPilotLog, names: list[str], what: str) -> BadInput:
     """The message for a log without any of the types of messages that tell something."""
     return BadInput(
         f"no messages {' or '.join(names)} ({what})",

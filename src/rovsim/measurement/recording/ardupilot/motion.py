@@ -10,7 +10,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.ardupilot.logs import SIGNATURES, needs, open_log
-from rovsim.measurement.recording.ardupilot.series import Log, Series
+from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.readers import Export, FileAxes, MocapReader
 
@@ -83,7 +83,7 @@ def _check_axes(mocap: Mocap, path: Path) -> None:
         )
 
 
-def _read(log: Log, sources: list[Source]) -> Channel | None:
+def _read(log: ArduPilotLog, sources: list[Source]) -> Channel | None:
     source = next((s for s in sources if s.series in log.series), None)
     if source is None:
         return None
@@ -91,7 +91,7 @@ def _read(log: Log, sources: list[Source]) -> Channel | None:
     return measured(series.time, series.of(source.fields) * source.factor)
 
 
-def _adapt(log: Log, channels: dict[str, Channel]) -> tuple[str, ...]:
+def _adapt(log: ArduPilotLog, channels: dict[str, Channel]) -> tuple[str, ...]:
     """Make what the log holds what the channels mean; say what was left out."""
     notes = []
     if "attitude" in channels:
@@ -110,7 +110,7 @@ def _adapt(log: Log, channels: dict[str, Channel]) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _believed_position(log: Log, channels: dict[str, Channel]) -> list[str]:
+def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[str]:
     """Keep the filter's position where it says that it knows it; its height beside no depth."""
     position = channels.pop("position")
     known = _known(log, position.time)
@@ -124,7 +124,7 @@ def _believed_position(log: Log, channels: dict[str, Channel]) -> list[str]:
     return [f"{left} positions that the filter did not know were left out."] if left else []
 
 
-def _known(log: Log, time: Array) -> Array:
+def _known(log: ArduPilotLog, time: Array) -> Array:
     """Where the last status of the filter said that the horizontal position is estimated."""
     given = next(((s, f) for s, f in STATUS[log.kind] if s in log.series), None)
     if given is None:
@@ -140,7 +140,7 @@ def _in_order(series: Series) -> Series:
     return series.where(np.argsort(series.time, kind="stable"))
 
 
-def _modes(log: Log) -> tuple[str, ...]:
+def _modes(log: ArduPilotLog) -> tuple[str, ...]:
     """In which flight modes it was recorded: all but MANUAL have the autopilot in the loop."""
     name, field = ("MODE", "ModeNum") if log.kind == "dataflash" else ("HEARTBEAT", "custom_mode")
     if name not in log.series or log.submarine is False:

@@ -30,7 +30,7 @@ class Series:
 
 
 @dataclass(frozen=True, eq=False)
-class Log:
+class ArduPilotLog:
     """A log: its kind (`dataflash`, `telemetry`), series by type of message, and what to know.
 
     `submarine` is None where the log does not say what the vehicle is.

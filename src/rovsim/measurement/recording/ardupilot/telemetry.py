@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.extras import require
-from rovsim.measurement.recording.ardupilot.series import Log, Series, no_log
+from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series, no_log
 
 # https://mavlink.io/en/guide/serialization.html: marker, lengths around the payload
 MARKERS = {0xFD: 12, 0xFE: 8}
@@ -24,7 +24,7 @@ REBOOT = 1.0  # s by which the time since boot may step back and still be a late
 Received = tuple[float, Any]  # s since 1970, message
 
 
-def read_telemetry(path: Path) -> Log:
+def read_telemetry(path: Path) -> ArduPilotLog:
     """Read the types of messages that matter, of the vehicle itself.
 
     Raises:
@@ -45,7 +45,7 @@ def read_telemetry(path: Path) -> Log:
         by_type[message.get_type()].append((received, message))
     offset, notes = _boot(found)
     series = {name: _series(messages, offset) for name, messages in by_type.items()}
-    return Log(path, "telemetry", series, submarine, notes)
+    return ArduPilotLog(path, "telemetry", series, submarine, notes)
 
 
 def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]:
