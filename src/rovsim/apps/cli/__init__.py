@@ -5,7 +5,8 @@ complaint   that message
 untaken     keys that a command has no use for
 dispatch    from composed settings to a command
 commands    the commands
-output      where a command writes, and what it says
+opening     the campaign of a command, and where it writes
+output      what it says, and where it may write
 sweep       one job of a Hydra multirun
 completion  what the shell's Tab key asks
 """

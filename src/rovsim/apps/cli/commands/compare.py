@@ -10,10 +10,10 @@ runs lies within what they leave open. A report.html of `rovsim diagnose` there 
 
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.models import load_models
-from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings
-from rovsim.apps.cli.output import choose_folder, join_files, say
+from rovsim.apps.cli.opening import measure_campaign
+from rovsim.apps.cli.output import join_files, say
 from rovsim.core.files import appearing_together
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.kept import keep_other
@@ -28,9 +28,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     """Compare, then write numbers, figures and the report."""
     from rovsim.reporting.html.folder import present
 
-    campaign = open_campaign(settings.campaign)
-    out = choose_folder(settings, f"results/{campaign.name}/compare")
-    data = measure(campaign, settings.signals)
+    data, out = measure_campaign(settings, "compare")
     models = load_models(settings.model, data.vehicle, catalogue)
     found = compare(data, models, settings)
     assert found.comparison is not None
@@ -43,8 +41,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         found.comparison.write(folder / "comparison.json")
         if found.coverage is not None:
             found.coverage.write(folder / "bands.json")
-        origin = provenance(settings, catalogue, campaign)
-        present(folder, campaign.name, found, origin, catalogue)
+        origin = provenance(settings, catalogue, data.campaign)
+        present(folder, data.campaign.name, found, origin, catalogue)
     if found.coverage is None:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
     errors = {step.model: step.windows_2s for step in found.steps}

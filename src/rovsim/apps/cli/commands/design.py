@@ -13,9 +13,9 @@ from pydantic import Field
 
 from rovsim.application.pipeline.design import design, write_flight
 from rovsim.application.pipeline.models import load_one_model
-from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import CampaignSettings
-from rovsim.apps.cli.output import choose_folder, say
+from rovsim.apps.cli.opening import measure_campaign
+from rovsim.apps.cli.output import say
 from rovsim.core.schema import checked
 from rovsim.design.settings import DesignSettings, Question
 from rovsim.diagnosis.settings import SearchSettings
@@ -37,9 +37,7 @@ class Settings(CampaignSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Plan, write the files, and say what to expect."""
     question = _ask(settings)
-    campaign = open_campaign(settings.campaign)
-    out = choose_folder(settings, f"results/{campaign.name}/design")
-    data = measure(campaign, settings.signals)
+    data, out = measure_campaign(settings, "design")
     model = load_one_model(settings.model, data.vehicle, catalogue)
     found = design(data, model, question, catalogue)
     write_flight(out, found)

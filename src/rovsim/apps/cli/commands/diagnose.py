@@ -14,10 +14,10 @@ from pydantic import Field
 
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_one_model
-from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
-from rovsim.apps.cli.output import choose_folder, join_files, say
+from rovsim.apps.cli.opening import measure_campaign
+from rovsim.apps.cli.output import join_files, say
 from rovsim.core.extras import installed
 from rovsim.core.progress import counted, reported
 from rovsim.core.second_process import call, second_process
@@ -44,9 +44,7 @@ class Settings(CampaignSettings):
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Diagnose one model, write what was found, say it, show it, and log it."""
-    campaign = open_campaign(settings.campaign)
-    out = choose_folder(settings, f"results/{campaign.name}/diagnosis")
-    data = measure(campaign, settings.signals, even_unusable=True)
+    data, out = measure_campaign(settings, "diagnosis", even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     tracking = settings.tracking if installed("tracking") else None
     others = (DRAWING, SHOWING, *(LOGGING if tracking else ()))
@@ -64,7 +62,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             draw(ReportData(where=where, quality=data.quality))
 
         how = select(settings, DiagnosisSettings)
-        read = digest_recordings(campaign)
+        read = digest_recordings(data.campaign)
         found = diagnose(data.runs, base, how, catalogue, read, draw_early)
         found.write(out / "diagnosis.json")
         shown = ReportData(

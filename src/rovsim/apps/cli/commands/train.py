@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.application.pipeline.models import load_one_model
-from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.pipeline.replays import score_models
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, TrackingSettings
 from rovsim.application.tracking import ranking, tell_ranking, track
-from rovsim.apps.cli.output import choose_folder, say
+from rovsim.apps.cli.opening import measure_campaign
+from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.core.progress import reported
@@ -50,9 +50,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     kind = settings.learner.kind
     name = f"{kind}_{settings.control}"
     _check_name(settings.model)
-    campaign = open_campaign(settings.campaign)
-    out = choose_folder(settings, f"results/{campaign.name}/trained/{name}")
-    data = measure(campaign, settings.signals)
+    data, out = measure_campaign(settings, f"trained/{name}")
     base = load_one_model(settings.model, data.vehicle, catalogue)
     file, story = out / FILE, provenance(settings, catalogue, data.campaign)
     corrected = train(data.motions.values(), base, settings, catalogue, file, story)
