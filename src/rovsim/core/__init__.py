@@ -10,6 +10,7 @@ names           names that people give
 signs           numbers below zero in text
 columns         text that fits a terminal
 progress        how far long work is, and the time that is left
+horizons        how far replays look ahead
 run             which run a thing belongs to, what was commanded, where
 pwm             pulses of a radio control, and what they command
 rotations       rotations and axis conventions

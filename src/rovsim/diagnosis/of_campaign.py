@@ -7,6 +7,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim.core.files import write_text
+from rovsim.core.horizons import HORIZON, WINDOW
 from rovsim.core.progress import step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
@@ -23,7 +24,6 @@ from rovsim.evaluation.error_conditions.search import search_runs
 from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract
 from rovsim.measurement.runs import Runs
-from rovsim.results.comparison import HORIZON, WINDOW
 from rovsim.results.diagnosis import Diagnosis, law_beside
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step

@@ -5,9 +5,9 @@ from typing import Iterable
 
 import numpy as np
 
+from rovsim.core.horizons import HORIZON
 from rovsim.evaluation.scores import Errors, Moments, Sums, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import HORIZON
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
 

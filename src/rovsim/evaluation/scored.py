@@ -2,18 +2,12 @@
 
 from typing import Iterable, Mapping
 
+from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.evaluation.growth import LONG, GrowthScore
 from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import (
-    HORIZON,
-    OPEN_LOOP,
-    Comparison,
-    Metrics,
-    ModelErrors,
-    RunErrors,
-)
+from rovsim.results.comparison import Comparison, Metrics, ModelErrors, RunErrors
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Prediction, Replay

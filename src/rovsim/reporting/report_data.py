@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Mapping, TypeVar
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures import Kind, kind, kinds
 from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
-from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
+from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.force_budget import BudgetTotals, ForceBudget

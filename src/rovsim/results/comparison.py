@@ -4,12 +4,9 @@ from typing import ClassVar, Iterable, Literal
 
 from pydantic import Field
 
+from rovsim.core.horizons import OPEN_LOOP
 from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
-
-OPEN_LOOP = "open_loop"
-WINDOW = 2.0  # s, the windows that ladder, figures and summaries are of
-HORIZON = f"{WINDOW:g}"  # the same, as replays name them
 
 
 class Metrics(Section):

@@ -10,6 +10,7 @@ from typing import Iterable, Iterator, NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.horizons import OPEN_LOOP
 from rovsim.core.rotations import normalized
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
@@ -17,7 +18,6 @@ from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import OPEN_LOOP
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import drive_by_log
 from rovsim.simulation.filter_padding import Embedded, derive, embed

@@ -4,9 +4,9 @@ from typing import Annotated
 
 from pydantic import Field, PositiveFloat, field_validator
 
+from rovsim.core.horizons import WINDOW
 from rovsim.core.run import Between
 from rovsim.core.schema import Section
-from rovsim.results.comparison import WINDOW
 
 
 class ReplaySettings(Section):

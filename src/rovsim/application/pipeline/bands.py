@@ -6,12 +6,12 @@ from typing import Mapping, Sequence
 from rovsim.application.pipeline.recordings import MeasuredCampaign
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Recent, Remade
+from rovsim.core.horizons import HORIZON, WINDOW
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.bands import Bands, Coverage, ModelBands, RunBands
-from rovsim.results.comparison import HORIZON, WINDOW
 from rovsim.simulation.bands import foresee, why_without_bands
 from rovsim.simulation.prediction import LEVEL, Band
 from rovsim.simulation.replay import find_spans

@@ -9,6 +9,7 @@ from rovsim.application.pipeline.recordings import MeasuredCampaign
 from rovsim.application.pipeline.replays import replay_when_asked, score_run
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Remade
+from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
@@ -16,7 +17,7 @@ from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.evaluation.force_budget import balance_forces
 from rovsim.evaluation.scored import Scored
 from rovsim.reporting.report_data import ReportData
-from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
+from rovsim.results.comparison import Comparison
 from rovsim.results.force_budget import BudgetTotals
 
 DRAWN = 12  # runs: a report of fifty figures can still be read

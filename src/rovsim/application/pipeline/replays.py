@@ -4,11 +4,11 @@ from typing import Iterator, Mapping, Sequence
 
 from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Recent, Remade
+from rovsim.core.horizons import WINDOW
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import WINDOW
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import by_horizon, replay
 

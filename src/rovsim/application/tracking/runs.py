@@ -20,8 +20,9 @@ from rovsim.application.tracking.ranking_view import (
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
 from rovsim.core.files import appearing
+from rovsim.core.horizons import OPEN_LOOP
 from rovsim.results.base import ByAxis
-from rovsim.results.comparison import OPEN_LOOP, Metrics, RunErrors
+from rovsim.results.comparison import Metrics, RunErrors
 
 PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes for each call
     "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",

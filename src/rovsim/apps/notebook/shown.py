@@ -12,6 +12,7 @@ from pandas import DataFrame, Series
 from rovsim import AXES
 from rovsim.application.export.sizes import Sized
 from rovsim.apps.notebook import html
+from rovsim.core.horizons import HORIZON
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.reporting.figures import kind
@@ -21,7 +22,7 @@ from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import title
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
-from rovsim.results.comparison import HORIZON, Comparison
+from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect
 from rovsim.results.ladder import Ladder

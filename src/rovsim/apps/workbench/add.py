@@ -22,8 +22,8 @@ from rovsim.apps.workbench.traces import (
 )
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
+from rovsim.core.horizons import WINDOW
 from rovsim.dynamics.model import Model
-from rovsim.results.comparison import WINDOW
 from rovsim.simulation.prediction import Prediction
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"

@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 from numpy import ndarray as Array
 
 from rovsim.core.bounded_cache import Recent
+from rovsim.core.horizons import OPEN_LOOP, WINDOW
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
+from rovsim.results.comparison import Metrics
 from rovsim.results.ladder import Step
 from rovsim.simulation.bands import Band, foresee
 from rovsim.simulation.measured_states import drive_as_measured

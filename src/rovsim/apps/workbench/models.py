@@ -34,6 +34,7 @@ from rovsim.apps.workbench.traces import (
 )
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
+from rovsim.core.horizons import OPEN_LOOP, WINDOW
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import name_parameter
@@ -43,7 +44,7 @@ from rovsim.reporting.units import VELOCITY_UNITS, unit
 from rovsim.reporting.wording import LEARNERS, listed, significant, title
 from rovsim.reporting.words.totals import list_totals, warn
 from rovsim.reporting.words.verdict import interval
-from rovsim.results.comparison import OPEN_LOOP, WINDOW, Metrics
+from rovsim.results.comparison import Metrics
 from rovsim.results.fitted import FittedValue
 
 TITLE, QUESTION = "Models", "Which of two models is better, and what sets them apart?"

@@ -17,8 +17,8 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.runaway import find_divergence
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
+from rovsim.core.horizons import WINDOW
 from rovsim.dynamics.model import Model
-from rovsim.results.comparison import WINDOW
 
 
 class Saving:

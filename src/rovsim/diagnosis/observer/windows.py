@@ -12,13 +12,13 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.integrate import cumulative_simpson
 
+from rovsim.core.horizons import WINDOW
 from rovsim.core.progress import step
 from rovsim.diagnosis.observer.innovations import recall, serve_all
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
-from rovsim.results.comparison import WINDOW
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.measured_states import as_true
 from rovsim.simulation.unfiltered_motion import stage_outputs

@@ -6,6 +6,7 @@ from typing import Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.horizons import OPEN_LOOP
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread, normalize, rms, subtract
 from rovsim.learning.learner import Trained, train
@@ -13,7 +14,6 @@ from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import OPEN_LOOP
 from rovsim.results.pitfalls import Cost
 from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import Samples, sample_run

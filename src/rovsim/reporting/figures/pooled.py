@@ -3,8 +3,9 @@
 from pandas import DataFrame, MultiIndex
 
 from rovsim import AXES
+from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.reporting.wording import listed, title
-from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
+from rovsim.results.comparison import Comparison
 
 
 def tidy(comparison: Comparison, quantity: str, horizon: str, split: str) -> DataFrame:

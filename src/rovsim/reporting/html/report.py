@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from rovsim import AXES
 from rovsim.core.files import write_text
+from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.core.making import tell_making
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, kind
@@ -26,7 +27,7 @@ from rovsim.reporting.words.published_errors import tell_pitfalls, tell_standing
 from rovsim.reporting.words.sentences import doubt_sentences, summarize
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.base import or_nan
-from rovsim.results.comparison import HORIZON, OPEN_LOOP, Comparison
+from rovsim.results.comparison import Comparison
 from rovsim.results.ladder import Ladder
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import RATES

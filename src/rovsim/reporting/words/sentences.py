@@ -7,6 +7,7 @@ import numpy as np
 from pandas import DataFrame, Series
 
 from rovsim import AXES
+from rovsim.core.horizons import HORIZON
 from rovsim.reporting.figures.palette import RESIDUALS, family
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
@@ -23,7 +24,6 @@ from rovsim.reporting.wording import (
 from rovsim.reporting.words.speed import timing_sentences
 from rovsim.reporting.words.verdict import leaves_unexplained
 from rovsim.results.bands import Bands, ModelBands
-from rovsim.results.comparison import HORIZON
 from rovsim.results.diagnosis import PROPOSED
 from rovsim.results.ladder import EFFECTS, NOISE_FLOOR, Ladder
 from rovsim.results.quality import Quality
