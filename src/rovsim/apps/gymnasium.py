@@ -17,6 +17,7 @@ from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
+from rovsim.simulation.rest import rest_state
 from rovsim.simulation.stepper import Stepper
 
 ID = "rovsim/Vehicle-v0"
@@ -73,8 +74,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         super().reset(seed=seed)
         options = options or {}
         self.stepper.reset()
-        half = 0.5 * self.np_random.uniform(-np.pi, np.pi)
-        start = np.concatenate([np.zeros(3), [np.cos(half), 0.0, 0.0, np.sin(half)], np.zeros(6)])
+        start = rest_state(np.zeros(3), self.np_random.uniform(-np.pi, np.pi))
         self.goal = np.array(options.get("goal", self._goal()), dtype=np.float64)
         self.state = np.array(options.get("state", start), dtype=np.float64)
         return self._seen(), {}

@@ -10,6 +10,15 @@ CommandKind = Literal["thruster", "demand", "wrench"]
 Between = Literal["held", "linear"]  # what commands do between two logged lines
 
 
+def latest(time: Array, at: Array | float) -> Array:
+    """Which of the lines at `time` (m,), increasing, holds at each instant; before all, the first.
+
+    A line holds from its own instant on; add a tolerance to `at` where these two are computed in
+    different ways.
+    """
+    return np.asarray(np.maximum(np.searchsorted(time, at, side="right") - 1, 0))
+
+
 @dataclass(frozen=True)
 class RunInfo:
     """Which run this is: its `id`, `control` (3dof | 6dof) and `split` (train | test)."""
@@ -45,6 +54,10 @@ class Commands:
     auxiliary: Mapping[str, Logged] = field(default_factory=dict)
     before: float = 0.0
     after: float = 0.0
+
+    def held_at(self, at: Array | float) -> Array:
+        """Values (..., c) that hold at instants (...) s, of a log that has lines."""
+        return np.asarray(self.value[latest(self.time, at)])
 
     def within(self, begin: float, end: float) -> "Commands":
         """The lines between two times, and one on either side: what holds then, what comes next."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.core.run import CommandKind, Commands
+from rovsim.core.run import CommandKind, Commands, latest
 from rovsim.dynamics.model import Model
 from rovsim.simulation.command_columns import round_as_logged
 from rovsim.simulation.drive import Drive
@@ -111,7 +111,7 @@ class Authority:
 
         Angles hold from one to the next: between them they may turn either way.
         """
-        held = np.clip(np.searchsorted(time, at + 1e-9, side="right") - 1, 0, None)
+        held = latest(time, at + 1e-9)
         lines = np.stack([np.interp(at, time, column) for column in value.T], axis=1)
         if self.kind == "thruster":
             lines[:, self._angles] = value[held][:, self._angles]

@@ -18,6 +18,7 @@ from rovsim.design.settings import FlightLimits
 from rovsim.design.sticks import TICK
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
+from rovsim.simulation.rest import rest_state
 
 # rad/s, as of a spring and a damper: a place is held so softly that swings of half a minute still
 # get through, an angle within a second, as an autopilot does
@@ -53,10 +54,7 @@ class ModelPilot:
 
     def starts(self, heading: Array) -> Array:
         """States (m, 13) at rest and level."""
-        state = np.zeros((len(heading), 13))
-        state[:, :3] = self.start
-        state[:, 3], state[:, 6] = np.cos(0.5 * heading), np.sin(0.5 * heading)
-        return state
+        return rest_state(self.start, heading)
 
     @cached_property
     def full(self) -> Array:
@@ -116,6 +114,11 @@ class ModelPilot:
         return np.asarray(~afloat)
 
     def _advance(self, drive: Drive, state: Array) -> Array:
+        """States (m, 13) a tick later, each under its own thrust.
+
+        A `Batch` integrates one drive a model, or one state by Heun's method: flights that go on
+        side by side would be taken apart and put together again at every tick.
+        """
         h = TICK / STEPS
         for _ in range(STEPS):
             first = self._rates(drive, state)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import Between, CommandKind, Commands
+from rovsim.core.run import Between, CommandKind, Commands, latest
 from rovsim.dynamics.effects.base import (
     Autopilot,
     Clock,
@@ -24,7 +24,7 @@ from rovsim.dynamics.effects.base import (
     Strength,
     Wrench,
 )
-from rovsim.dynamics.step_cuts import StepCuts, latest
+from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
 AT_ONCE = 1 << 16  # steps whose thrust is found together: it takes twenty times the room of a step

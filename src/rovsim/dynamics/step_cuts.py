@@ -6,6 +6,8 @@ import numpy as np
 import scipy.sparse
 from numpy import ndarray as Array
 
+from rovsim.core.run import latest
+
 KEPT = 4  # of a run: the commands as they come, a little later, and with another clock
 
 
@@ -55,11 +57,6 @@ class StepCuts:
         cut = StepCut.at(arrival, edges, by_line)
         self._kept = ((arrival, edges, by_line, cut), *self._kept[: KEPT - 1])
         return cut
-
-
-def latest(time: Array, at: Array) -> Array:
-    """The line (m,) that holds at each instant; before the first one, that."""
-    return np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)
 
 
 def _alike(a: Array, b: Array) -> bool:

@@ -4,6 +4,7 @@ settings               how runs are replayed
 step_grid              the integration steps of a run
 command_columns        which columns of a log are angles
 drive                  what commands make of thrusters, over steps or at instants
+rest                   where runs begin that nobody measured
 batch                  the one way into the compiled engine: models, drives, starts to trajectories
 compiled_ahead         what a diagnosis needs later, compiled meanwhile in another process
 initial_memory         what the water remembers where a replay starts

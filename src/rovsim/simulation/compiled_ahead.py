@@ -9,6 +9,7 @@ from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle.load import load_vehicle
 from rovsim.simulation.batch import Batch, Correction, Starts
 from rovsim.simulation.drive import Drive
+from rovsim.simulation.rest import rest_state
 
 DONE = "compiled_ahead"  # in the folder of what is kept, once it was done
 VEHICLE = "bluerov2"  # types are those of any
@@ -31,8 +32,7 @@ def compile_ahead() -> None:
 
 def _starts() -> Starts:
     """At rest, for one step or reading."""
-    state = np.zeros((1, 1, 13))
-    state[..., 3] = 1.0
+    state = rest_state(np.zeros(3), np.zeros((1, 1)))
     return Starts(state, np.zeros(1, np.int64), np.ones(1, np.int64))
 
 

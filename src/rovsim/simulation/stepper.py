@@ -15,7 +15,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import CommandKind, Commands, Site
+from rovsim.core.run import CommandKind, Commands, Site, latest
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drive, Drives
@@ -94,7 +94,7 @@ class Stepper:
     def _give(self, command: Array) -> None:
         """Put the command behind those that have not taken effect; forget what is over."""
         arrival = self.model.thrust_path.arrival(np.array([self.time]))
-        over = max(int(np.searchsorted(self._arrival, self.time, "right")) - 1, 0)
+        over = int(latest(self._arrival, self.time))
         self._arrival = np.append(self._arrival[over:], arrival)
         self._value = np.vstack([self._value[over:], command])
 

@@ -125,8 +125,7 @@ def _divide(motion: Motion) -> Iterator[_Part]:
 def _list_acting(motion: Motion, at: slice) -> Array:
     """What forces may depend on, at some samples (n, k)."""
     nu, time, eta, log = motion.state_nu[at], motion.time[at], motion.eta[at], motion.commands
-    held = np.clip(np.searchsorted(log.time, time, side="right") - 1, 0, None)
-    commanded = log.value[held] if len(log.time) else np.zeros((len(time), 0))
+    commanded = log.held_at(time) if len(log.time) else np.zeros((len(time), 0))
     down = unrotate(eta[:, 3:], np.array([0.0, 0.0, 1.0]))
     since = (time - motion.time[0])[:, None]
     columns = [nu, np.abs(nu) * nu, motion.nu_dot[at], down, eta[:, :3], since, commanded]

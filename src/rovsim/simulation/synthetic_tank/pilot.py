@@ -6,6 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import short_way, to_euler, unrotate
+from rovsim.simulation.rest import rest_state
 from rovsim.simulation.synthetic_tank.turbulence import kept_in_part
 
 REACTION = 0.2  # s, human visual reaction time
@@ -55,9 +56,7 @@ class Pilot:
 
     def choose_start(self, random: np.random.Generator) -> Array:
         """State (13,) to start from: at rest near the first set-point, any heading."""
-        heading = random.uniform(-np.pi, np.pi)
-        attitude = [np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)]
-        return np.concatenate([self.set_points[0], attitude, np.zeros(6)])
+        return rest_state(self.set_points[0], random.uniform(-np.pi, np.pi))
 
     def steer(self, tick: int, state: Array) -> Array:
         """Demand (6,) per axis after seeing this state (13,)."""
@@ -85,6 +84,8 @@ DIVE, DIVE_ANGLE, PITCH, PITCH_RATE = (
 )  # rad per m too shallow, most; per rad, rad/s
 COURSE_TIME = 20.0  # s
 
+SLOWLY = 0.5  # m/s ahead, as it starts
+
 
 class Helmsman(Pilot):
     """Goes ahead from set-point to set-point, anywhere clear of the walls."""
@@ -98,9 +99,9 @@ class Helmsman(Pilot):
 
     def choose_start(self, random: np.random.Generator) -> Array:
         """State (13,) to start from: slowly ahead near the middle, any heading."""
-        half = 0.5 * random.uniform(-np.pi, np.pi)
-        heading = [np.cos(half), 0.0, 0.0, np.sin(half)]
-        return np.concatenate([self.middle, heading, [0.5, 0, 0, 0, 0, 0]])
+        state = rest_state(self.middle, random.uniform(-np.pi, np.pi))
+        state[7] = SLOWLY
+        return state
 
     def steer(self, tick: int, state: Array) -> Array:
         """Demand (6,) per axis after seeing this state (13,)."""

@@ -14,6 +14,7 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands_csv import read_commands
 from rovsim.measurement.recording.tidying import tidy_commands
 from rovsim.results.experiment import Experiment
+from rovsim.simulation.rest import rest_state
 
 # How exactly people put a vehicle where a flight is to begin: standard deviations, m and rad.
 PLACED, TURNED = 0.05, 0.05
@@ -35,15 +36,13 @@ class SentLog:
 
     def at(self, t: float) -> Array:
         """The command (c,) that holds at t s."""
-        line = int(np.searchsorted(self.commands.time, t + 1e-9, side="right")) - 1
-        return self.commands.value[max(line, 0)]
+        return self.commands.held_at(t + 1e-9)
 
     def start(self, tank: Array, random: np.random.Generator) -> Array:
         """State (13,) at rest and level, near where it should be."""
         place = tank.mean(axis=1) if self.place is None else self.place
-        half = 0.5 * (self.heading + TURNED * random.normal())
-        attitude = [np.cos(half), 0.0, 0.0, np.sin(half)]
-        return np.concatenate([place + PLACED * random.normal(size=3), attitude, np.zeros(6)])
+        heading = self.heading + TURNED * random.normal()
+        return rest_state(place + PLACED * random.normal(size=3), heading)
 
 
 def described_by(path: Path) -> Path | None:

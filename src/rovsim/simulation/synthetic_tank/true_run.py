@@ -12,7 +12,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import HALF_TURN_X, from_euler, multiply, rotate
-from rovsim.core.run import CommandKind, Commands, Site
+from rovsim.core.run import CommandKind, Commands, Site, latest
 from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch
@@ -188,7 +188,7 @@ class _TrueVehicle:
         path, t = self.model.thrust_path, k * self.tick
         middle = t + self.h * (0.5 + np.arange(len(pushes)))
         arrival = path.arrival(self.times[self.begin : k + 1])
-        acting = np.maximum(np.searchsorted(arrival, middle, "right") - 1, 0)
+        acting = latest(arrival, middle)
         held = self.commands[self.begin + acting]
         self.begin += int(acting[0])
         static = path.at(Commands(middle, held, self.kind), 0.0, self.duration)
