@@ -150,7 +150,7 @@ class UncertainModel(Text):
         step(model.draw(random) if model.uncertainty else model)
         noise = model.uncertainty and NoiseDraws.of(model.uncertainty.noise, random)
         if noise:
-            assert np.isfinite(noise.disturb(np.full(5, 0.05), 3)).all()
+            assert np.isfinite(noise.draw_disturbance(np.full(5, 0.05), 3)).all()
 
 
 class Exported(Vehicle):

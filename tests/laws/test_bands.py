@@ -17,7 +17,7 @@ from rovsim.dynamics.uncertainty import Draws, Uncertainty, correlate
 from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.fitted import Correlation, FittedNoise
-from rovsim.simulation.bands import LEVEL, band_ends, foresee, why_without_bands
+from rovsim.simulation.bands import LEVEL, band_ends, predict_band, why_without_bands
 from rovsim.simulation.ensemble import Ensemble
 from rovsim.simulation.noise_draws import NoiseDraws
 from rovsim.simulation.replay import Case, find_spans, predict, predict_all
@@ -52,14 +52,14 @@ def flown(world, random, seconds=60.0):
     still = motion(sticks(3, 60), seconds=seconds)
     clean = predict(world, still, [(0, len(still.time) - 1)], SIGNALS, REPLAY)
     noise = NoiseDraws.of(NOISE, random)
-    (pushed,) = noise.disturb(np.diff(StepGrid.over(still, REPLAY.step).edges), 1)
+    (pushed,) = noise.draw_disturbance(np.diff(StepGrid.over(still, REPLAY.step).edges), 1)
     whole = [(0, len(still.time) - 1)]
     (happened,) = predict_all([Case(world, still, pushed)], whole, SIGNALS, REPLAY)
     eta, nu = happened.eta.copy(), happened.nu.copy()
     eta[0], nu[0] = still.eta[0], still.nu[0]
     true = replace(still, eta=eta, nu=nu, state_nu=nu, nu_dot=np.nan_to_num(happened.nu_dot))
     assert np.abs(happened.nu[1:] - clean.nu[1:]).max() > 0.01
-    return noise.measure_again(true, world.mocap_view, SIGNALS, 1)[0]
+    return noise.resample_measurement_noise(true, world.mocap_view, SIGNALS, 1)[0]
 
 
 def test_a_band_holds_its_share_of_what_happens_to_such_a_vehicle():
@@ -68,7 +68,7 @@ def test_a_band_holds_its_share_of_what_happens_to_such_a_vehicle():
     for _ in range(3):
         run = flown(world.draw(random), random)
         spans = find_spans(run, REPLAY.only(2.0), open_loop=False)["2"]
-        found = cover(run, foresee(world, run, spans, SIGNALS, REPLAY), spans)
+        found = cover(run, predict_band(world, run, spans, SIGNALS, REPLAY), spans)
         assert found.windows == len(spans)
         shares.append(found.at_end.array())
     # 29 windows of 2 s, 6 axes, 3 runs: half a thousand points that are nearly independent
@@ -80,14 +80,14 @@ def test_a_band_that_is_too_narrow_is_found_out():
     run = flown(known(), random)
     calm = NOISE.model_copy(update={"disturbance": (0.005,) * 3 + (0.0125,) * 3})
     spans = find_spans(run, REPLAY.only(2.0), open_loop=False)["2"]
-    found = cover(run, foresee(known(calm), run, spans, SIGNALS, REPLAY), spans)
+    found = cover(run, predict_band(known(calm), run, spans, SIGNALS, REPLAY), spans)
     assert np.mean(found.at_end.array()) < LEVEL - 0.1
 
 
 def test_where_nothing_is_left_to_chance_the_band_is_the_prediction():
     run = motion(sticks(), seconds=8.0)
     spans = find_spans(run, REPLAY.only(2.0), open_loop=False)["2"]
-    band = foresee(SURE, run, spans, SIGNALS, REPLAY)
+    band = predict_band(SURE, run, spans, SIGNALS, REPLAY)
     found = predict(SURE, run, spans, SIGNALS, REPLAY)
     np.testing.assert_allclose(band.nu[0], found.nu, atol=1e-9)
     np.testing.assert_allclose(band.nu[1], found.nu, atol=1e-9)
@@ -97,7 +97,7 @@ def test_where_nothing_is_left_to_chance_the_band_is_the_prediction():
 def test_a_band_begins_at_what_was_measured_and_opens():
     run = motion(sticks(), seconds=8.0)
     spans = find_spans(run, REPLAY.only(2.0), open_loop=False)["2"]
-    band = foresee(known(), run, spans, SIGNALS, REPLAY)
+    band = predict_band(known(), run, spans, SIGNALS, REPLAY)
     width = band.place[1] - band.place[0]
     first, last = spans[0][0] + 1, spans[0][1]
     assert np.isnan(width[spans[0][0]]).all()
@@ -108,11 +108,11 @@ def test_a_band_begins_at_what_was_measured_and_opens():
 def test_a_long_run_is_done_in_parts_that_do_not_show(monkeypatch):
     run = motion(sticks(), seconds=24.0)
     spans = find_spans(run, REPLAY.only(2.0), open_loop=False)["2"]
-    whole = foresee(SURE, run, spans, SIGNALS, REPLAY)
+    whole = predict_band(SURE, run, spans, SIGNALS, REPLAY)
     monkeypatch.setattr("rovsim.simulation.bands.LONGEST", 4.0)
-    parts = foresee(SURE, run, spans, SIGNALS, REPLAY)
+    parts = predict_band(SURE, run, spans, SIGNALS, REPLAY)
     np.testing.assert_allclose(parts.nu, whole.nu, atol=1e-5)
-    assert np.isnan(foresee(SURE, run, [(0, 2400)], SIGNALS, REPLAY).nu).all()
+    assert np.isnan(predict_band(SURE, run, [(0, 2400)], SIGNALS, REPLAY).nu).all()
 
 
 def test_draws_spread_and_hang_together_as_the_file_says():
@@ -209,7 +209,7 @@ def test_where_nobody_knows_it_says_why():
         (model(), "rovsim add"), (known(FittedNoise()), "what noise"), (wanders, "wanders"),
     ]:  # fmt: skip
         assert why in why_without_bands(world, run)
-        assert foresee(world, run, spans, SIGNALS, REPLAY) is None
+        assert predict_band(world, run, spans, SIGNALS, REPLAY) is None
     assert why_without_bands(known(), run) is None
 
 
@@ -235,7 +235,7 @@ def test_an_ensemble_spreads_as_wide_as_the_band_of_a_replay(monkeypatch):
     world, run = known(), motion(sticks(), seconds=4.0)
     quiet = NOISE.model_copy(update={"reading": (0.0,) * 6})
     world = replace(world, uncertainty=replace(world.uncertainty, noise=quiet))
-    band = foresee(world, run, [(0, 200)], SIGNALS, REPLAY)
+    band = predict_band(world, run, [(0, 200)], SIGNALS, REPLAY)
     ensemble = Ensemble(world, draws=79, seed=3)
     states, log = ensemble.start(at_rest()), run.commands
     for k in range(200):

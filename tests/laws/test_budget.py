@@ -11,8 +11,8 @@ from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.force_budget import ForceBudget
 from rovsim.simulation.measured_states import (
     accelerate_as_measured,
-    as_true,
     drive_as_measured,
+    undo_mocap_view,
 )
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
@@ -36,7 +36,7 @@ def test_the_parts_add_up_to_the_models_inertia_force(cls):
     world = beside_others(some(cls))
     columns = world.thrust_path.columns("thruster")
     measured = run("demand" if issubclass(cls, Autopilot | Stick) else "thruster", columns)
-    true = as_true(world, measured)
+    true = undo_mocap_view(world, measured)
     at = drive_as_measured(world, true, ReplaySettings())
     expected = accelerate_as_measured(world, true, at) @ world.body.M.T
     parts = made(world, measured).parts

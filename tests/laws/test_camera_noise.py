@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rovsim.core import gauss_markov
 from rovsim.diagnosis.observer.camera import fit_smoothing
 from rovsim.diagnosis.observer.camera_noise import describe_noise
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.low_pass import LowPass
-from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
 FRAMES, PERIOD = 12_000, 0.01  # two minutes
 WHITE = 1.0
@@ -18,7 +18,7 @@ WHITE = 1.0
 def draw(random, ratio, memory, uneven=0.0, lost=0.0):
     """Poses (n, 6) of a vehicle at rest, put on the clock from `uneven` stamps s, some `lost`."""
     poses = WHITE * random.normal(size=(FRAMES, 6))
-    poses += ratio * WHITE * draw_gauss_markov(FRAMES, PERIOD / memory, random)
+    poses += ratio * WHITE * gauss_markov.draw(FRAMES, PERIOD / memory, random)
     clock = PERIOD * np.arange(FRAMES)
     stamps = np.sort(clock + random.uniform(-uneven, uneven, FRAMES))
     seen = random.random(FRAMES) >= lost

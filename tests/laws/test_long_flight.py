@@ -4,12 +4,13 @@ import tracemalloc
 
 import numpy as np
 
+from rovsim.core import gauss_markov
 from rovsim.dynamics.catalogue import built_in
 from rovsim.simulation.synthetic_tank import true_run
 from rovsim.simulation.synthetic_tank.campaign import true_model
 from rovsim.simulation.synthetic_tank.settings import TankSettings, Turbulence
 from rovsim.simulation.synthetic_tank.true_run import every_step, fly_run
-from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov, draw_turbulence
+from rovsim.simulation.synthetic_tank.turbulence import draw_turbulence
 
 HIDDEN = [
     {"effect": "input_delay", "parameters": {"delay": 0.11}},
@@ -33,7 +34,7 @@ def test_pushes_in_parts_are_those_of_the_whole():
     settings, steps, h = Turbulence(), 1000, 1e-3
     whole, parts = np.random.default_rng(1), np.random.default_rng(1)
     level = np.repeat([settings.force, settings.moment], 3)
-    expected = draw_gauss_markov(steps, h / settings.time_constant, whole) * level
+    expected = gauss_markov.draw(steps, h / settings.time_constant, whole) * level
     found = np.concatenate(list(draw_turbulence(settings, steps, h, parts, rows=300)))
     np.testing.assert_array_equal(found, expected)
     assert parts.random() == whole.random()  # and what is drawn next is the same

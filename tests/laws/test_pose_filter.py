@@ -23,7 +23,7 @@ from rovsim.dynamics.low_pass import LowPass, in_body, in_world
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
-from rovsim.simulation.measured_states import as_true, true_states
+from rovsim.simulation.measured_states import true_states, undo_mocap_view
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
@@ -143,7 +143,7 @@ def test_a_replay_behind_the_filter_is_as_good_as_one_without():
 
 def test_the_motion_behind_it_is_the_true_one():
     true, run = driven(FILTERED)
-    found, clear = as_true(FILTERED, run), as_true(CLEAR, run)
+    found, clear = undo_mocap_view(FILTERED, run), undo_mocap_view(CLEAR, run)
     inside = run.usable
     turn = log(multiply(found.eta[:, 3:] * [1, -1, -1, -1], true[:, 3:7]))[inside]
     assert np.abs(turn).max() < 1e-4  # the filter changed the quaternion's length
@@ -159,7 +159,7 @@ def test_one_state_of_the_motion_behind_it_needs_no_more_than_its_neighbours(los
     gappy = {name: np.where(seen[:, None], getattr(run, name), np.nan) for name in MOVING}
     run, index = replace(run, usable=seen, **gappy), np.flatnonzero(seen)
     for base in (FILTERED, model(PoseFilter(cutoff=3.0)), CLEAR, model(LAG)):
-        found, whole = true_states(base, run, index), as_true(base, run).state_at(index)
+        found, whole = true_states(base, run, index), undo_mocap_view(base, run).state_at(index)
         np.testing.assert_allclose(found, whole, rtol=1e-9, atol=1e-9)
 
 
@@ -187,7 +187,7 @@ def test_binned_recordings_are_turned_back_too():
         assert known.sum() > 30
         errors.append(np.sqrt(np.mean((found.nu - means)[known] ** 2)))
     assert errors[0] < 0.3 * errors[1]
-    seen = as_true(FILTERED, bins)
+    seen = undo_mocap_view(FILTERED, bins)
     inside = slice(5, -5)
     late, back = (np.abs(one.state_nu - true[:-1:10, 7:])[inside] for one in (bins, seen))
     assert back.mean() < 0.3 * late.mean()

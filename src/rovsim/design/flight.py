@@ -7,6 +7,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core import gauss_markov
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import exp, multiply, to_euler
 from rovsim.core.signs import minus
@@ -17,7 +18,6 @@ from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.synthetic_tank.sent_log import PLACED, TURNED
-from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
 MOVES = ("moves", "turns", "tilts")  # of which speed, turn rate and tilt are limits
 SURE = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 beyond one wall
@@ -108,7 +108,7 @@ def _draw_of(
     memory = float(np.median(noise.memory))
     pushes = np.array(
         [
-            level * draw_gauss_markov(steps, h / memory, random) + lasting.draw(steps, h, random)
+            level * gauss_markov.draw(steps, h / memory, random) + lasting.draw(steps, h, random)
             for _ in models
         ]
     )

@@ -13,12 +13,12 @@ import numpy as np
 import scipy
 from numpy import ndarray as Array
 
+from rovsim.core import gauss_markov
 from rovsim.diagnosis.observer.innovations import observe
 from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.noise import Noise, Tuning, tune
 from rovsim.diagnosis.observer.observed_run import BLOCK, ObservedRun, number_blocks
 from rovsim.dynamics.model import Model
-from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
 LASTING = 100.0  # s, memory of the observer's disturbance: longer than any block
 CHANCE = 2.0  # standard errors: less is not told from the short disturbance
@@ -47,7 +47,7 @@ class SteadyPush:
         """What lasts, of the mean disturbances (b, 6) of blocks of so many seconds each."""
         if not len(blocks):
             return SteadyPush.none()
-        chance = noise.level * np.sqrt(_averaged(noise.memory / seconds))
+        chance = noise.level * np.sqrt(gauss_markov.variance_of_mean(noise.memory / seconds))
         count, mean = len(blocks), blocks.mean(axis=0)
         error = chance / np.sqrt(count)
         varied = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
@@ -61,15 +61,7 @@ class SteadyPush:
 
     def draw(self, steps: int, h: float, random: np.random.Generator) -> Array:
         """Accelerations (steps, 6) over steps of h s."""
-        return self.mean + self.spread * draw_gauss_markov(steps, h / BLOCK, random)
-
-
-def _averaged(ratio: Array) -> Array:
-    """Variance of the mean over a block of a Gauss-Markov process of unit variance.
-
-    `ratio` (6,) of its memory to the block.
-    """
-    return np.asarray(2.0 * ratio * (1.0 - ratio * -np.expm1(-1.0 / ratio)))
+        return self.mean + self.spread * gauss_markov.draw(steps, h / BLOCK, random)
 
 
 def measure_push(

@@ -25,8 +25,8 @@ from rovsim.simulation.drive import Drive
 from rovsim.simulation.measured_states import (
     accelerate_as_logged,
     accelerate_as_measured,
-    as_true,
     drive_as_measured,
+    undo_mocap_view,
 )
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings
@@ -54,7 +54,7 @@ def balance_forces(
     found = sample_run(model, motion, signals, settings)
     parts: dict[str, Array] = {}
     before = np.zeros((len(motion.time), 6))
-    for name, force in _cumulative(model, as_true(model, motion), settings):
+    for name, force in _cumulative(model, undo_mocap_view(model, motion), settings):
         parts[name] = parts.get(name, 0.0) + force - before
         before = force
     missing = np.full((len(motion.time), 6), np.nan)

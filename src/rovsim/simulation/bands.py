@@ -45,9 +45,8 @@ def why_without_bands(model: Model, motion: Motion) -> str | None:
     return None
 
 
-def foresee(
+def predict_band(
     model: Model, motion: Motion, spans: Spans, signals: SignalSettings, settings: ReplaySettings,
-    seed: int = 0,
 ) -> Band | None:  # fmt: skip
     """The band of a model in some windows of a run; None where it cannot be known.
 
@@ -56,7 +55,7 @@ def foresee(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)  # the same band each time
     if model.uncertainty is None or why_without_bands(model, motion):
         return None
     noise = NoiseDraws.of(model.uncertainty.noise, random)
@@ -66,7 +65,7 @@ def foresee(
         first = max(some[0][0] - round(LEAD_IN / period), 0)
         part = slice(first, some[-1][1] + round(signals.reach / period) + 1)
         own = [(a - first, b - first) for a, b in some]
-        drawn = _foresee(model, motion.part(part), own, noise, signals, settings)
+        drawn = _draw_band(model, motion.part(part), own, noise, signals, settings)
         known = np.isfinite(drawn.nu).all(axis=(0, 2))
         found.nu[:, part][:, known] = drawn.nu[:, known]
         found.place[:, part][:, known] = drawn.place[:, known]
@@ -86,12 +85,12 @@ def _divide(spans: Spans, most: int) -> Iterator[list[tuple[int, int]]]:
         yield group
 
 
-def _foresee(
+def _draw_band(
     model: Model, motion: Motion, spans: Spans, noise: NoiseDraws, signals: SignalSettings,
     settings: ReplaySettings,
 ) -> Band:  # fmt: skip
-    disturbed = noise.disturb(np.diff(StepGrid.over(motion, settings.step).edges), DRAWS)
-    again = noise.measure_again(motion, model.mocap_view, signals, DRAWS)
+    disturbed = noise.draw_disturbance(np.diff(StepGrid.over(motion, settings.step).edges), DRAWS)
+    again = noise.resample_measurement_noise(motion, model.mocap_view, signals, DRAWS)
     drawn = [model.draw(noise.random) for _ in range(DRAWS)]
     cases = [Case(*one) for one in zip(drawn, again, disturbed, strict=True)]
     found = predict_all(cases, spans, signals, settings)

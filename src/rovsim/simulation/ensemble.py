@@ -12,6 +12,7 @@ from math import inf
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core import gauss_markov
 from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.model import Model
@@ -73,14 +74,14 @@ class Ensemble:
         Raises:
             BadInput: a command or states of another shape, or dt that is not positive.
         """
-        pushes = self.noise.level * self._drawn
+        pushes = self.noise.disturbance_std * self._drawn
         after = [
             member.step(state, command, dt, member.model.M @ push)
             for member, state, push in zip(self.members, states, pushes, strict=True)
         ]
-        fade = np.exp(-dt / self.noise.memory)
-        kicks = self.noise.random.normal(size=pushes.shape)
-        self._drawn = fade * self._drawn + np.sqrt(1.0 - fade**2) * kicks
+        fade = gauss_markov.decay(dt / self.noise.correlation_time)
+        normal = self.noise.random.normal(size=(1, *pushes.shape))
+        self._drawn = gauss_markov.propagate(fade[None, None], normal, self._drawn)[0]
         return np.array(after)
 
     @staticmethod

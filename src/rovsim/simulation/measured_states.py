@@ -16,7 +16,7 @@ from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.unfiltered_motion import sharpen
 
 
-def as_true(model: Model, motion: Motion) -> Motion:
+def undo_mocap_view(model: Model, motion: Motion) -> Motion:
     """The motion behind the reported one, if the motion capture sees as the model says."""
     motion, back = sharpen(model, motion), model.mocap_view.inverse
     return motion if back.identity else replace(
@@ -26,14 +26,15 @@ def as_true(model: Model, motion: Motion) -> Motion:
 
 
 def true_states(model: Model, motion: Motion, index: Array) -> Array:
-    """States (k, 13) of `as_true` at some samples or bins (k,), without the rest of the motion."""
+    """States (k, 13) of `undo_mocap_view` at some samples or bins (k,), without all else."""
     view = model.mocap_view
     if motion.binned or (view.identity and not view.low_pass.time_constants):
-        return as_true(model, motion).state_at(index)
+        return undo_mocap_view(model, motion).state_at(index)
     found = np.empty((len(index), 13))
     for k, i in enumerate(index):  # each stage knows its predecessor; the first two, the line
         first = max(int(i) - len(view.low_pass.time_constants), 0)
-        found[k] = as_true(model, motion.part(slice(first, int(i) + 2))).state[int(i) - first]
+        near = undo_mocap_view(model, motion.part(slice(first, int(i) + 2)))
+        found[k] = near.state[int(i) - first]
     return found
 
 

@@ -3,10 +3,9 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy
 from numpy import ndarray as Array
 
-from rovsim.core import rotations
+from rovsim.core import gauss_markov, rotations
 from rovsim.dynamics.mocap_view import MocapView
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.clock import time_step
@@ -21,18 +20,19 @@ AT_ONCE = 1 << 16  # samples: filters take some twenty times their room
 
 @dataclass(frozen=True, eq=False)
 class NoiseDraws:
-    """Per axis (6,): `level` m/s2 or rad/s2 and `memory` s of the disturbance, `reading` noise.
+    """Standard deviations and correlation times per axis (6,), and a generator.
 
-    `reading` m, rad of poses `period` s apart, m/s, rad/s of binned velocities; `colour` is a slow
-    error of poses, which lasts `colour_memory` s.
+    `disturbance_std` m/s2 or rad/s2 and `correlation_time` s of the disturbance. `reading_std` m,
+    rad of poses `period` s apart, m/s, rad/s of binned velocities; `colour_std` m, rad and
+    `colour_correlation_time` s of a slow error of poses.
     """
 
-    level: Array
-    memory: Array
-    reading: Array
+    disturbance_std: Array
+    correlation_time: Array
+    reading_std: Array
     period: float
-    colour: Array
-    colour_memory: Array
+    colour_std: Array
+    colour_correlation_time: Array
     random: np.random.Generator
 
     @staticmethod
@@ -47,18 +47,14 @@ class NoiseDraws:
         lasts = np.array(noise.colour_memory_s if slow else np.ones(6), dtype=float)
         return NoiseDraws(level, memory, reading, noise.period_s, colour, lasts, random)
 
-    def disturb(self, steps: Array, draws: int) -> Array:
+    def draw_disturbance(self, steps: Array, draws: int) -> Array:
         """Accelerations (draws, k, 6) over steps (k,) s: first-order Gauss-Markov."""
-        fade = np.exp(-steps[:, None] / self.memory)
-        kicks = self.random.normal(size=(len(fade), draws, 6))
-        kicks *= np.sqrt(1.0 - fade**2)[:, None]
-        found, x = np.empty_like(kicks), self.random.normal(size=(draws, 6))
-        for k, kick in enumerate(kicks):
-            x = fade[k] * x + kick
-            found[k] = x
-        return np.asarray((found * self.level).swapaxes(0, 1))
+        fade = gauss_markov.decay(steps[:, None, None] / self.correlation_time)
+        normal = self.random.normal(size=(len(fade), draws, 6))
+        found = gauss_markov.propagate(fade, normal, self.random.normal(size=(draws, 6)))
+        return np.asarray((found * self.disturbance_std).swapaxes(0, 1))
 
-    def measure_again(
+    def resample_measurement_noise(
         self, motion: Motion, view: MocapView, signals: SignalSettings, draws: int
     ) -> list[Motion]:
         """A motion as other measurements of it would have reported it, after the same chain."""
@@ -74,7 +70,7 @@ class NoiseDraws:
         return found
 
     def _read_bins_again(self, motion: Motion) -> Motion:
-        read = self.reading * self.random.normal(size=motion.nu.shape)
+        read = self.reading_std * self.random.normal(size=motion.nu.shape)
         return replace(motion, nu=motion.nu + read, state_nu=motion.state_nu + read)
 
     def _misread(
@@ -91,18 +87,17 @@ class NoiseDraws:
 
     def _err(self, count: int, period: float) -> Array:
         """Errors (count, 6) of single frames."""
-        one = self.reading * np.sqrt(self.period / period)  # of white noise
+        one = self.reading_std * np.sqrt(self.period / period)  # of white noise
         return one * self.random.normal(size=(count, 6)) + self._err_slowly(count, period)
 
     def _err_slowly(self, count: int, period: float) -> Array:
         """Errors (count, 6) of the cameras that last."""
-        if not self.colour.any():
+        if not self.colour_std.any():
             return np.zeros((count, 6))
-        keep = np.exp(-period / self.colour_memory)
-        kicks = self.random.normal(size=(count, 6)) * self.colour
-        kicks[1:] *= np.sqrt(1.0 - keep**2)  # the first is as large as any later error
-        axes = zip(keep, kicks.T, strict=True)
-        return np.stack([scipy.signal.lfilter([1.0], [1.0, -k], x) for k, x in axes], 1)
+        keep = gauss_markov.decay(period / self.colour_correlation_time)
+        errors = self.random.normal(size=(count, 6)) * self.colour_std
+        # the first is as large as any later one
+        return np.vstack([errors[:1], gauss_markov.propagate(keep, errors[1:], errors[0])])
 
 
 def _move(motion: Motion, off: Array, nu: Array, nu_dot: Array) -> Motion:

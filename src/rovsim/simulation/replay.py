@@ -22,12 +22,12 @@ from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import drive_by_log
 from rovsim.simulation.filter_padding import Embedded, derive, embed
 from rovsim.simulation.initial_memory import remembered_at
-from rovsim.simulation.measured_states import as_true, interpolate, interpolate_state
+from rovsim.simulation.measured_states import interpolate, interpolate_state, undo_mocap_view
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.unfiltered_motion import stage_outputs
-from rovsim.simulation.unmeasured_velocities import carry
+from rovsim.simulation.unmeasured_velocities import propagate_unmeasured_velocities
 from rovsim.simulation.windows import find_whole, find_windows
 
 Spans = Sequence[tuple[int, int]]
@@ -144,7 +144,9 @@ def simulate(
     if disturbed is not None:
         drive = drive.pushed(disturbed @ model.M.T)
     batch, known = Batch([model], motion.site), find_measured(motion.measured)
-    begins = carry(batch, [drive], Starts(state, first, steps, memory), grid.time, known)
+    begins = propagate_unmeasured_velocities(
+        batch, [drive], Starts(state, first, steps, memory), grid.time, known
+    )
     return batch.trajectories([drive], begins, grid.time, grid.stride)[0]
 
 
@@ -165,7 +167,7 @@ def _report_samples(
 ) -> list[Array]:
     """Poses (k, 7) of each window, as reported."""
     model, motion, _ = case
-    true, stride = as_true(model, motion), StepGrid.over(motion, settings.step).stride
+    true, stride = undo_mocap_view(model, motion), StepGrid.over(motion, settings.step).stride
     state, period = true.state, time_step(motion.time)
     starts = [(w.first * stride, w.last + w.after - w.first, state[w.first]) for w in within]
     stages = stage_outputs(model, motion)[1:, :, :14]
@@ -192,7 +194,7 @@ def _predict_bins(case: Case, spans: Spans, settings: ReplaySettings) -> Predict
     """Means over the measurement's own bins, of a trajectory on fine steps; nothing is filtered."""
     model, motion, disturbed = case
     found = Prediction.empty(len(motion.time))
-    true, grid = as_true(model, motion), StepGrid.over(motion, settings.step)
+    true, grid = undo_mocap_view(model, motion), StepGrid.over(motion, settings.step)
     outputs, view = stage_outputs(model, motion)[1:], model.mocap_view
     bins, ends = np.append(motion.time, motion.end), len(grid.edges) - 1
     first = [min(round((bins[a] - bins[0]) / grid.h), ends - 1) for a, _ in spans]

@@ -18,10 +18,10 @@ from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.measured_states import (
     accelerate_as_measured,
-    as_true,
     drive_as_measured,
     interpolate_state,
     nearest_steps,
+    undo_mocap_view,
 )
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
@@ -57,7 +57,7 @@ def sample_run(
     axes, the measurement is turned back first, so that tau_res = M a_res in a free replay. On axes
     that were not measured nothing is missing.
     """
-    motion = as_true(model, motion)
+    motion = undo_mocap_view(model, motion)
     make = _of_bins if motion.binned else _of_samples
     found = make(model, motion, signals.suited(motion), settings)
     return replace(found, a_res=blank(motion.measured, found.a_res, 0.0))

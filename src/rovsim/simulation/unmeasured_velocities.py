@@ -10,7 +10,7 @@ from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drive
 
 
-def carry(
+def propagate_unmeasured_velocities(
     batch: Batch, drives: Sequence[Drive], starts: Starts, time: Array, measured: Array
 ) -> Starts:
     """The same starts, with the velocities that each model itself has by then where none was read.

@@ -18,7 +18,7 @@ from rovsim.dynamics.effects.base import Autopilot, Sensing, Smoothing, Stick
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.measured_states import accelerate_as_logged, as_true
+from rovsim.simulation.measured_states import accelerate_as_logged, undo_mocap_view
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import SUITABLE, Box, Log, TankSettings, Turbulence
 from rovsim.simulation.synthetic_tank.true_run import LeftTank, fly_run
@@ -51,7 +51,7 @@ def flights(model: Model, motions: Iterable[Motion] | None) -> list[Motion]:
     """True motions behind measured ones, as the model says they were; without any, a flight."""
     if motions is None:
         return [typical_flight(model)]
-    return [as_true(model, motion) for motion in motions]
+    return [undo_mocap_view(model, motion) for motion in motions]
 
 
 def typical_flight(model: Model) -> Motion:

@@ -12,7 +12,7 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.bands import Bands, Coverage, ModelBands, RunBands
-from rovsim.simulation.bands import foresee, why_without_bands
+from rovsim.simulation.bands import predict_band, why_without_bands
 from rovsim.simulation.prediction import LEVEL, Band
 from rovsim.simulation.replay import find_spans
 
@@ -30,7 +30,7 @@ def bands_when_asked(
 
     def of(model: Model, run: str) -> Band | None:
         spans = find_spans(motions[run], how, open_loop=False)[HORIZON]
-        return foresee(model, motions[run], spans, settings.signals, how)
+        return predict_band(model, motions[run], spans, settings.signals, how)
 
     return {m.name: Remade(motions, partial(of, m), recent=recent) for m in sure}
 
@@ -65,7 +65,7 @@ def _cover_run(model: Model, motion: Motion, settings: SimulationSettings) -> di
     how = settings.replay.only(*(s for s in settings.replay.horizons if s >= WINDOW))
     found = {}
     for name, spans in find_spans(motion, how, open_loop=False).items():
-        band = foresee(model, motion, spans, settings.signals, how) if spans else None
+        band = predict_band(model, motion, spans, settings.signals, how) if spans else None
         if band is not None:
             found[name] = cover(motion, band, spans)
     return found

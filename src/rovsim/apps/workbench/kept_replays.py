@@ -14,7 +14,7 @@ from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.comparison import Metrics
 from rovsim.results.ladder import Step
-from rovsim.simulation.bands import Band, foresee
+from rovsim.simulation.bands import Band, predict_band
 from rovsim.simulation.measured_states import drive_as_measured
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import find_spans, replay
@@ -56,7 +56,7 @@ class KeptReplays:
         (found,) = find_spans(motion, how, open_loop=not spans).values()
         return self._bands.get(
             (model, run, horizon),
-            lambda: foresee(model, motion, found, self.signals, how) if found else None,
+            lambda: predict_band(model, motion, found, self.signals, how) if found else None,
         )
 
     def thrust(self, model: Model, run: str) -> Array:

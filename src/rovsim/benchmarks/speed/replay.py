@@ -42,9 +42,9 @@ def best(call: Callable[[], Any]) -> float:
     return min(took)
 
 
-def numpy_steps_per_second(model: Model, steps: int = 300) -> float:
+def numpy_steps_per_second(model: Model) -> float:
     """The same equation written with NumPy matrices, as Python simulators usually are."""
-    c, B = model.constants, model.body.B
+    c, B, steps = model.constants, model.body.B, 300
     force = np.random.default_rng(0).uniform(-10, 10, (steps, B.shape[1]))
 
     def coriolis(M: Array, v: Array) -> Array:

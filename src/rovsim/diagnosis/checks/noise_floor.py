@@ -68,7 +68,9 @@ class _PerfectModel:
         windows, measured = Windows(run), run.motion.state
         draws = self.noise.draws(run, self.random)
         pushes = self._push(draws, run)
-        again = draws.measure_again(run.motion, self.model.mocap_view, self.signals, DRAWS)
+        again = draws.resample_measurement_noise(
+            run.motion, self.model.mocap_view, self.signals, DRAWS
+        )
         reported = [motion.state for motion in again]
         truth = np.tile(measured[windows.first], (DRAWS, 1, 1))
         starts = np.array([state[windows.first] for state in reported])
@@ -81,7 +83,7 @@ class _PerfectModel:
 
     def _push(self, draws: NoiseDraws, run: ObservedRun) -> Array:
         """Wrench (draws, k, 6) of the disturbance over the integration steps."""
-        pushed = draws.disturb(np.diff(run.grid), DRAWS)
+        pushed = draws.draw_disturbance(np.diff(run.grid), DRAWS)
         if self.noise.drift:
             pushed += self._drift(run, self.noise.drift.rate)
         return np.asarray(pushed @ self.model.M.T)

@@ -14,7 +14,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.simulation.measured_states import as_true
+from rovsim.simulation.measured_states import undo_mocap_view
 
 
 class Action(NamedTuple):
@@ -41,7 +41,7 @@ def is_half(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
 
 def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
     """Accelerations (k, n, 6) that each effect adds to a model where a run was measured."""
-    state = as_true(model, run.motion).state[run.index]
+    state = undo_mocap_view(model, run.motion).state[run.index]
     known = np.isfinite(state).all(axis=1)
     index, states = run.index[known], state[None, known]
     there = [accelerate(model + effect, run, index, states)[0] for effect in effects]

@@ -14,7 +14,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.random_walk import RandomWalk, Rate, fit_common, list_terms
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
-from rovsim.simulation.measured_states import as_true
+from rovsim.simulation.measured_states import undo_mocap_view
 
 NUDGE = 0.05  # m/s, a usual current
 RATE = 0.005  # m/s per sqrt(s), a usual drift, or N per sqrt(s)
@@ -194,7 +194,7 @@ def _accelerate(model: Model, run: ObservedRun, current: Array) -> Array:
     A vehicle in a uniform current moves as it would, relative to it, in still water (Fossen 2021,
     property 10.1): no effect need know of it.
     """
-    states = as_true(model, run.motion).state[run.index]
+    states = undo_mocap_view(model, run.motion).state[run.index]
     states = np.where(np.isfinite(states).all(axis=1)[:, None], states, _AT_REST)
     water = np.column_stack([current, np.zeros(len(current))])
     along = np.einsum("nij,ni->nj", rotations.matrix(states[:, 3:7]), water)

@@ -12,7 +12,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
 from rovsim.simulation.initial_memory import remembered_at
-from rovsim.simulation.measured_states import as_true, true_states
+from rovsim.simulation.measured_states import true_states, undo_mocap_view
 
 # Of the root mean square: a torpedo's sway drives its yaw at 0.98 of it, axes of vehicles that go
 # to and fro drive each other at 0.6 of it at most.
@@ -88,7 +88,7 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
     """How errors of a model's velocities and poses go on over the measured states."""
     slopes = []
     for run in runs:
-        states = as_true(model, run.motion).state
+        states = undo_mocap_view(model, run.motion).state
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
         states = _nudge(states[index], level=bool(run.known[4]))
         found = accelerate(model, run, index, states)
@@ -142,4 +142,4 @@ def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts
 
 def recall(models: Sequence[Model], run: ObservedRun, edges: Array, steps: Array) -> Array:
     """What the water remembers (m, s, 6) at steps (s,) of a grid; empty if it never does."""
-    return remembered_at(models, lambda m: as_true(m, run.motion), edges, steps)
+    return remembered_at(models, lambda m: undo_mocap_view(m, run.motion), edges, steps)

@@ -20,9 +20,9 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.simulation.batch import Starts
-from rovsim.simulation.measured_states import as_true
+from rovsim.simulation.measured_states import undo_mocap_view
 from rovsim.simulation.unfiltered_motion import stage_outputs
-from rovsim.simulation.unmeasured_velocities import carry
+from rovsim.simulation.unmeasured_velocities import propagate_unmeasured_velocities
 from rovsim.simulation.windows import find_windows
 
 
@@ -94,7 +94,7 @@ class Windows:
             pushes: further wrench (m, k, 6) over the integration steps, N and N m.
         """
         if starts is None:
-            begin = [as_true(m, self.run.motion).state[self.first] for m in models]
+            begin = [undo_mocap_view(m, self.run.motion).state[self.first] for m in models]
         else:
             each = zip(models, starts, strict=True)
             begin = [m.mocap_view.inverse.states(state) for m, state in each]
@@ -134,7 +134,9 @@ class Windows:
         steps = np.array([run.at[b] for _, b in self.spans], np.int64) - first
         begins = Starts(begin, first, steps, recall(models, run, run.grid, first))
         batch, time = serve_all(models, run), run.since_start(run.grid)
-        begins = carry(batch, drives, begins, time, find_measured(run.motion.measured))
+        begins = propagate_unmeasured_velocities(
+            batch, drives, begins, time, find_measured(run.motion.measured)
+        )
         return batch.trajectories(drives, begins, time)
 
     @property

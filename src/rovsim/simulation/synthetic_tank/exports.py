@@ -6,6 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core import gauss_markov
 from rovsim.core.pwm import to_pulses
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import MocapView
@@ -13,7 +14,6 @@ from rovsim.dynamics.vehicle import Vehicle
 from rovsim.simulation.synthetic_tank.description import BODY
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
-from rovsim.simulation.synthetic_tank.turbulence import draw_gauss_markov
 
 COLUMNS = (
     "X Y Z Roll Pitch Yaw Residual Rot[0] Rot[1] Rot[2] Rot[3] Rot[4] Rot[5] Rot[6] Rot[7] Rot[8]"
@@ -67,7 +67,7 @@ def _measure(
 def _draw_colour(n: int, camera: Camera, random: np.random.Generator) -> tuple[Array, Array]:
     """Errors that last: turns (n, 3) rad and shifts (n, 3) m, from a generator of their own."""
     (own,) = random.spawn(1)  # what else is drawn stays the same
-    lasting = draw_gauss_markov(n, 1.0 / (camera.rate * camera.colour_time), own)
+    lasting = gauss_markov.draw(n, 1.0 / (camera.rate * camera.colour_time), own)
     return camera.colour_attitude * lasting[:, 3:], camera.colour_noise * lasting[:, :3]
 
 

@@ -5,9 +5,9 @@ from collections import deque
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core import gauss_markov
 from rovsim.core.rotations import short_way, to_euler, unrotate
 from rovsim.simulation.rest import rest_state
-from rovsim.simulation.synthetic_tank.turbulence import kept_in_part
 
 REACTION = 0.2  # s, human visual reaction time
 WANDER_TIME = 1.5  # s, how long a stick movement lasts
@@ -32,9 +32,9 @@ SET_POINT_TIME = 8.0  # s
 
 def draw_wander(ticks: int, dt: float, random: np.random.Generator) -> Array:
     """Smooth random stick movements (ticks, 6): white noise, lagged twice, of unit variance."""
-    a, rows = float(np.exp(-2.0 * dt / WANDER_TIME)), random.normal(size=(ticks + 400, 6))
+    a, rows = gauss_markov.decay(2.0 * dt / WANDER_TIME), random.normal(size=(ticks + 400, 6))
     for _ in range(2):
-        rows = kept_in_part(a, (1 - a) * rows, np.zeros(6))
+        rows = gauss_markov.lag(a, (1 - a) * rows, np.zeros(6))
     rows = rows[400:]
     return rows / np.maximum(rows.std(axis=0), 1e-12)
 
@@ -83,7 +83,6 @@ DIVE, DIVE_ANGLE, PITCH, PITCH_RATE = (
     2.0,
 )  # rad per m too shallow, most; per rad, rad/s
 COURSE_TIME = 20.0  # s
-
 SLOWLY = 0.5  # m/s ahead, as it starts
 
 

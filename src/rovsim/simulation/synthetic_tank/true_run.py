@@ -104,7 +104,7 @@ def fly_run(
         else:
             command = vehicle.log(np.zeros(6) if release else pilot.steer(k, state))
         rows = slice(k % PUSHED * per_tick, (k % PUSHED + 1) * per_tick)
-        vehicle.carry(currents[k])
+        vehicle.set_current(currents[k])
         passed = vehicle.advance(k, command, state, pushes[rows])
         kept.take(passed)
         state = passed[-1]
@@ -159,8 +159,8 @@ class _TrueVehicle:
         self.memory = np.zeros(6)
         self.site, self.batch = site, Batch([model], site)
 
-    def carry(self, current: Array) -> None:
-        """Let the water move by this (3,) m/s in NED on top of what the model knows."""
+    def set_current(self, current: Array) -> None:
+        """Let the water move by (3,) m/s in NED on top of what the model knows."""
         if current.any():
             water = Current(north=current[0], east=current[1], down=current[2])
             self.batch = Batch([self.model + water], self.site)
