@@ -5,7 +5,7 @@ import numpy as np
 from rovsim.application.pipeline.design import format_instructions
 from rovsim.core.run import Commands
 from rovsim.design.instructions import instruct
-from rovsim.design.search import Tried
+from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import FlightLimits
 from rovsim.reporting.figures.planned_flight import PlannedFlight, draw_flight
 from rovsim.reporting.words.experiment import list_steps, tell_experiment
@@ -47,7 +47,7 @@ def test_what_is_done_by_hand_stands_under_the_step_that_it_replaces():
 
 
 def test_places_and_angles_below_zero_have_a_minus_sign():
-    flight = Tried(
+    flight = CandidateFlight(
         np.zeros((1, 6)), 0.0, Commands(np.zeros(1), np.zeros((1, 2)), "demand"), 0.0, None,
         numbers=np.zeros(11),
     )  # fmt: skip

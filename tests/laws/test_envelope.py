@@ -8,8 +8,8 @@ import pytest
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.core.schema import checked
-from rovsim.design.doubts import warn_of_walls
-from rovsim.design.flight import Envelope
+from rovsim.design.adequacy import warn_of_walls
+from rovsim.design.envelope import Envelope
 from rovsim.design.settings import FlightLimits
 
 TANK = np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]])  # NED: the surface at -3, the floor at 0
@@ -19,7 +19,7 @@ SWUM = np.array([[1.0, 3.0], [-4.0, -2.0], [np.nan, np.nan]])
 def around(tank=TANK, floats=False, **limits) -> Envelope:
     """The envelope in a tank."""
     surroundings = SimpleNamespace(site=Site(tank, np.ones(3)), swum=SWUM)
-    return Envelope.around(surroundings, FlightLimits(**limits), floats)
+    return Envelope.within(surroundings, FlightLimits(**limits), floats)
 
 
 def test_a_depth_is_cut_by_what_the_tank_leaves():
@@ -60,13 +60,13 @@ def test_how_the_limits_are_left_is_told():
     paths = np.zeros((2, 5, 13))
     paths[:, :, :3], paths[:, :, 3] = found.middle, 1.0
     assert found.excess(paths) == 0.0
-    assert found.tell(paths) == ""
+    assert found.describe_excess(paths) == ""
     paths[:, 4, 2] -= 1.3  # from 1.5 m below the surface to 0.2 m: 0.2 m too near
     paths[:, 2, 7] = 1.2
-    assert found.tell(paths) == (
+    assert found.describe_excess(paths) == (
         "comes 0.2 m too near to a wall, the floor or the surface and moves 20 % more than it may"
     )
     assert found.excess(paths) == pytest.approx(0.4)
     paths[0, 0, 0] = np.inf
     assert found.excess(paths) == np.inf
-    assert found.tell(paths) == "moves beyond all numbers"
+    assert found.describe_excess(paths) == "moves beyond all numbers"

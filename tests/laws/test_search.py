@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_info
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import checked
 from rovsim.design.plan import plan
-from rovsim.design.search import AT_ONCE, Range, Tried, search
+from rovsim.design.search import AT_ONCE, CandidateFlight, DesignProblem, search
 from rovsim.design.settings import LONGEST, SHORTEST, DesignSettings, Question
 
 
@@ -25,7 +25,7 @@ class Flights:
         """All of them."""
         self.counts.append(len(x))
         return [
-            SimpleNamespace(numbers=own, worth=own[1] <= 0.8, told=own[1], excess=own[1])
+            SimpleNamespace(numbers=own, expected=own[1] <= 0.8, utility=own[1], excess=own[1])
             for own in x
         ]
 
@@ -45,10 +45,10 @@ class Pilot:
 
     full, flown = np.ones(6), 0
 
-    def fly(self, sticks, headings):
+    def fly(self, inputs, headings):
         """As many demands."""
         self.flown += 1
-        return np.zeros((len(sticks), 1, 6))
+        return np.zeros((len(inputs), 1, 6))
 
     def starts(self, headings):
         """At rest."""
@@ -58,18 +58,18 @@ class Pilot:
 def test_flights_fly_side_by_side_and_are_judged_when_asked_for(monkeypatch):
     judged = []
 
-    def judge(self, sticks, *rest):
-        judged.append(sticks)
-        return Tried(sticks, 0.0, None, 0.0, None)
+    def judge(self, inputs, *rest):
+        judged.append(inputs)
+        return CandidateFlight(inputs, 0.0, None, 0.0, None)
 
-    monkeypatch.setattr(Range, "_try", judge)
-    envelope, around = SimpleNamespace(longest=0.0), SimpleNamespace(seconds=1.0)
-    where = Range(Pilot(), envelope, None, None, around)
-    tried = where.try_numbers(list(np.random.default_rng(0).random((5, 31))))
+    monkeypatch.setattr(DesignProblem, "_try", judge)
+    envelope, setup = SimpleNamespace(longest=0.0), SimpleNamespace(seconds=1.0)
+    problem = DesignProblem(Pilot(), envelope, None, None, setup)
+    tried = problem.try_numbers(list(np.random.default_rng(0).random((5, 31))))
     next(tried)
-    assert (where.pilot.flown, len(judged)) == (1, 1)
+    assert (problem.pilot.flown, len(judged)) == (1, 1)
     assert len(list(tried)) == 4
-    assert where.pilot.flown == 1
+    assert problem.pilot.flown == 1
 
 
 def test_a_plan_has_no_threads_for_small_matrices():

@@ -20,13 +20,13 @@ from rovsim.application.settings import Settings, compose
 from rovsim.benchmarks.blind.case import Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
 from rovsim.core.files import read_json, write_json, write_text
-from rovsim.design.from_train_runs import learn
-from rovsim.design.knowledge import Knowledge
+from rovsim.design.expected_information import NEGLIGIBLE
+from rovsim.design.from_train_runs import fit_prior
 from rovsim.design.plan import Plan, plan
+from rovsim.design.prior_information import PriorInformation
 from rovsim.design.report import describe_start, report
-from rovsim.design.search import Tried
+from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import Question
-from rovsim.design.worth import NOTHING
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry, Value
@@ -107,8 +107,8 @@ def run_case(case: str, seeds: Range, out: Path) -> dict[str, Any]:
     seconds, cpu = time.perf_counter() - began, time.process_time() - worked
     said = report(found, "nominal", question, found.site)
     said.write(folder / "designed.json")
-    usual = [own for own in found.usual.values() if own]
-    best = max(usual, key=lambda own: own[1].told)[0] if usual else None
+    usual = [own for own in found.baselines.values() if own]
+    best = max(usual, key=lambda own: own[1].utility)[0] if usual else None
     result: dict[str, Any] = {
         "case": case, "seconds": seconds, "cpu_seconds": cpu, "manoeuvre": found.flight.name,
         "hidden": [e.plain() for e in tank.effects],
@@ -129,8 +129,8 @@ def _measure(folder: Path, settings: Settings) -> MeasuredCampaign:
 
 
 def _fly(
-    name: str, tried: Tried, tank: TankSettings, folder: Path, found: Plan, data: MeasuredCampaign,
-    question: Question, settings: Settings,
+    name: str, tried: CandidateFlight, tank: TankSettings, folder: Path, found: Plan,
+    data: MeasuredCampaign, question: Question, settings: Settings,
 ) -> dict[str, Any]:  # fmt: skip
     """Fly a log in the same tank, and fit all that was asked to both runs."""
     log = data.campaign.commands
@@ -150,21 +150,21 @@ def _fly(
     runs = _measure(folder / f"with_{name}", settings).runs
     base = nominal(data.vehicle)
     train = prepare_train(runs, settings.replay, built_in(), base.body.free).runs
-    return _reached(found.known, learn(base, train, question, built_in()))
+    return _reached(found.prior, fit_prior(base, train, question, built_in()))
 
 
-def _start(found: Plan, tried: Tried) -> Start:
+def _start(found: Plan, tried: CandidateFlight) -> Start:
     return describe_start(found.start, tried.heading, found.site)
 
 
-def _reached(before: Knowledge, after: Knowledge) -> dict[str, Any]:
+def _reached(before: PriorInformation, after: PriorInformation) -> dict[str, Any]:
     """Log odds of the truth, or standard deviation and value, before and after."""
-    if after.asked:
+    if after.rival_names:
         return {"log_odds": 0.5 * after.deficit, "log_odds_before": 0.5 * before.deficit}
     (own,), (old,) = after.rivals, before.rivals
     scale = own.hypothesis.terms[0].parameters[0].scale
     std, was = float(own.std()[0]), float(old.std()[0])
-    value = float(own.hypothesis.x[own.wanted[0]])
+    value = float(own.hypothesis.x[own.of_interest[0]])
     return {
         "std": std * scale, "std_before": was * scale, "gained": (was / std) ** 2 - 1.0,
         "value": value * scale,
@@ -215,7 +215,7 @@ def _ratios(results: Sequence[Mapping[str, Any]], get: Any) -> Array:
         elif "usual" not in one or "left" in one["usual"]:
             found.append(np.inf)
         else:
-            found.append(get(one, "designed") / max(get(one, "usual"), NOTHING))
+            found.append(get(one, "designed") / max(get(one, "usual"), NEGLIGIBLE))
     return np.array(found)
 
 

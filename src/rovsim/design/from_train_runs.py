@@ -6,7 +6,7 @@ from typing import Sequence
 import numpy as np
 
 from rovsim.core.errors import BadInput, nearest
-from rovsim.design.knowledge import Knowledge, Known
+from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.settings import Question
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
@@ -24,9 +24,9 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 
 
-def learn(
+def fit_prior(
     model: Model, runs: Sequence[ObservedRun], question: Question, catalogue: Catalogue
-) -> Knowledge:
+) -> PriorInformation:
     """Fit what is asked about, and what the model file says was fitted, to the train runs.
 
     Args:
@@ -51,9 +51,9 @@ def learn(
     if not question.between:
         found, bank = _fit(start, runs)
         wanted = [n for n in start.parameter_names if not question.know or n in question.know]
-        one = _know(found, bank, wanted)
-        return Knowledge(tuple(runs), (), (one,), found.noise, bank.motions)
-    return _learn_rivals(start, runs, question, candidates)
+        one = _summarise(found, bank, wanted)
+        return PriorInformation(tuple(runs), (), (one,), found.noise, bank.motions)
+    return _fit_rivals(start, runs, question, candidates)
 
 
 def _nothing_asked(model: Model) -> BadInput:
@@ -143,10 +143,10 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     return polish(found, runs, REACH)
 
 
-def _know(
+def _summarise(
     found: Fit, bank: FilterBank, wanted: Sequence[str], penalty: float = 0.0,
     widest: Hypothesis | None = None,
-) -> Known:  # fmt: skip
+) -> FittedHypothesis:  # fmt: skip
     names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = penalty * sum(term.choices for term in found.hypothesis.terms)
@@ -156,13 +156,13 @@ def _know(
         seen = bank.linearise(widest)
         if seen.finite:  # else it cannot move with what nobody needs free
             taking_up, held = widest, inner_products(bank.flatten(seen.J, found.noise))
-    return Known(found.hypothesis, information, chosen, likelihood, taking_up, held)
+    return FittedHypothesis(found.hypothesis, information, chosen, likelihood, taking_up, held)
 
 
-def _learn_rivals(
+def _fit_rivals(
     start: Hypothesis, runs: Sequence[ObservedRun], question: Question,
     candidates: Sequence[Candidate],
-) -> Knowledge:  # fmt: skip
+) -> PriorInformation:  # fmt: skip
     """Each rival fitted in the other's absence, beside all else."""
     rest, fits, penalty = _without(start, *question.between), [], 0.0
     for name in question.between:
@@ -175,10 +175,10 @@ def _learn_rivals(
     for name, (found, bank) in zip(question.between, fits, strict=True):
         names = found.hypothesis.parameter_names
         wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
-        rivals.append(_know(found, bank, wanted, penalty, widen(found.hypothesis, name)))
+        rivals.append(_summarise(found, bank, wanted, penalty, widen(found.hypothesis, name)))
     best, bank = max(fits, key=lambda one: one[0].likelihood)
     asked = tuple(question.between)
-    return Knowledge(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
+    return PriorInformation(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
 
 
 def widen(h: Hypothesis, effect: str) -> Hypothesis:

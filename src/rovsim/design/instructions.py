@@ -7,15 +7,15 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.signs import minus
-from rovsim.design.search import Tried
+from rovsim.design.inputs import BASELINES, IDLE, NUMBERS, SWELL, Oscillation
+from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import FlightLimits
-from rovsim.design.sticks import IDLE, NUMBERS, SWELL, USUAL, Swing
 from rovsim.results.experiment import Start
 
-SHARP = 0.5  # of `Swing.square`: beyond, the stick is rather held at its ends
+SHARP = 0.5  # of `Oscillation.square`: beyond, the stick is rather held at its ends
 
 
-def instruct(flight: Tried, axes: Array, start: Start, limits: FlightLimits) -> list[str]:
+def instruct(flight: CandidateFlight, axes: Array, start: Start, limits: FlightLimits) -> list[str]:
     """Sentences, in the order in which they are needed.
 
     Args:
@@ -44,15 +44,15 @@ def _place(start: Start) -> str:
     return ", ".join(f"{axis} {minus(f'{value:.2f}')} m" for axis, value in axes)
 
 
-def _numbers(flight: Tried, axes: Array) -> list[str]:
+def _numbers(flight: CandidateFlight, axes: Array) -> list[str]:
     rows = flight.numbers[1:].reshape(len(axes), NUMBERS)
-    swings = [(AXES[axis], Swing.of(own)) for axis, own in zip(axes, rows, strict=True)]
+    swings = [(AXES[axis], Oscillation.of(own)) for axis, own in zip(axes, rows, strict=True)]
     moved = [_swing(axis, swing) for axis, swing in swings if swing.amplitude > IDLE]
     still = [axis for axis, swing in swings if swing.amplitude <= IDLE]
     return [*moved, f"Leave alone: {', '.join(still)}."] if still else moved
 
 
-def _swing(axis: str, swing: Swing) -> str:
+def _swing(axis: str, swing: Oscillation) -> str:
     how = "hold it over to one side, then to the other" if swing.square > SHARP else "swing it"
     weaker = (
         f", growing weaker down to {100 * swing.amplitude * (1.0 - swing.swell):.0f} % and strong "
@@ -66,9 +66,9 @@ def _swing(axis: str, swing: Swing) -> str:
     )
 
 
-def _usual(flight: Tried) -> Sequence[str]:
+def _usual(flight: CandidateFlight) -> Sequence[str]:
     plane, other = flight.amplitude or (0.0, 0.0)
     return [
-        f"{USUAL[flight.name].words}; {100 * plane:.0f} % of a full stick in surge, sway and yaw, "
-        f"{100 * other:.0f} % in heave, roll and pitch."
+        f"{BASELINES[flight.name].words}; {100 * plane:.0f} % of a full stick in surge, sway and "
+        f"yaw, {100 * other:.0f} % in heave, roll and pitch."
     ]

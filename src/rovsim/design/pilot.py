@@ -1,4 +1,4 @@
-"""Sticks flown on the model: a pilot who sees all keeps the vehicle upright and near its place.
+"""Inputs flown on the model: a pilot who sees all keeps the vehicle upright and near its place.
 
 What comes out are the demands alone; they are flown without looking. So a flight needs neither the
 pilot nor the autopilot of the laboratory, and how far it strays without them is predicted.
@@ -14,8 +14,8 @@ from rovsim import AXES
 from rovsim.core.rotations import multiply, normalized, rotate, to_euler, unrotate
 from rovsim.core.run import Site
 from rovsim.design.authority import Authority
+from rovsim.design.inputs import TICK
 from rovsim.design.settings import FlightLimits
-from rovsim.design.sticks import TICK
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.rest import rest_state
@@ -29,9 +29,9 @@ SMALL = 0.05  # rad
 
 @dataclass(frozen=True, eq=False)
 class ModelPilot:
-    """Flies sticks on the model of an authority, from rest at `start` (3,) m NED.
+    """Flies inputs on the model of an authority, from rest at `start` (3,) m NED.
 
-    Full sticks reach the `limits`, where the thrusters can.
+    Full ones reach the `limits`, where the thrusters can.
     """
 
     authority: Authority
@@ -40,13 +40,13 @@ class ModelPilot:
     limits: FlightLimits
     batch: Batch
 
-    def fly(self, sticks: Array, heading: Array) -> Array:
-        """What a log holds (m, n, c) of sticks (m, n, 6) from headings (m,) rad NED."""
+    def fly(self, inputs: Array, heading: Array) -> Array:
+        """What a log holds (m, n, c) of inputs (m, n, 6) from headings (m,) rad NED."""
         state, thrust, found = self.starts(heading), None, []
         wish = np.tile(self.rest, (len(state), 1))
         step = self.limits.slew * TICK * np.maximum(self.full, 1e-9)
-        for k in range(sticks.shape[1]):
-            wish = np.clip(self._wish(sticks[:, k], state), wish - step, wish + step)
+        for k in range(inputs.shape[1]):
+            wish = np.clip(self._wish(inputs[:, k], state), wish - step, wish + step)
             found.append(self.authority.values(wish))
             drive, thrust = self.authority.respond(found[-1], TICK, thrust)
             state = self._advance(drive, state)
@@ -58,7 +58,7 @@ class ModelPilot:
 
     @cached_property
     def full(self) -> Array:
-        """Wrench (6,) of full sticks: what holds the greatest speed, turn rate and tilt."""
+        """Wrench (6,) of full inputs: what holds the greatest speed, turn rate and tilt."""
         held = np.append(self._drag[[0, 1, 2, 5]], self._stiffness * self.limits.tilt)
         return np.minimum(self.authority.full, held[[0, 1, 2, 4, 5, 3]])
 
@@ -96,8 +96,8 @@ class ModelPilot:
     def _drive_at_rest(self, count: int) -> Drive:
         return self.authority.drive(self.authority.values(np.tile(self.rest, (count, 1))))
 
-    def _wish(self, sticks: Array, state: Array) -> Array:
-        """Wrench (m, 6): the sticks, and what keeps it upright and near its place."""
+    def _wish(self, inputs: Array, state: Array) -> Array:
+        """Wrench (m, 6): the inputs, and what keeps it upright and near its place."""
         away = unrotate(state[:, 3:7], state[:, :3] - self.start)
         tilt = to_euler(state[:, 3:7])
         tilt[:, 2] = 0.0
@@ -105,7 +105,7 @@ class ModelPilot:
         right = HOLD_ANGLE**2 * tilt + 2.0 * DAMPED * HOLD_ANGLE * state[:, 10:13]
         right[:, 2] = 0.0  # any heading will do
         back = np.concatenate([hold, right], axis=1) * self._held
-        return self.rest + self.full * sticks - self._inertia * back
+        return self.rest + self.full * inputs - self._inertia * back
 
     @cached_property
     def _held(self) -> Array:

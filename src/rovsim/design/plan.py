@@ -10,16 +10,22 @@ from threadpoolctl import threadpool_limits
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
+from rovsim.design.adequacy import (
+    explain_infeasible,
+    require_information,
+    warn_of_misfit,
+    warn_of_walls,
+)
 from rovsim.design.authority import Authority
-from rovsim.design.doubts import doubt, no_flight, require_news, warn_of_walls
-from rovsim.design.flight import Chances, Envelope, draw_chances
-from rovsim.design.from_train_runs import learn
-from rovsim.design.knowledge import Knowledge
+from rovsim.design.envelope import Envelope
+from rovsim.design.expected_information import ExpectedInformation, expect_information
+from rovsim.design.from_train_runs import fit_prior
 from rovsim.design.pilot import ModelPilot
-from rovsim.design.search import Range, Tried, in_parts, search, try_usual
+from rovsim.design.prior_information import PriorInformation
+from rovsim.design.recording_setup import RecordingSetup, describe_setup
+from rovsim.design.scenarios import Scenarios, draw_scenarios
+from rovsim.design.search import CandidateFlight, DesignProblem, in_parts, search, try_baselines
 from rovsim.design.settings import Question
-from rovsim.design.surroundings import Surroundings, surround
-from rovsim.design.worth import Worth, value
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.dynamics.catalogue import Catalogue
@@ -27,7 +33,8 @@ from rovsim.dynamics.model import Model
 from rovsim.measurement.runs import Runs
 from rovsim.simulation.batch import Batch
 
-LOOKED_AT, TAKEN_OVER, CHECKED = 8, 4, 40  # chances: while searching, of the worth, in the end
+# Scenarios while searching and in the end, and models that information is averaged over.
+SEARCHED, CHECKED, AVERAGED = 8, 40, 4
 FINALISTS = 4
 # Share of the time that is over when a stage begins: means over the development seeds.
 STAGES = {"learning": 0.0, "usual manoeuvres": 0.03, "searching": 0.12, "checking": 0.93}
@@ -39,22 +46,22 @@ Stage = Callable[[str], None]
 class Plan:
     """The flight, what it tells over what is not yet known, and the usual manoeuvres likewise.
 
-    `axes` (j,) are those that sticks move.
-    `usual` is None where a manoeuvre stays within the limits at no amplitude. `paths` (s, k+1, 13)
-    what could happen, the likeliest first, every `step` s. `doubts`: what speaks against it.
+    `axes` (j,) are those that inputs move. One of the `baselines` is None where it stays within the
+    limits at no amplitude. `paths` (s, k+1, 13) what could happen, the likeliest first, every
+    `step` s. `warnings`: what speaks against it.
     """
 
-    flight: Tried
-    worth: Worth
-    usual: Mapping[str, tuple[Tried, Worth] | None]
-    known: Knowledge
+    flight: CandidateFlight
+    expected: ExpectedInformation
+    baselines: Mapping[str, tuple[CandidateFlight, ExpectedInformation] | None]
+    prior: PriorInformation
     paths: Array
     step: float
     envelope: Envelope
     start: Array
     axes: Array
     site: Site
-    doubts: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 
 @threadpool_limits.wrap(limits=1, user_api="blas")  # matrices are too small for more to help
@@ -62,7 +69,7 @@ def plan(
     model: Model, runs: Runs, question: Question, columns: Sequence[int] | None,
     catalogue: Catalogue, stage: Stage,
 ) -> Plan:  # fmt: skip
-    """Find the flight that tells most.
+    """Find the flight of the largest utility.
 
     Args:
         model: what is known so far.
@@ -87,25 +94,25 @@ def plan(
             expected="at least 10 s in which the vehicle moves: a design builds on them",
             remedy="Record a train run of a minute in which the vehicle moves.",
         )
-    around = surround(usable.runs, question.seconds, columns, question.replay, catalogue)
-    known = learn(model, usable.runs, question, catalogue)
+    setup = describe_setup(usable.runs, question.seconds, columns, question.replay, catalogue)
+    prior = fit_prior(model, usable.runs, question, catalogue)
     random = np.random.default_rng(question.seed)
-    where = _open_range(known, around, question, random)
+    problem = _pose_problem(prior, setup, question, random)
     stage("usual manoeuvres")
-    usual = try_usual(where, question.seed)
+    baselines = try_baselines(problem, question.seed)
     stage("searching")
-    found = search(where, question.design, question.seed)
+    found = search(problem, question.design, question.seed)
     stage("checking")
-    return _choose(where, usual, found, question, random)
+    return _choose(problem, baselines, found, question, random)
 
 
-def _open_range(
-    known: Knowledge, around: Surroundings, question: Question, random: np.random.Generator
-) -> Range:
-    limits, first = question.design.limits, known.rivals[0].hypothesis.model
-    envelope = Envelope.around(around, limits, first.vehicle.floats)
-    batch = Batch([first], around.site, candidates=around.wrenches, learned=False)
-    authority = Authority(first, around.kind, around.axes, around.largest)
+def _pose_problem(
+    prior: PriorInformation, setup: RecordingSetup, question: Question, random: np.random.Generator
+) -> DesignProblem:
+    limits, first = question.design.limits, prior.rivals[0].hypothesis.model
+    envelope = Envelope.within(setup, limits, first.vehicle.floats)
+    batch = Batch([first], setup.site, candidates=setup.wrenches, learned=False)
+    authority = Authority(first, setup.kind, setup.axes, setup.largest)
     if not {0, 1, 5} <= set(authority.axes):
         raise BadInput(
             f"{first.vehicle.name} cannot push sideways",
@@ -115,8 +122,8 @@ def _open_range(
         )
     start = envelope.middle
     if first.vehicle.floats:
-        start[2] = around.site.level
-    pilot = ModelPilot(authority, around.site, start, limits, batch)
+        start[2] = setup.site.level
+    pilot = ModelPilot(authority, setup.site, start, limits, batch)
     if not pilot.full.any():
         raise BadInput(
             "no axis can be commanded",
@@ -124,74 +131,81 @@ def _open_range(
             expected="commands that push the vehicle",
             remedy="Check thrusters and mixer of the vehicle file.",
         )
-    return Range(pilot, envelope, _draw(known, LOOKED_AT, around, random), known, around)
+    return DesignProblem(pilot, envelope, _draw(prior, SEARCHED, setup, random), prior, setup)
 
 
 def _draw(
-    known: Knowledge, count: int, around: Surroundings, random: np.random.Generator
-) -> Chances:
+    prior: PriorInformation, count: int, setup: RecordingSetup, random: np.random.Generator
+) -> Scenarios:
     """What could happen: the likeliest of each rival first, then others."""
-    each = [rival.draw(max(2, count // len(known.rivals)), random) for rival in known.rivals]
-    return draw_chances(each, known, around, random)
+    each = [rival.draw(max(2, count // len(prior.rivals)), random) for rival in prior.rivals]
+    return draw_scenarios(each, prior, setup, random)
 
 
 def _choose(
-    where: Range, usual: Mapping[str, list[Tried]], found: Sequence[Array], question: Question,
-    random: np.random.Generator,
+    problem: DesignProblem, baselines: Mapping[str, list[CandidateFlight]],
+    found: Sequence[Array], question: Question, random: np.random.Generator,
 ) -> Plan:  # fmt: skip
     """The best over what is not yet known, of those that surely stay within the limits.
 
     A usual manoeuvre is taken where none is better.
     """
-    many = _draw(where.known, CHECKED, where.around, random)
-    some = [rival.draw(TAKEN_OVER, random) for rival in where.known.rivals]
-    best = {name: _first_safe(where, own, many) for name, own in usual.items()}
-    rated = {name: (one, _average(where, one, some)) for name, one in best.items() if one}
-    again = (one for some in in_parts(found) for one in where.try_numbers(some))
-    able = (one for one in again if one.worth)
-    safe = list(islice((one for one in able if _paths(where, one, many) is not None), FINALISTS))
-    tried = [(one, _average(where, one, some)) for one in safe]
+    prior, setup = problem.prior, problem.setup
+    scenarios = _draw(prior, CHECKED, setup, random)
+    some = [rival.draw(AVERAGED, random) for rival in prior.rivals]
+    best = {name: _first_safe(problem, own, scenarios) for name, own in baselines.items()}
+    rated = {name: (one, _average(problem, one, some)) for name, one in best.items() if one}
+    again = (one for some in in_parts(found) for one in problem.try_numbers(some))
+    able = (one for one in again if one.expected)
+    safe = (one for one in able if _paths(problem, one, scenarios) is not None)
+    tried = [(one, _average(problem, one, some)) for one in list(islice(safe, FINALISTS))]
     everything = [*tried, *rated.values()]
     if not everything:
-        raise no_flight(where, question)
-    flight, worth = max(everything, key=lambda one: one[1].told)
-    require_news(worth, where.known)
-    paths = _paths(where, flight, many)
+        raise explain_infeasible(problem, question)
+    flight, expected = max(everything, key=lambda one: one[1].utility)
+    require_information(expected, prior)
+    paths = _paths(problem, flight, scenarios)
     assert paths is not None
+    start, envelope = problem.pilot.start, problem.envelope
+    warnings = *warn_of_misfit(prior, question), *warn_of_walls(paths, start, envelope)
     return Plan(
-        flight, worth, {name: rated.get(name) for name in usual}, where.known, paths,
-        where.around.step, where.envelope, where.pilot.start, where.axes, where.around.site,
-        (*doubt(where.known, question), *warn_of_walls(paths, where.pilot.start, where.envelope)),
+        flight, expected, {name: rated.get(name) for name in baselines}, prior, paths, setup.step,
+        envelope, start, problem.axes, setup.site, warnings,
     )  # fmt: skip
 
 
-def _first_safe(where: Range, tried: Sequence[Tried], many: Chances) -> Tried | None:
+def _first_safe(
+    problem: DesignProblem, tried: Sequence[CandidateFlight], scenarios: Scenarios
+) -> CandidateFlight | None:
     """The first that surely stays within the limits."""
-    able = (one for one in tried if one.worth)
-    return next((one for one in able if _paths(where, one, many) is not None), None)
+    able = (one for one in tried if one.expected)
+    return next((one for one in able if _paths(problem, one, scenarios) is not None), None)
 
 
-def _paths(where: Range, one: Tried, many: Chances) -> Array | None:
+def _paths(problem: DesignProblem, one: CandidateFlight, scenarios: Scenarios) -> Array | None:
     """What could happen (s, k+1, 13); None where it leaves the limits."""
-    start = where.pilot.starts(np.array([one.heading]))[0]
-    paths = many.predict(where.around.drives(one.commands), start)
-    return paths if where.envelope.holds(paths) else None
+    start = problem.pilot.starts(np.array([one.heading]))[0]
+    paths = scenarios.predict(problem.setup.drives(one.commands), start)
+    return paths if problem.envelope.holds(paths) else None
 
 
-def _average(where: Range, one: Tried, some: Sequence[Sequence[Model]]) -> Worth:
-    """The worth over models that could be true: the middle of each number."""
-    start, found = where.pilot.starts(np.array([one.heading]))[0], []
-    drives = where.around.drives(one.commands)
+def _average(
+    problem: DesignProblem, one: CandidateFlight, some: Sequence[Sequence[Model]]
+) -> ExpectedInformation:
+    """Over models that could be true: the middle of each number."""
+    prior, setup = problem.prior, problem.setup
+    start, found = problem.pilot.starts(np.array([one.heading]))[0], []
+    drives = setup.drives(one.commands)
     for models in zip(*some, strict=True):
-        still = Chances(
-            models, np.zeros((len(models), len(where.around.edges) - 1, 6)),
-            np.zeros((len(models), 3)), np.zeros(len(models)), where.around,
+        undisturbed = Scenarios(
+            models, np.zeros((len(models), len(setup.edges) - 1, 6)),
+            np.zeros((len(models), 3)), np.zeros(len(models)), setup,
         )  # fmt: skip
-        paths = still.predict(drives, start)
-        found.append(value(paths, one.commands, where.known, where.around, exact=True))
-    return Worth(
-        tuple(np.median([w.surer[k] for w in found], axis=0) for k in range(len(some))),
+        paths = undisturbed.predict(drives, start)
+        found.append(expect_information(paths, one.commands, prior, setup, exact=True))
+    return ExpectedInformation(
+        tuple(np.median([w.std_ratio[k] for w in found], axis=0) for k in range(len(some))),
         tuple(np.median([w.std[k] for w in found], axis=0) for k in range(len(some))),
-        np.median([w.gain for w in found], axis=0),
-        where.known.likely,
+        np.median([w.log_odds_gain for w in found], axis=0),
+        prior.likely,
     )

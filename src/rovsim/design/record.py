@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import continuous
 from rovsim.core.run import Commands, RunInfo
-from rovsim.design.surroundings import Surroundings
+from rovsim.design.recording_setup import RecordingSetup
 from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion, Poses
@@ -17,38 +17,38 @@ from rovsim.measurement.signals.motion import Motion, Poses
 INFO = RunInfo("designed", "6dof", "train")
 
 
-def record(path: Array, commands: Commands, model: Model, around: Surroundings) -> ObservedRun:
+def record(path: Array, commands: Commands, model: Model, setup: RecordingSetup) -> ObservedRun:
     """The run that a true path (k+1, 13) of a model would be."""
-    every, edges = around.parts, around.edges
-    seen = model.mocap_view.report(path, around.step)
+    every, edges = setup.parts, setup.edges
+    seen = model.mocap_view.report(path, setup.step)
     eta = np.hstack([seen[:, :3], continuous(seen[:, 3:7])])[::every]
     nu, time = seen[::every, 7:], edges[::every]
-    make = _bins if around.like.motion.binned else _samples
-    motion = make(time, eta, nu, seen[:, 7:], commands, around)
+    make = _bins if setup.like.motion.binned else _samples
+    motion = make(time, eta, nu, seen[:, 7:], commands, setup)
     stage = Poses(
-        INFO, around.site, motion.time, motion.eta, motion.usable, commands, motion.measured
+        INFO, setup.site, motion.time, motion.eta, motion.usable, commands, motion.measured
     )
     free = model.body.free
-    return prepare_run(stage, motion, around.replay, around.catalogue, free)
+    return prepare_run(stage, motion, setup.replay, setup.catalogue, free)
 
 
 def _samples(
-    time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, around: Surroundings
+    time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, setup: RecordingSetup
 ) -> Motion:
     return Motion(
-        INFO, around.site, time, eta, nu, np.gradient(nu, time, axis=0), nu,
-        np.ones(len(time), bool), commands, False, float(time[-1]), around.measured,
+        INFO, setup.site, time, eta, nu, np.gradient(nu, time, axis=0), nu,
+        np.ones(len(time), bool), commands, False, float(time[-1]), setup.measured,
     )  # fmt: skip
 
 
 def _bins(
-    time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, around: Surroundings
+    time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, setup: RecordingSetup
 ) -> Motion:
     """Velocities are means over the bins."""
-    way = scipy.integrate.cumulative_simpson(fine, x=around.edges, axis=0, initial=0.0)
-    mean = np.diff(way[:: around.parts], axis=0) / np.diff(time)[:, None]
+    way = scipy.integrate.cumulative_simpson(fine, x=setup.edges, axis=0, initial=0.0)
+    mean = np.diff(way[:: setup.parts], axis=0) / np.diff(time)[:, None]
     change = np.vstack([np.full(6, np.nan), np.diff(mean, axis=0) / np.diff(time)[1:, None]])
     return Motion(
-        INFO, around.site, time[:-1], eta[:-1], mean, change, nu[:-1],
-        np.ones(len(mean), bool), commands, True, float(time[-1]), around.measured,
+        INFO, setup.site, time[:-1], eta[:-1], mean, change, nu[:-1],
+        np.ones(len(mean), bool), commands, True, float(time[-1]), setup.measured,
     )  # fmt: skip

@@ -5,13 +5,13 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import short_way
 from rovsim.core.run import Site
-from rovsim.design.flight import reached
+from rovsim.design.envelope import reached
+from rovsim.design.expected_information import NEGLIGIBLE, ExpectedInformation
 from rovsim.design.instructions import instruct
-from rovsim.design.knowledge import Knowledge, Known
 from rovsim.design.plan import Plan
-from rovsim.design.search import Tried
+from rovsim.design.prior_information import FittedHypothesis, PriorInformation
+from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import Question
-from rovsim.design.worth import NOTHING, Worth
 from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.results.base import or_none
 from rovsim.results.experiment import (
@@ -44,13 +44,13 @@ def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment
         know=question.know,
         start=start,
         manoeuvre=plan.flight.name,
-        expects=_expect(plan.known, plan.worth),
+        expects=_expect(plan.prior, plan.expected),
         baselines={
-            name: _compare(plan.known, plan.worth, found) for name, found in plan.usual.items()
+            name: _compare(plan.prior, plan.expected, one) for name, one in plan.baselines.items()
         },
         keeps=_keep(plan, site),
         instructions=tuple(instruct(plan.flight, plan.axes, start, question.design.limits)),
-        warnings=plan.doubts,
+        warnings=plan.warnings,
     )
 
 
@@ -61,14 +61,14 @@ def describe_start(place: Array, heading: float, site: Site) -> Start:
     return Start(x_m=x, y_m=y, z_m=z, yaw_rad=round(float(short_way(yaw)), 6))
 
 
-def _expect(known: Knowledge, worth: Worth) -> Expected:
+def _expect(prior: PriorInformation, expected: ExpectedInformation) -> Expected:
     std: dict[str, Surer] = {}
-    for rival, then, surer in zip(known.rivals, worth.std, worth.surer, strict=True):
-        std |= _list_std(rival, then, surer)
-    return Expected(odds=_list_odds(known, worth), std=std)
+    for rival, then, std_ratio in zip(prior.rivals, expected.std, expected.std_ratio, strict=True):
+        std |= _list_std(rival, then, std_ratio)
+    return Expected(odds=_list_odds(prior, expected), std=std)
 
 
-def _list_std(rival: Known, then: Array, surer: Array) -> dict[str, Surer]:
+def _list_std(rival: FittedHypothesis, then: Array, std_ratio: Array) -> dict[str, Surer]:
     parameters = [p for term in rival.hypothesis.terms for p in term.parameters]
     return {
         rival.names[k]: Surer(
@@ -77,7 +77,7 @@ def _list_std(rival: Known, then: Array, surer: Array) -> dict[str, Surer]:
             unit=parameters[k].unit,
             gained=or_none(_round(ratio**2 - 1.0)),
         )
-        for k, s, ratio in zip(rival.wanted, then, surer, strict=True)
+        for k, s, ratio in zip(rival.of_interest, then, std_ratio, strict=True)
     }
 
 
@@ -86,12 +86,12 @@ def _std(scaled: float, parameter: Parameter) -> float:
     return _round(float(np.hypot(scaled * parameter.scale, parameter.grain / np.sqrt(12.0))))
 
 
-def _list_odds(known: Knowledge, worth: Worth) -> dict[str, RivalOdds]:
-    if not len(worth.gain):
+def _list_odds(prior: PriorInformation, expected: ExpectedInformation) -> dict[str, RivalOdds]:
+    if not len(expected.log_odds_gain):
         return {}
-    found, sides = {}, (0.5 * known.deficit, -0.5 * known.deficit)
-    names = known.asked
-    for name, now, gain in zip(names, sides, worth.gain, strict=True):
+    found, sides = {}, (0.5 * prior.deficit, -0.5 * prior.deficit)
+    names = prior.rival_names
+    for name, now, gain in zip(names, sides, expected.log_odds_gain, strict=True):
         then = now + gain
         found[name] = RivalOdds(
             now=_odds(now), then=_odds(then), log_odds_now=_round(now), log_odds_then=_round(then)
@@ -108,15 +108,16 @@ def _round(value: float) -> float:
 
 
 def _compare(
-    known: Knowledge, designed: Worth, found: tuple[Tried, Worth] | None
-) -> UsualManoeuvre:
-    if found is None:
+    prior: PriorInformation, designed: ExpectedInformation,
+    baseline: tuple[CandidateFlight, ExpectedInformation] | None,
+) -> UsualManoeuvre:  # fmt: skip
+    if baseline is None:
         return UsualManoeuvre(amplitude=None, designed_is_better=None)
-    tried, worth = found
-    expected = _expect(known, worth)
+    flight, expected = baseline
+    written = _expect(prior, expected)
     return UsualManoeuvre(
-        odds=expected.odds, std=expected.std, amplitude=tried.amplitude,
-        designed_is_better=or_none(_round(designed.told / max(worth.told, NOTHING))),
+        odds=written.odds, std=written.std, amplitude=flight.amplitude,
+        designed_is_better=or_none(_round(designed.utility / max(expected.utility, NEGLIGIBLE))),
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""The sticks that tell most: first one axis at a time, then all together (SciPy).
+"""The flight of the largest utility: first one axis at a time, then all together (SciPy).
 
 Differential evolution (Storn & Price 1997) asks for no derivatives, which walls would spoil, and
 works on whole generations, which the engine flies side by side. A flight beyond the limits is worse
@@ -15,13 +15,14 @@ import scipy
 from numpy import ndarray as Array
 
 from rovsim.core.run import Commands
-from rovsim.design.flight import Chances, Envelope
-from rovsim.design.knowledge import Knowledge
+from rovsim.design.envelope import Envelope
+from rovsim.design.expected_information import ExpectedInformation, expect_information
+from rovsim.design.inputs import BASELINES, FASTEST, NUMBERS, SLOWEST, make_inputs, ticks
 from rovsim.design.pilot import ModelPilot
+from rovsim.design.prior_information import PriorInformation
+from rovsim.design.recording_setup import RecordingSetup
+from rovsim.design.scenarios import Scenarios
 from rovsim.design.settings import DesignSettings
-from rovsim.design.sticks import FASTEST, NUMBERS, SLOWEST, USUAL, move_sticks, ticks
-from rovsim.design.surroundings import Surroundings
-from rovsim.design.worth import Worth, value
 
 # Where one axis at a time is tried: swings of 20 s to 2 s, soft and sharp.
 FREQUENCIES, SQUARES, AMPLITUDES = (0.05, 0.12, 0.25, 0.5), (0.0, 0.8), (0.3, 0.6, 1.0)
@@ -33,89 +34,93 @@ VERTICAL = np.array([2, 3, 4])  # heave, roll, pitch
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
-    """A flight: `sticks` (n, 6) from a heading in rad, its log, its worth if it may be flown.
+class CandidateFlight:
+    """A flight: `inputs` (n, 6) from a heading in rad, its log, and what is expected of it.
 
-    `excess` is how far it leaves the limits, `numbers` what it was made of, `name` and `amplitude`
-    those of a usual manoeuvre.
+    Of one beyond the limits, which it leaves by `excess`, nothing is. `numbers` are what it was
+    made of, `name` and `amplitude` those of a usual manoeuvre.
     """
 
-    sticks: Array
+    inputs: Array
     heading: float
     commands: Commands
     excess: float
-    worth: Worth | None
+    expected: ExpectedInformation | None
     numbers: Array = field(default_factory=lambda: np.empty(0))
     name: str = "designed"
     amplitude: tuple[float, float] | None = None
 
     @property
-    def told(self) -> float:
-        """What it tells; negative beyond the limits."""
-        return self.worth.told if self.worth else -self.excess
+    def utility(self) -> float:
+        """To be as large as possible; negative beyond the limits."""
+        return self.expected.utility if self.expected else -self.excess
 
 
 @dataclass(frozen=True, eq=False)
-class Range:
-    """Where flights are tried: pilot, limits, what could happen, what is known."""
+class DesignProblem:
+    """Which flights there are, and what judges them: limits, what could happen, what is known."""
 
     pilot: ModelPilot
     envelope: Envelope
-    chances: Chances
-    known: Knowledge
-    around: Surroundings
+    scenarios: Scenarios
+    prior: PriorInformation
+    setup: RecordingSetup
 
     @property
     def axes(self) -> Array:
-        """Axes (j,) that a stick moves."""
+        """Axes (j,) that inputs move."""
         return np.flatnonzero(self.pilot.full)
 
-    def try_all(self, sticks: Sequence[Array], headings: Sequence[float]) -> Iterator[Tried]:
+    def try_all(
+        self, inputs: Sequence[Array], headings: Sequence[float]
+    ) -> Iterator[CandidateFlight]:
         """Each of the flights: flown side by side, judged one after the other when asked for."""
-        demands = self.pilot.fly(np.array(sticks), np.array(headings))
+        demands = self.pilot.fly(np.array(inputs), np.array(headings))
         starts = self.pilot.starts(np.array(headings))
-        each = zip(sticks, headings, demands, starts, strict=True)
+        each = zip(inputs, headings, demands, starts, strict=True)
         return (self._try(*one) for one in each)
 
-    def _try(self, sticks: Array, heading: float, demand: Array, start: Array) -> Tried:
-        time = ticks(self.around.seconds)
-        commands = self.pilot.authority.commands(time, demand, self.around.lines)
-        drives, (likeliest, rest) = self.around.drives(commands), self._parts
+    def _try(self, inputs: Array, heading: float, demand: Array, start: Array) -> CandidateFlight:
+        time = ticks(self.setup.seconds)
+        commands = self.pilot.authority.commands(time, demand, self.setup.lines)
+        drives, (likeliest, rest) = self.setup.drives(commands), self._parts
         paths = likeliest.predict(drives, start)
-        excess, worth = self.envelope.excess(paths, still=True), None
+        excess, expected = self.envelope.excess(paths, each_alone=True), None
         if excess == 0.0:
             paths = np.concatenate([paths, rest.predict(drives, start)])
             excess = self.envelope.excess(paths)
         if excess == 0.0:
-            worth = value(paths[: len(self.known.rivals)], commands, self.known, self.around)
-        return Tried(sticks, heading, commands, excess, worth)
+            each = paths[: len(self.prior.rivals)]
+            expected = expect_information(each, commands, self.prior, self.setup)
+        return CandidateFlight(inputs, heading, commands, excess, expected)
 
     @cached_property
-    def _parts(self) -> tuple[Chances, Chances]:
+    def _parts(self) -> tuple[Scenarios, Scenarios]:
         """The likeliest of each rival, and all others."""
-        return self.chances.split(len(self.known.rivals))
+        return self.scenarios.split(len(self.prior.rivals))
 
-    def try_numbers(self, x: Sequence[Array]) -> Iterator[Tried]:
+    def try_numbers(self, x: Sequence[Array]) -> Iterator[CandidateFlight]:
         """Flights of numbers (1 + 5 j,) in [0, 1]: a heading, then five an axis; see `try_all`."""
-        seconds = self.around.seconds
-        sticks = [move_sticks(own[1:], self.axes, seconds) for own in x]
-        tried = self.try_all(sticks, [self.envelope.longest + np.pi * own[0] for own in x])
+        seconds = self.setup.seconds
+        inputs = [make_inputs(own[1:], self.axes, seconds) for own in x]
+        tried = self.try_all(inputs, [self.envelope.longest + np.pi * own[0] for own in x])
         return (replace(one, numbers=own) for one, own in zip(tried, x, strict=True))
 
 
-def try_usual(where: Range, seed: int) -> dict[str, list[Tried]]:
-    """The usual manoeuvres, each at all amplitudes, those that tell most first."""
-    found, t = {}, ticks(where.around.seconds)
+def try_baselines(problem: DesignProblem, seed: int) -> dict[str, list[CandidateFlight]]:
+    """The usual manoeuvres, each at all amplitudes, the largest utility first."""
+    found, t = {}, ticks(problem.setup.seconds)
     levels = list(product(IN_PLANE, OUT_OF_PLANE))
-    for name, usual in USUAL.items():
-        full = usual.move(t, where.axes, np.random.default_rng(seed))
+    for name, baseline in BASELINES.items():
+        full = baseline.move(t, problem.axes, np.random.default_rng(seed))
         scales = [np.where(np.isin(np.arange(6), VERTICAL), b, a) for a, b in levels]
-        tried = where.try_all([full * s for s in scales], [where.envelope.longest] * len(levels))
+        headings = [problem.envelope.longest] * len(levels)
+        tried = problem.try_all([full * s for s in scales], headings)
         named = [
             replace(one, name=name, amplitude=level)
             for one, level in zip(tried, levels, strict=True)
         ]
-        found[name] = sorted(named, key=lambda one: -one.told)
+        found[name] = sorted(named, key=lambda one: -one.utility)
     return found
 
 
@@ -126,8 +131,8 @@ class Rated(NamedTuple):
     rank: float
 
 
-def search(where: Range, settings: DesignSettings, seed: int) -> list[Array]:
-    """Numbers (1 + 5 j,) of the flights within the limits, in the order of what they tell.
+def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[Array]:
+    """Numbers (1 + 5 j,) of the flights within the limits, by falling utility.
 
     A flight is made again of its numbers when it is needed: each takes megabytes.
     """
@@ -136,12 +141,12 @@ def search(where: Range, settings: DesignSettings, seed: int) -> list[Array]:
     def rate(x: Array) -> Array:
         found = []
         for some in in_parts(np.clip(x.T, 0.0, 1.0)):
-            found += [Rated(one.numbers, _ranked(one)) for one in where.try_numbers(some)]
+            found += [Rated(one.numbers, _ranked(one)) for one in problem.try_numbers(some)]
         archive.extend(found)
         return np.array([-one.rank for one in found])
 
-    rate(_one_axis_each(where).T)
-    first = _begin(archive, where, settings.population, np.random.default_rng(seed))
+    rate(_one_axis_each(problem).T)
+    first = _begin(archive, problem, settings.population, np.random.default_rng(seed))
     scipy.optimize.differential_evolution(
         cast(Any, rate),  # whole generations, which its types do not know
         scipy.optimize.Bounds(np.zeros(first.shape[1]), np.ones(first.shape[1])),
@@ -158,41 +163,43 @@ def in_parts(x: Sequence[Array]) -> list[Sequence[Array]]:
     return [x[first : first + AT_ONCE] for first in range(0, len(x), AT_ONCE)]
 
 
-def _ranked(one: Tried) -> float:
+def _ranked(one: CandidateFlight) -> float:
     """To be as large as possible; any flight within the limits above all beyond them."""
-    return float(np.log(max(one.told, 1e-12))) if one.worth else BEYOND - min(one.excess, 1e6)
+    if one.expected:
+        return float(np.log(max(one.utility, 1e-12)))
+    return BEYOND - min(one.excess, 1e6)
 
 
-def _one_axis_each(where: Range) -> Array:
+def _one_axis_each(problem: DesignProblem) -> Array:
     """Numbers (m, 1 + 5 j) of swings of one axis alone."""
     rows = []
     for k, (f, square, a) in product(
-        range(len(where.axes)), product(FREQUENCIES, SQUARES, AMPLITUDES)
+        range(len(problem.axes)), product(FREQUENCIES, SQUARES, AMPLITUDES)
     ):
-        own = np.zeros((len(where.axes), NUMBERS))
+        own = np.zeros((len(problem.axes), NUMBERS))
         own[:, 1] = 0.5
         own[k] = [a, np.log(f / SLOWEST) / np.log(FASTEST / SLOWEST), square, 0.0, 0.0]
         # what goes aside does so along the longer side
-        heading = 0.5 if where.axes[k] == 1 else 0.0
+        heading = 0.5 if problem.axes[k] == 1 else 0.0
         rows.append(np.concatenate([[heading], own.ravel()]))
     return np.array(rows)
 
 
 def _begin(
-    archive: Sequence[Rated], where: Range, population: int, random: np.random.Generator
+    archive: Sequence[Rated], problem: DesignProblem, population: int, random: np.random.Generator
 ) -> Array:
     """The first generation: the best of each axis, alone and in pairs, and what chance adds."""
     best = []
     rows = np.array([one.numbers for one in archive])
-    told = np.array([one.rank for one in archive])
-    for k in range(len(where.axes)):
+    ranks = np.array([one.rank for one in archive])
+    for k in range(len(problem.axes)):
         own = np.flatnonzero(rows[:, 1 + NUMBERS * k] > 0.0)
-        best += [rows[i] for i in own[np.argsort(-told[own])][:2]]
+        best += [rows[i] for i in own[np.argsort(-ranks[own])][:2]]
     found = list(best)
     while len(found) < population:
         pair = random.choice(len(best), 2, replace=False)
         mixed = np.maximum(best[pair[0]], 0.0).copy()
-        axes, other = where.axes, best[pair[1]]
+        axes, other = problem.axes, best[pair[1]]
         for k in range(len(axes)):
             block = slice(1 + NUMBERS * k, 1 + NUMBERS * (k + 1))
             if other[block][0] > mixed[block][0]:

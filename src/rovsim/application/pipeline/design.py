@@ -12,7 +12,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import appearing_together, write_text
 from rovsim.core.progress import staged
 from rovsim.core.run import Commands
-from rovsim.design.doubts import warn_of_wider
+from rovsim.design.adequacy import warn_of_wider
 from rovsim.design.plan import STAGES, Plan, plan
 from rovsim.design.report import report
 from rovsim.design.settings import Question

@@ -1,4 +1,4 @@
-"""What pushes the vehicle for long in the train runs, and the model does not know of.
+"""What disturbs the vehicle for long in the train runs, and the model does not know of.
 
 The disturbance that `noise.py` fits remembers 3 s at most and has no mean: a force that lasts (a
 buoyancy, a current, drag that the model lacks) would not be foreseen. Here it is measured: an
@@ -26,7 +26,7 @@ LARGE, SURE = 2.0, 3.0  # of what passes by in a block, and standard errors: the
 
 
 @dataclass(frozen=True, eq=False)
-class SteadyPush:
+class LowFrequencyDisturbance:
     """Accelerations per axis, m/s2 and rad/s2, in the body's axes.
 
     `mean` (6,) lasts as long as a flight, a part of size `spread` (6,) about a block. `large`
@@ -38,22 +38,22 @@ class SteadyPush:
     large: Array
 
     @staticmethod
-    def none() -> "SteadyPush":
+    def none() -> "LowFrequencyDisturbance":
         """Of a model to which nothing is unknown but the short disturbance."""
-        return SteadyPush(np.zeros(6), np.zeros(6), np.zeros(6, bool))
+        return LowFrequencyDisturbance(np.zeros(6), np.zeros(6), np.zeros(6, bool))
 
     @staticmethod
-    def of_blocks(blocks: Array, seconds: float, noise: Noise) -> "SteadyPush":
+    def of_blocks(blocks: Array, seconds: float, noise: Noise) -> "LowFrequencyDisturbance":
         """What lasts, of the mean disturbances (b, 6) of blocks of so many seconds each."""
         if not len(blocks):
-            return SteadyPush.none()
+            return LowFrequencyDisturbance.none()
         chance = noise.level * np.sqrt(gauss_markov.variance_of_mean(noise.memory / seconds))
         count, mean = len(blocks), blocks.mean(axis=0)
         error = chance / np.sqrt(count)
         varied = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
         # of a variance of n + 1 numbers by chance: a standard error is sqrt(2 / n) of it
         usual = chance**2 * (1.0 + CHANCE * np.sqrt(2.0 / max(count - 1, 1)))
-        return SteadyPush(
+        return LowFrequencyDisturbance(
             np.where(np.abs(mean) > CHANCE * error, mean, 0.0),
             np.sqrt(np.where(varied > usual, varied - chance**2, 0.0)),
             np.abs(mean) > np.maximum(LARGE * chance, SURE * error),
@@ -64,9 +64,9 @@ class SteadyPush:
         return self.mean + self.spread * gauss_markov.draw(steps, h / BLOCK, random)
 
 
-def measure_push(
+def estimate_disturbance(
     model: Model, runs: Sequence[ObservedRun], noise: Noise, motions: Sequence[AxisMotion]
-) -> SteadyPush:
+) -> LowFrequencyDisturbance:
     """What pushes the vehicle for long in the train runs, and a model does not know of.
 
     Args:
@@ -79,7 +79,7 @@ def measure_push(
     blocks: list[Array] = []
     for run in runs:
         blocks += _average(run, _follow(model, run, tune(slow, motions, run)))
-    return SteadyPush.of_blocks(np.array(blocks) * model.body.free, BLOCK, noise)
+    return LowFrequencyDisturbance.of_blocks(np.array(blocks) * model.body.free, BLOCK, noise)
 
 
 def _follow(model: Model, run: ObservedRun, tuning: Tuning) -> Array:

@@ -1,4 +1,4 @@
-"""Whether the model follows its own train runs well enough to be flown without looking."""
+"""Whether a model is good enough to be flown without looking, and why there may be no flight."""
 
 from typing import Mapping, Sequence
 
@@ -8,13 +8,13 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.signs import minus
-from rovsim.design.flight import Envelope
-from rovsim.design.knowledge import Knowledge
-from rovsim.design.search import Range
+from rovsim.design.envelope import Envelope
+from rovsim.design.expected_information import ExpectedInformation
+from rovsim.design.inputs import ticks
+from rovsim.design.low_frequency_disturbance import LowFrequencyDisturbance
+from rovsim.design.prior_information import PriorInformation
+from rovsim.design.search import DesignProblem
 from rovsim.design.settings import Question
-from rovsim.design.steady_push import SteadyPush
-from rovsim.design.sticks import ticks
-from rovsim.design.worth import Worth
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.reporting.units import ACCELERATION_UNITS
@@ -33,20 +33,20 @@ DIAGNOSE = (
 )
 
 
-def doubt(known: Knowledge, question: Question) -> tuple[str, ...]:
+def warn_of_misfit(prior: PriorInformation, question: Question) -> tuple[str, ...]:
     """What speaks against the model, a sentence each; nothing where it follows its train runs.
 
     Of two rivals the likelier one is judged.
     """
-    rival = max(range(len(known.rivals)), key=lambda k: known.rivals[k].likelihood)
-    push, model = known.steady[rival], known.rivals[rival].hypothesis.model
-    if not push.large.any():
+    rival = max(range(len(prior.rivals)), key=lambda k: prior.rivals[k].likelihood)
+    lasting, model = prior.low_frequency[rival], prior.rivals[rival].hypothesis.model
+    if not lasting.large.any():
         return ()
-    far = err(model, known.runs, question)
+    far = measure_replay_error(model, prior.runs, question)
     after = "" if far is None else f", and after {AFTER:g} s it is {far:.2g} m off"
     return (
-        f"The model errs on the train runs: {_name(push)} push the vehicle all the time, of which "
-        f"it does not know{after}. {DIAGNOSE}.",
+        f"The model errs on the train runs: {_name(lasting)} push the vehicle all the time, of "
+        f"which it does not know{after}. {DIAGNOSE}.",
     )
 
 
@@ -75,14 +75,16 @@ def warn_of_wider(model: Model, now: Mapping[str, float | None]) -> tuple[str, .
     )
 
 
-def _name(push: SteadyPush) -> str:
+def _name(lasting: LowFrequencyDisturbance) -> str:
     return " and ".join(
-        f"{minus(f'{push.mean[i]:.2g}')} {ACCELERATION_UNITS[i]} in {AXES[i]}"
-        for i in np.flatnonzero(push.large)
+        f"{minus(f'{lasting.mean[i]:.2g}')} {ACCELERATION_UNITS[i]} in {AXES[i]}"
+        for i in np.flatnonzero(lasting.large)
     )
 
 
-def err(model: Model, runs: Sequence[ObservedRun], question: Question) -> float | None:
+def measure_replay_error(
+    model: Model, runs: Sequence[ObservedRun], question: Question
+) -> float | None:
     """How far (m, root mean square) replays of the runs are off after `AFTER` seconds.
 
     None where no window is that long, or no place was measured.
@@ -101,36 +103,36 @@ def err(model: Model, runs: Sequence[ObservedRun], question: Question) -> float 
     return float(np.sqrt(known.mean())) if len(known) else None
 
 
-def no_flight(where: Range, question: Question) -> BadInput:
+def explain_infeasible(problem: DesignProblem, question: Question) -> BadInput:
     """Why no flight stays within the limits, as the error to be raised."""
     resting = np.zeros((len(ticks(question.seconds)), len(AXES)))
-    heading = where.envelope.longest
-    still = next(where.try_all([resting], [heading]))
-    start = where.pilot.starts(np.array([heading]))[0]
-    paths = where.chances.predict(where.around.drives(still.commands), start)
-    why = where.envelope.tell(paths)
+    heading = problem.envelope.longest
+    still = next(problem.try_all([resting], [heading]))
+    start = problem.pilot.starts(np.array([heading]))[0]
+    paths = problem.scenarios.predict(problem.setup.drives(still.commands), start)
+    why = problem.envelope.describe_excess(paths)
     told = f"a vehicle told to stay where it is already {why}" if why else NARROW
-    doubts = doubt(where.known, question)
+    misfit = warn_of_misfit(problem.prior, question)
     found = f"no flight of {question.seconds:g} s stays within the limits: {told}"
     return BadInput(
-        f"{found}. {doubts[0].removesuffix('.')}" if doubts else found,
+        f"{found}. {misfit[0].removesuffix('.')}" if misfit else found,
         where="rovsim design",
         expected="room for a flight that nobody steers",
-        remedy="Or give fewer seconds, or wider design.limits." if doubts else REMEDY,
+        remedy="Or give fewer seconds, or wider design.limits." if misfit else REMEDY,
     )
 
 
-def require_news(worth: Worth, known: Knowledge) -> None:
+def require_information(expected: ExpectedInformation, prior: PriorInformation) -> None:
     """Refuse the best flight where it tells nothing.
 
     Raises:
         BadInput: it adds less than a thousandth to what the train runs hold.
     """
-    if worth.tells:
+    if expected.informative:
         return
-    names = [rival.names[k] for rival in known.rivals for k in rival.wanted]
+    names = [rival.names[k] for rival in prior.rivals for k in rival.of_interest]
     raise BadInput(
-        f"no flight within the limits tells anything about {', '.join(known.asked or names)}",
+        f"no flight within the limits tells anything about {', '.join(prior.rival_names or names)}",
         where="rovsim design",
         expected="limits within which the vehicle moves so that the answer shows",
         remedy="Widen design.limits (speed, turn_rate, tilt, slew), give more seconds, or ask "

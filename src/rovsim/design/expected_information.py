@@ -1,4 +1,4 @@
-"""What a flight would tell, beside the train runs: smaller intervals, longer odds.
+"""The information expected of a flight, beside the train runs: smaller intervals, longer odds.
 
 With H the information of the train runs about a hypothesis' parameters and J the derivatives of the
 flight's white innovations, H + J J^T is that of both. Where the first rival is true, the second one
@@ -19,9 +19,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.run import Commands
-from rovsim.design.knowledge import Knowledge, Known
+from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.record import record
-from rovsim.design.surroundings import Surroundings
+from rovsim.design.recording_setup import RecordingSetup
 from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.innovations import estimate_errors
@@ -31,48 +31,49 @@ from rovsim.diagnosis.observer.noise import tune
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.gauss_newton import REACH
 
-NOTHING = 1e-3  # of what the train runs hold: less is not worth a comparison
+NEGLIGIBLE = 1e-3  # of what the train runs hold: less is not worth a comparison
 THINNED = 4  # of so many readings one is asked how errors go on: 0.2 s apart
 
 
 @dataclass(frozen=True, eq=False)
-class Worth:
+class ExpectedInformation:
     """Of one flight.
 
-    `surer` (j,) for each rival: standard deviation now over then of what is asked for; `std`
-    likewise then, scaled. `gain` (r,): what the logarithm of the odds of each rival, were it true,
-    is expected to gain; empty without rivals. `likely` (r,): the rivals that count; of others the
-    gain is infinite where nobody asked for it.
+    `std_ratio` (j,) for each rival: standard deviation now over then of what is asked for; `std`
+    likewise then, scaled. `log_odds_gain` (r,): what the logarithm of the odds of each rival, were
+    it true, is expected to gain; empty without rivals. `likely` (r,): the rivals that count; of
+    others the gain is infinite where nobody asked for it.
     """
 
-    surer: tuple[Array, ...]
+    std_ratio: tuple[Array, ...]
     std: tuple[Array, ...]
-    gain: Array
+    log_odds_gain: Array
     likely: Array
 
     @property
-    def told(self) -> float:
+    def utility(self) -> float:
         """What is to be as large as possible: the least of the gains that count, or information.
 
         Information in units of what the train runs hold, the geometric mean over what is asked for.
         """
-        if len(self.gain):
-            return float(np.min(self.gain[self.likely]))
-        gained = np.maximum(self.surer[0] ** 2 - 1.0, NOTHING)
+        if len(self.log_odds_gain):
+            return float(np.min(self.log_odds_gain[self.likely]))
+        gained = np.maximum(self.std_ratio[0] ** 2 - 1.0, NEGLIGIBLE)
         return float(np.exp(np.mean(np.log(gained))))
 
     @property
-    def tells(self) -> bool:
+    def informative(self) -> bool:
         """Whether it tells anything worth a flight about what is asked for."""
-        if len(self.gain):
-            return self.told > NOTHING
-        return bool((self.surer[0] ** 2 - 1.0 > NOTHING).any())
+        if len(self.log_odds_gain):
+            return self.utility > NEGLIGIBLE
+        return bool((self.std_ratio[0] ** 2 - 1.0 > NEGLIGIBLE).any())
 
 
-def value(
-    paths: Array, commands: Commands, known: Knowledge, around: Surroundings, exact: bool = False
-) -> Worth:
-    """The worth of a flight whose path under each rival is (r, k+1, 13).
+def expect_information(
+    paths: Array, commands: Commands, prior: PriorInformation, setup: RecordingSetup,
+    exact: bool = False,
+) -> ExpectedInformation:  # fmt: skip
+    """Of a flight whose path under each rival is (r, k+1, 13).
 
     `exact`: the train runs are observed anew, with filters that suit them and the flight together,
     as a diagnosis of all would. Else as they were seen without it, thrust is steady over each step
@@ -80,46 +81,51 @@ def value(
     rivals that do not count.
     """
     if not exact:
-        around = around.coarser
-    told, gains, motions, alone = [], [], None, len(known.rivals) == 1
-    for k, (path, rival) in enumerate(zip(paths, known.rivals, strict=True)):
-        if not (exact or known.likely[k]):
-            told.append(np.zeros_like(rival.information))
+        setup = setup.coarser
+    information, gains, motions, alone = [], [], None, len(prior.rivals) == 1
+    for k, (path, rival) in enumerate(zip(paths, prior.rivals, strict=True)):
+        if not (exact or prior.likely[k]):
+            information.append(np.zeros_like(rival.information))
             gains.append(np.inf)
             continue
-        run = record(path, commands, rival.hypothesis.model, around)
+        run = record(path, commands, rival.hypothesis.model, setup)
         if exact or motions is None:
-            motions = _mix_motions(run, rival, known)
-        bank = _observe(run, rival, known, motions, exact)
-        own = bank.linearise(rival.hypothesis if exact or alone else rival.as_it_is)
-        told.append(measure_information(bank, own, rival, known))
+            motions = _mix_motions(run, rival, prior)
+        bank = _observe(run, rival, prior, motions, exact)
+        own = bank.linearise(rival.hypothesis if exact or alone else rival.fixed)
+        information.append(measure_information(bank, own, rival, prior))
         if not alone:
-            gains.append(_gain(bank, own, known.rivals[1 - k], known, exact))
-    then = [one.std(of) for one, of in zip(known.rivals, told, strict=True)]
-    now = [one.std() for one in known.rivals]
-    surer = tuple(a / b for a, b in zip(now, then, strict=True))
-    return Worth(surer, tuple(then), np.array(gains), known.likely)
+            gains.append(_expect_log_odds(bank, own, prior.rivals[1 - k], prior, exact))
+    then = [one.std(of) for one, of in zip(prior.rivals, information, strict=True)]
+    now = [one.std() for one in prior.rivals]
+    std_ratio = tuple(a / b for a, b in zip(now, then, strict=True))
+    return ExpectedInformation(std_ratio, tuple(then), np.array(gains), prior.likely)
 
 
-def _mix_motions(run: ObservedRun, rival: Known, known: Knowledge) -> tuple[AxisMotion, ...]:
+def _mix_motions(
+    run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation
+) -> tuple[AxisMotion, ...]:
     """How errors go on in the train runs and a flight, each as long as it lasts."""
     some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
     own = np.array(estimate_errors(rival.hypothesis.model, [some]).motions)
-    before, lasts = known.seconds, float(run.instants[-1])
-    both = (before * np.array(known.motions) + lasts * own) / (before + lasts)
+    before, lasts = prior.seconds, float(run.instants[-1])
+    both = (before * np.array(prior.motions) + lasts * own) / (before + lasts)
     return tuple(AxisMotion(float(d), float(k)) for d, k in both)
 
 
 def _observe(
-    run: ObservedRun, rival: Known, known: Knowledge, motions: tuple[AxisMotion, ...], exact: bool
-) -> FilterBank:
+    run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation,
+    motions: tuple[AxisMotion, ...], exact: bool,
+) -> FilterBank:  # fmt: skip
     """Filters for the flight, which is the last run, and where exact for the train runs."""
-    runs = (*known.runs, run) if exact else (run,)
-    tunings = tuple(tune(known.noise.white, motions, w) for w in runs)
+    runs = (*prior.runs, run) if exact else (run,)
+    tunings = tuple(tune(prior.noise.white, motions, w) for w in runs)
     return FilterBank(runs, motions, tunings, rival.hypothesis.model)
 
 
-def measure_information(bank: FilterBank, own: Linearised, rival: Known, known: Knowledge) -> Array:
+def measure_information(
+    bank: FilterBank, own: Linearised, rival: FittedHypothesis, prior: PriorInformation
+) -> Array:
     """Information (k, k) of the flight, which is the last run of the bank: it takes none away.
 
     Filters that suit all runs together may see less of the train runs than their own did.
@@ -127,15 +133,18 @@ def measure_information(bank: FilterBank, own: Linearised, rival: Known, known: 
     if not len(own.at.x):
         return np.zeros_like(rival.information)
     flight = [*(0.0 * J for J in own.J[:-1]), own.J[-1]]
-    return np.asarray(inner_products(bank.flatten(flight, known.noise)))
+    return np.asarray(inner_products(bank.flatten(flight, prior.noise)))
 
 
-def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, exact: bool) -> float:
+def _expect_log_odds(
+    bank: FilterBank, true: Linearised, other: FittedHypothesis, prior: PriorInformation,
+    exact: bool,
+) -> float:  # fmt: skip
     """What the log odds against a rival, with all that it could free, gain where one is true.
 
     Its parameters stay within the reach that a fit gives them.
     """
-    seen, held = bank.linearise(other.widest), other.held
+    seen, held = bank.linearise(other.widest), other.widest_information
     if not seen.finite:
         seen, held = bank.linearise(other.hypothesis), other.information
     if not seen.finite:
@@ -143,13 +152,13 @@ def _gain(bank: FilterBank, true: Linearised, other: Known, known: Knowledge, ex
     beside = [a - b for a, b in zip(seen.e, true.e, strict=True)]
     beside = [*(0.0 * one for one in beside[:-1]), beside[-1]]  # what is known is judged already
     rows = [np.concatenate([e[None], J]) for e, J in zip(beside, seen.J, strict=True)]
-    e, J = np.split(bank.flatten(rows, known.noise), [1])
+    e, J = np.split(bank.flatten(rows, prior.noise), [1])
     e = e[0]
     near = np.eye(len(J)) / REACH**2 + (0.0 if exact else held)
     x = -solve(inner_products(J) + near, J @ e)
     left = (e + x @ J).reshape(6, -1)
     before = float(x @ near @ x)
-    more = 0 if exact else known.count  # readings that it leaves as they were
+    more = 0 if exact else prior.readings  # readings that it leaves as they were
     return 0.5 * (before + surprise(left, 1.0 + more / left.shape[1]))
 
 

@@ -1,6 +1,6 @@
-"""Movements of the sticks: a few numbers an axis, and the manoeuvres that are usual.
+"""Inputs of a flight, as of a pilot's sticks: a few numbers an axis, and the usual manoeuvres.
 
-A stick is a share (ticks, 6) in [-1, 1]: full sticks hold the greatest speed, turn rate and tilt
+An input is a share (ticks, 6) in [-1, 1]: full ones hold the greatest speed, turn rate and tilt
 that the limits allow, or are the full thrust where that is less.
 """
 
@@ -18,7 +18,7 @@ SWELL = 30.0  # s from strong to weak and back
 IDLE = 0.08  # of a stick: moved less, it rests
 
 
-class Swing(NamedTuple):
+class Oscillation(NamedTuple):
     """One axis: `amplitude`, `frequency` Hz, `square` in [0, 1], `phase` in turns, `swell`.
 
     `swell` in [0, 1] is the share of the amplitude that comes and goes.
@@ -31,14 +31,14 @@ class Swing(NamedTuple):
     swell: float
 
     @staticmethod
-    def of(x: Array) -> "Swing":
+    def of(x: Array) -> "Oscillation":
         """Of five numbers in [0, 1]."""
         amplitude = 0.0 if x[0] < IDLE else float(x[0])
         frequency = SLOWEST * (FASTEST / SLOWEST) ** float(x[1])
-        return Swing(amplitude, frequency, float(x[2]), float(x[3]), float(x[4]))
+        return Oscillation(amplitude, frequency, float(x[2]), float(x[3]), float(x[4]))
 
     def move(self, t: Array) -> Array:
-        """The stick (n,) at times (n,) s."""
+        """The input (n,) at times (n,) s."""
         wave = np.sin(2.0 * np.pi * (self.frequency * t + self.phase))
         sharp = SQUARE * self.square
         if sharp > 0.0:
@@ -47,25 +47,25 @@ class Swing(NamedTuple):
         return self.amplitude * (1.0 - weak) * wave
 
 
-NUMBERS = len(Swing._fields)  # an axis
+NUMBERS = len(Oscillation._fields)  # an axis
 
 
 def ticks(seconds: float) -> Array:
-    """Times (n,) s at which sticks are set."""
+    """Times (n,) s at which inputs are set."""
     return TICK * np.arange(round(seconds / TICK) + 1)
 
 
-def move_sticks(x: Array, axes: Array, seconds: float) -> Array:
-    """Sticks (n, 6) of five numbers (5 j,) in [0, 1] for each of the axes (j,)."""
+def make_inputs(x: Array, axes: Array, seconds: float) -> Array:
+    """Inputs (n, 6) of five numbers (5 j,) in [0, 1] for each of the axes (j,)."""
     t = ticks(seconds)
     found = np.zeros((len(t), len(AXES)))
     for axis, own in zip(axes, x.reshape(len(axes), NUMBERS), strict=True):
-        found[:, axis] = Swing.of(own).move(t)
+        found[:, axis] = Oscillation.of(own).move(t)
     return found
 
 
-class Usual(NamedTuple):
-    """A manoeuvre: times (n,) s, axes (j,) -> sticks (n, 6), and what a pilot is told."""
+class Baseline(NamedTuple):
+    """A manoeuvre: times (n,) s, axes (j,) -> inputs (n, 6), and what a pilot is told."""
 
     move: Callable[[Array, Array, np.random.Generator], Array]
     words: str
@@ -115,11 +115,13 @@ def _prbs(t: Array, axes: Array, random: np.random.Generator) -> Array:
     return found
 
 
-USUAL: Mapping[str, Usual] = {
-    "zigzag": Usual(_zigzag, "Ahead, and the helm over to the other side every 5 s"),
-    "steps": Usual(_steps, "One axis after the other: ahead, rest, back, rest, each as long"),
-    "multisine": Usual(_multisine, "All axes at once, swings of 20 s to 2 s on top of one another"),
-    "prbs": Usual(
+BASELINES: Mapping[str, Baseline] = {
+    "zigzag": Baseline(_zigzag, "Ahead, and the helm over to the other side every 5 s"),
+    "steps": Baseline(_steps, "One axis after the other: ahead, rest, back, rest, each as long"),
+    "multisine": Baseline(
+        _multisine, "All axes at once, swings of 20 s to 2 s on top of one another"
+    ),
+    "prbs": Baseline(
         _prbs,
         "All axes at once, each full over to a side that changes at random, every second",
     ),

@@ -9,10 +9,15 @@ from hypothesis import strategies as st
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.design.doubts import require_news
+from rovsim.design.adequacy import require_information
+from rovsim.design.expected_information import (
+    NEGLIGIBLE,
+    ExpectedInformation,
+    measure_information,
+    surprise,
+)
 from rovsim.design.from_train_runs import check_fitted, widen
-from rovsim.design.knowledge import Knowledge, Known
-from rovsim.design.worth import NOTHING, Worth, measure_information, surprise
+from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.onboard_control import OnboardControl
@@ -48,7 +53,7 @@ def test_what_is_small_counts_by_its_square():
 def test_a_rival_that_is_ruled_out_does_not_count():
     gain = np.array([30.0, 2.0])
     for likely, told in (([True, True], 2.0), ([True, False], 30.0)):
-        assert Worth(surer=(), std=(), gain=gain, likely=np.array(likely)).told == told
+        assert ExpectedInformation((), (), gain, np.array(likely)).utility == told
 
 
 @pytest.mark.parametrize("n", [401, 402, 1024, 3])
@@ -59,10 +64,9 @@ def test_octaves_hold_all_the_power_once(n):
 
 def test_a_rival_with_odds_of_a_thousand_against_it_is_ruled_out():
     def known(*likelihoods):
-        rivals = [
-            Known(None, np.eye(1), np.array([0]), one, None, np.eye(1)) for one in likelihoods
-        ]
-        return Knowledge((), (), tuple(rivals), None, ())
+        own = np.eye(1), np.array([0])
+        rivals = [FittedHypothesis(None, *own, one, None, np.eye(1)) for one in likelihoods]
+        return PriorInformation((), (), tuple(rivals), None, ())
 
     assert list(known(0.0, -13.7).likely) == [True, True]
     assert list(known(-13.9, 0.0).likely) == [False, True]
@@ -83,21 +87,26 @@ def test_a_flight_takes_no_information_away():
     bank = SimpleNamespace(flatten=lambda rows, noise: np.concatenate(rows, axis=-1).reshape(3, -1))
     own = SimpleNamespace(J=[0.1 * train, flight], at=SimpleNamespace(x=np.zeros(3)))
     known = SimpleNamespace(noise=None)
-    rival = Known(None, np.eye(3) * 1e6, np.arange(3), 0.0, None, np.eye(3))
+    rival = FittedHypothesis(None, np.eye(3) * 1e6, np.arange(3), 0.0, None, np.eye(3))
     told = measure_information(bank, own, rival, known)
     assert told == pytest.approx(flight.reshape(3, -1) @ flight.reshape(3, -1).T)
     assert (rival.std(told) <= rival.std()).all()
 
 
+def of_ratio(ratio):
+    """Of one value, whose deviation becomes so many times smaller."""
+    return ExpectedInformation((np.array([ratio]),), (np.ones(1),), np.empty(0), np.array([True]))
+
+
 def test_a_flight_that_tells_nothing_is_refused():
     drag = Hypothesis(None, (Term(LinearDamping(sway=1.0), ("sway",)),))
-    rival = Known(drag, np.eye(1), np.array([0]), 0.0, None, np.eye(1))
-    known = Knowledge((), (), (rival,), None, ())
-    for ratio in (1.0, np.sqrt(1.0 + NOTHING)):
-        worth = Worth((np.array([ratio]),), (np.ones(1),), np.empty(0), np.array([True]))
+    rival = FittedHypothesis(drag, np.eye(1), np.array([0]), 0.0, None, np.eye(1))
+    known = PriorInformation((), (), (rival,), None, ())
+    for ratio in (1.0, np.sqrt(1.0 + NEGLIGIBLE)):
+        expected = of_ratio(ratio)
         with pytest.raises(BadInput, match=r"tells anything about linear_damping\.sway"):
-            require_news(worth, known)
-    require_news(Worth((np.array([1.1]),), (np.ones(1),), np.empty(0), np.array([True])), known)
+            require_information(expected, known)
+    require_information(of_ratio(1.1), known)
 
 
 def test_what_is_only_tried_is_refused_by_name():

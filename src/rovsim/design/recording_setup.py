@@ -20,7 +20,7 @@ FINE = 0.05  # s, the longest step of a predicted path: one step of the observer
 
 
 @dataclass(frozen=True, eq=False)
-class Surroundings:
+class RecordingSetup:
     """What flights have in common.
 
     `like` the train run whose clock, channels and log they would have; `seconds` each; `axes` (6,)
@@ -37,7 +37,7 @@ class Surroundings:
     catalogue: Catalogue
 
     @cached_property
-    def coarser(self) -> "Surroundings":
+    def coarser(self) -> "RecordingSetup":
         """The same, thrust steady over each step of the observer: half the work."""
         return replace(self, replay=self.replay.model_copy(update={"step": FINE}))
 
@@ -94,10 +94,10 @@ class Surroundings:
         return Measured(own.coordinates, own.heading, own.axes, own.summed, when, own.cutoff)
 
 
-def surround(
+def describe_setup(
     runs: Sequence[ObservedRun], seconds: float, axes: Sequence[int] | None,
     replay: ReplaySettings, catalogue: Catalogue,
-) -> Surroundings:  # fmt: skip
+) -> RecordingSetup:  # fmt: skip
     """What flights have in common with the commanded run of most readings.
 
     Args:
@@ -124,7 +124,7 @@ def surround(
     for one in commanded:
         if one.motion.commands.kind == "wrench":
             largest = np.maximum(largest, np.max(np.abs(one.motion.commands.value), axis=0))
-    return Surroundings(like, seconds, held & like.free, largest, _span(runs), replay, catalogue)
+    return RecordingSetup(like, seconds, held & like.free, largest, _span(runs), replay, catalogue)
 
 
 def _span(runs: Sequence[ObservedRun]) -> Array:

@@ -1,4 +1,4 @@
-"""What the train runs already tell: one hypothesis, or two rivals, as they leave them."""
+"""What is known before the flight: one hypothesis, or two rivals, as the train runs leave them."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.design.steady_push import SteadyPush, measure_push
+from rovsim.design.low_frequency_disturbance import LowFrequencyDisturbance, estimate_disturbance
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.least_squares import solve
@@ -19,20 +19,21 @@ RULED_OUT = 1000.0  # to one: a rival with longer odds against it need not be to
 
 
 @dataclass(frozen=True, eq=False)
-class Known:
+class FittedHypothesis:
     """A hypothesis as the train runs leave it.
 
-    `information` (k, k) they hold about its scaled parameters, of which `wanted` (j,) are asked
-    for; `likelihood` twice its logarithm, with the penalty of its parameters. `widest` has all
-    parameters free with which a rival might take up a flight, `held` (w, w) the information on it.
+    `information` (k, k) they hold about its scaled parameters, of which those `of_interest` (j,)
+    are asked for; `likelihood` twice its logarithm, with the penalty of its parameters. `widest`
+    has all parameters free with which a rival might take up a flight, `widest_information` (w, w)
+    is what they hold about these.
     """
 
     hypothesis: Hypothesis
     information: Array
-    wanted: Array
+    of_interest: Array
     likelihood: float
     widest: Hypothesis
-    held: Array
+    widest_information: Array
 
     @property
     def names(self) -> list[str]:
@@ -40,7 +41,7 @@ class Known:
         return self.hypothesis.parameter_names
 
     @cached_property
-    def as_it_is(self) -> Hypothesis:
+    def fixed(self) -> Hypothesis:
         """The same model, in which nothing is free."""
         return Hypothesis(self.hypothesis.model)
 
@@ -54,7 +55,7 @@ class Known:
 
     def std(self, more: Array | float = 0.0) -> Array:
         """Standard deviations (j,) of what is asked for, scaled."""
-        return np.sqrt(np.maximum(np.diag(self.covariance(more))[self.wanted], 1e-300))
+        return np.sqrt(np.maximum(np.diag(self.covariance(more))[self.of_interest], 1e-300))
 
     def draw(self, count: int, random: np.random.Generator) -> list[Model]:
         """Models that could be true, the likeliest first; none that cannot move.
@@ -75,15 +76,15 @@ def _root(covariance: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Knowledge:
+class PriorInformation:
     """What is known before the flight: one hypothesis, or two rivals, under one noise.
 
-    `asked` names the rivals; `motions` are those of the filters.
+    `rival_names` names the rivals; `motions` are those of the filters.
     """
 
     runs: tuple[ObservedRun, ...]
-    asked: tuple[str, ...]
-    rivals: tuple[Known, ...]
+    rival_names: tuple[str, ...]
+    rivals: tuple[FittedHypothesis, ...]
     noise: Noise
     motions: tuple[AxisMotion, ...]
 
@@ -93,15 +94,15 @@ class Knowledge:
         return float(sum(run.motion.usable.mean() * run.instants[-1] for run in self.runs))
 
     @cached_property
-    def count(self) -> int:
+    def readings(self) -> int:
         """Readings that count, of the train runs."""
         return int(sum(run.settled.sum() for run in self.runs))
 
     @cached_property
-    def steady(self) -> tuple[SteadyPush, ...]:
+    def low_frequency(self) -> tuple[LowFrequencyDisturbance, ...]:
         """What pushes the vehicle for long in the train runs, and each rival does not know of."""
         return tuple(
-            measure_push(rival.hypothesis.model, self.runs, self.noise, self.motions)
+            estimate_disturbance(rival.hypothesis.model, self.runs, self.noise, self.motions)
             for rival in self.rivals
         )
 

@@ -1,0 +1,128 @@
+"""The limits that a flight keeps to, and how far it is from keeping to them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import to_euler
+from rovsim.core.signs import minus
+from rovsim.design.recording_setup import RecordingSetup
+from rovsim.design.settings import FlightLimits
+
+MOVES = ("moves", "turns", "tilts")  # of which speed, turn rate and tilt are limits
+SURE = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 beyond one wall
+
+
+@dataclass(frozen=True, eq=False)
+class Envelope:
+    """Limits of a flight: `box` (3, 2) m NED in which CO stays, infinite where nothing is known.
+
+    `swum` (3, 2) m NED is where it was recorded, NaN along an axis that nobody measured.
+    """
+
+    box: Array
+    limits: FlightLimits
+    swum: Array
+
+    @staticmethod
+    def within(setup: RecordingSetup, limits: FlightLimits, floats: bool) -> "Envelope":
+        """Walls, floor and surface less the clearance, and of these the depths that are wanted.
+
+        Raises:
+            BadInput: they leave no room.
+        """
+        tank = setup.site.tank
+        box = tank + limits.clearance * np.array([1.0, -1.0])
+        box[:, 0] = np.where(np.isfinite(box[:, 0]), box[:, 0], -np.inf)
+        box[:, 1] = np.where(np.isfinite(box[:, 1]), box[:, 1], np.inf)
+        surface = tank[2, 0] if np.isfinite(tank[2, 0]) else 0.0
+        if limits.depth:
+            low, high = surface + np.array(limits.depth)
+            box[2] = max(box[2, 0], low), min(box[2, 1], high)
+        if floats:
+            box[2] = -np.inf, np.inf
+        _require_room(box, tank, surface, limits)
+        return Envelope(box, limits, setup.swum)
+
+    @property
+    def middle(self) -> Array:
+        """The place (3,) farthest from all walls; along an axis without, of where it swam."""
+        known = np.isfinite(self.box).all(axis=1)
+        inside = np.where(known[:, None], self.box, np.nan_to_num(self.swum))
+        return np.asarray(inside.mean(axis=1))
+
+    @property
+    def longest(self) -> float:
+        """Heading in rad of the longer side of the tank."""
+        size = self.box[:2, 1] - self.box[:2, 0]
+        return 0.5 * np.pi if size[1] > size[0] else 0.0
+
+    def excess(self, paths: Array, each_alone: bool = False) -> float:
+        """By how much paths (s, k, 13) leave the limits: 0 if none does.
+
+        Of the place by `SURE` standard deviations about the mean of the paths, in m; of speed,
+        turn rate and tilt by the largest, as a share of the limit. `each_alone`: the paths are
+        those of rivals, and their spread says nothing.
+        """
+        return float(sum(self._beyond(paths, each_alone)))
+
+    def describe_excess(self, paths: Array) -> str:
+        """How paths (s, k, 13) leave the limits, in words; nothing if they do not."""
+        place, *shares = self._beyond(paths, each_alone=False)
+        if not np.isfinite(place):
+            return "moves beyond all numbers"
+        told = [f"comes {place:.2g} m too near to a wall, the floor or the surface"]
+        told += [
+            f"{v} {100.0 * s:.0f} % more than it may" for v, s in zip(MOVES, shares, strict=True)
+        ]
+        return " and ".join(one for one, by in zip(told, (place, *shares), strict=True) if by > 0.0)
+
+    def _beyond(self, paths: Array, each_alone: bool) -> tuple[float, ...]:
+        """By how much the place leaves the box, m, and speed, turn rate and tilt their limits."""
+        if not np.isfinite(paths).all():
+            return (np.inf,) * 4
+        place = paths[:, :, :3]
+        low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
+        if not each_alone:
+            mean, spread = place.mean(axis=0), SURE * place.std(axis=0, ddof=1)
+            low, high = (mean - spread).min(axis=0), (mean + spread).max(axis=0)
+        beyond = np.maximum(self.box[:, 0] - low, 0.0) + np.maximum(high - self.box[:, 1], 0.0)
+        ratios = [v / w - 1.0 for v, w in zip(reached(paths), self._most, strict=True)]
+        return (float(beyond.sum()), *(max(r, 0.0) for r in ratios))
+
+    @property
+    def _most(self) -> tuple[float, float, float]:
+        return self.limits.speed, self.limits.turn_rate, self.limits.tilt
+
+    def holds(self, paths: Array) -> bool:
+        """Whether each of these paths (s, k, 13) stays in the box, and within the limits."""
+        place = paths[:, :, :3]
+        inside = ((place > self.box[:, 0]) & (place < self.box[:, 1])).all()
+        return bool(inside and self.excess(paths) == 0.0)
+
+
+def _require_room(box: Array, tank: Array, surface: float, limits: FlightLimits) -> None:
+    if (box[:, 0] < box[:, 1]).all():
+        return
+    axis = int(np.argmax(box[:, 0] >= box[:, 1]))
+    found = f"walls {tank[axis, 1] - tank[axis, 0]:.2f} m apart along {'xy'[axis % 2]}"
+    if axis == 2:
+        low, high = (minus(f"{depth:.2f}") for depth in tank[2] - surface)
+        wanted = f", design.limits.depth={list(limits.depth)}" if limits.depth else ""
+        found = f"floor and surface at {high} m and {low} m of depth{wanted}"
+    raise BadInput(
+        f"{found}, and a clearance of {limits.clearance:g} m: they leave no room",
+        where="rovsim design",
+        expected="some metres in which the vehicle's middle may move",
+        remedy="Choose design.limits.depth and design.limits.clearance that fit into the tank.",
+    )
+
+
+def reached(paths: Array) -> tuple[float, float, float]:
+    """Largest speed m/s, turn rate rad/s and tilt rad of paths (s, k, 13)."""
+    speed = np.linalg.norm(paths[..., 7:10], axis=-1).max()
+    rate = np.linalg.norm(paths[..., 10:13], axis=-1).max()
+    tilt = np.abs(to_euler(paths[..., 3:7])[..., :2]).max()
+    return float(speed), float(rate), float(tilt)

@@ -1,0 +1,113 @@
+"""Commands to predicted paths, over all that is not yet known."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core import gauss_markov
+from rovsim.core.rotations import exp, multiply
+from rovsim.design.prior_information import PriorInformation
+from rovsim.design.recording_setup import RecordingSetup
+from rovsim.dynamics.model import Model
+from rovsim.simulation.batch import Batch, Starts
+from rovsim.simulation.drive import Drives
+from rovsim.simulation.synthetic_tank.sent_log import PLACED, TURNED
+
+
+@dataclass(frozen=True, eq=False)
+class Scenarios:
+    """What could happen: models, disturbances (s, k, 6) m/s2 that nobody foresees, starting errors.
+
+    The first are the likeliest models, which nothing pushes but what lasts. `shift` (s, 3) m,
+    `turn` (s,) rad.
+    """
+
+    models: Sequence[Model]
+    disturbances: Array
+    shift: Array
+    turn: Array
+    setup: RecordingSetup
+
+    def split(self, count: int) -> tuple["Scenarios", "Scenarios"]:
+        """The first ones, and all others."""
+        parts = (slice(0, count), slice(count, None))
+        first, rest = (
+            Scenarios(self.models[p], self.disturbances[p], self.shift[p], self.turn[p], self.setup)
+            for p in parts
+        )
+        return first, rest
+
+    def predict(self, drives: Drives, start: Array) -> Array:
+        """Paths (s, k+1, 13) under one log, from near a state (13,)."""
+        models, edges = self.models, self.setup.edges
+        each = zip(drives.of(models), self._wrenches, strict=True)
+        pushed = [drive.pushed(push) for drive, push in each]
+        states = np.tile(start, (len(models), 1, 1))
+        afloat = models[0].vehicle.floats
+        states[:, 0, :3] += self.shift * np.where(np.arange(3) == 2, not afloat, 1)
+        states[:, 0, 3:7] = multiply(self._turns, states[:, 0, 3:7])
+        steps = np.array([len(edges) - 1])
+        starts = Starts(states, np.zeros(1, np.int64), steps, np.zeros((len(models), 1, 6)))
+        return np.array([own[0] for own in self._batch.trajectories(pushed, starts, edges)])
+
+    @cached_property
+    def _batch(self) -> Batch:
+        setup = self.setup
+        return Batch(self.models, setup.site, candidates=setup.wrenches, learned=False)
+
+    @cached_property
+    def _wrenches(self) -> list[Array]:
+        """Disturbances of each model as wrenches (k, 6) N, N m."""
+        each = zip(self.disturbances, self.models, strict=True)
+        return [push @ model.M.T for push, model in each]
+
+    @cached_property
+    def _turns(self) -> Array:
+        return exp(self.turn[:, None] * np.array([0.0, 0.0, 1.0]))
+
+
+def draw_scenarios(
+    each: Sequence[Sequence[Model]], prior: PriorInformation, setup: RecordingSetup,
+    random: np.random.Generator,
+) -> Scenarios:  # fmt: skip
+    """Disturbances as the recordings show them, of models that could be true.
+
+    Args:
+        each: models of each rival, the likeliest first.
+        prior: of the train runs: the noise, and what pushes for long.
+        setup: the steps of a path.
+        random: generator.
+    """
+    drawn = [_draw_of(own, prior, k, setup, random) for k, own in enumerate(each)]
+    parts = [one.split(1) for one in drawn]
+    ordered = [first for first, _ in parts] + [rest for _, rest in parts]
+    disturbances, shift, turn = (
+        np.concatenate([getattr(one, name) for one in ordered])
+        for name in ("disturbances", "shift", "turn")
+    )
+    models = [model for one in ordered for model in one.models]
+    return Scenarios(models, disturbances, shift, turn, setup)
+
+
+def _draw_of(
+    models: Sequence[Model], prior: PriorInformation, rival: int, setup: RecordingSetup,
+    random: np.random.Generator,
+) -> Scenarios:  # fmt: skip
+    """Of the models of one rival: what passes by, and what lasts and it does not know of."""
+    count, steps, h = len(models), len(setup.edges) - 1, setup.step
+    noise, slow = prior.noise, prior.low_frequency[rival]
+    std = noise.level * models[0].body.free
+    correlation_time = float(np.median(noise.memory))
+    disturbances = np.array(
+        [
+            std * gauss_markov.draw(steps, h / correlation_time, random)
+            + slow.draw(steps, h, random)
+            for _ in models
+        ]
+    )
+    shift, turn = PLACED * random.normal(size=(count, 3)), TURNED * random.normal(size=count)
+    disturbances[0], shift[0], turn[0] = slow.mean, 0.0, 0.0
+    return Scenarios(models, disturbances, shift, turn, setup)
