@@ -21,7 +21,7 @@ class Flights:
     def __init__(self) -> None:
         self.counts = []
 
-    def try_numbers(self, x):
+    def evaluate_numbers(self, x):
         """All of them."""
         self.counts.append(len(x))
         return [
@@ -62,10 +62,10 @@ def test_flights_fly_side_by_side_and_are_judged_when_asked_for(monkeypatch):
         judged.append(inputs)
         return CandidateFlight(inputs, 0.0, None, 0.0, None)
 
-    monkeypatch.setattr(DesignProblem, "_try", judge)
+    monkeypatch.setattr(DesignProblem, "_evaluate", judge)
     envelope, setup = SimpleNamespace(longest=0.0), SimpleNamespace(seconds=1.0)
     problem = DesignProblem(Pilot(), envelope, None, None, setup)
-    tried = problem.try_numbers(list(np.random.default_rng(0).random((5, 31))))
+    tried = problem.evaluate_numbers(list(np.random.default_rng(0).random((5, 31))))
     next(tried)
     assert (problem.pilot.flown, len(judged)) == (1, 1)
     assert len(list(tried)) == 4

@@ -28,7 +28,8 @@ from rovsim.dynamics.model import nominal
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands, as_logged
 from rovsim.results.experiment import Experiment
-from rovsim.simulation.synthetic_tank.sent_log import PLACED, read_sent_log
+from rovsim.simulation.rest import PLACED
+from rovsim.simulation.synthetic_tank.sent_log import read_sent_log
 from said import unfolded
 from sketches import draw_few
 

@@ -107,7 +107,7 @@ def explain_infeasible(problem: DesignProblem, question: Question) -> BadInput:
     """Why no flight stays within the limits, as the error to be raised."""
     resting = np.zeros((len(ticks(question.seconds)), len(AXES)))
     heading = problem.envelope.longest
-    still = next(problem.try_all([resting], [heading]))
+    still = next(problem.evaluate_all([resting], [heading]))
     start = problem.pilot.starts(np.array([heading]))[0]
     paths = problem.scenarios.predict(problem.setup.drives(still.commands), start)
     why = problem.envelope.describe_excess(paths)

@@ -24,7 +24,13 @@ from rovsim.design.pilot import ModelPilot
 from rovsim.design.prior_information import PriorInformation
 from rovsim.design.recording_setup import RecordingSetup, describe_setup
 from rovsim.design.scenarios import Scenarios, draw_scenarios
-from rovsim.design.search import CandidateFlight, DesignProblem, in_parts, search, try_baselines
+from rovsim.design.search import (
+    CandidateFlight,
+    DesignProblem,
+    evaluate_baselines,
+    in_parts,
+    search,
+)
 from rovsim.design.settings import Question
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.observer.usable_runs import select_usable
@@ -99,7 +105,7 @@ def plan(
     random = np.random.default_rng(question.seed)
     problem = _pose_problem(prior, setup, question, random)
     stage("usual manoeuvres")
-    baselines = try_baselines(problem, question.seed)
+    baselines = evaluate_baselines(problem, question.seed)
     stage("searching")
     found = search(problem, question.design, question.seed)
     stage("checking")
@@ -155,7 +161,7 @@ def _choose(
     some = [rival.draw(AVERAGED, random) for rival in prior.rivals]
     best = {name: _first_safe(problem, own, scenarios) for name, own in baselines.items()}
     rated = {name: (one, _average(problem, one, some)) for name, one in best.items() if one}
-    again = (one for some in in_parts(found) for one in problem.try_numbers(some))
+    again = (one for some in in_parts(found) for one in problem.evaluate_numbers(some))
     able = (one for one in again if one.expected)
     safe = (one for one in able if _paths(problem, one, scenarios) is not None)
     tried = [(one, _average(problem, one, some)) for one in list(islice(safe, FINALISTS))]

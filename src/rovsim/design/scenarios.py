@@ -14,7 +14,7 @@ from rovsim.design.recording_setup import RecordingSetup
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drives
-from rovsim.simulation.synthetic_tank.sent_log import PLACED, TURNED
+from rovsim.simulation.rest import PLACED, TURNED
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,16 +71,18 @@ class DesignProblem:
         """Axes (j,) that inputs move."""
         return np.flatnonzero(self.pilot.full)
 
-    def try_all(
+    def evaluate_all(
         self, inputs: Sequence[Array], headings: Sequence[float]
     ) -> Iterator[CandidateFlight]:
         """Each of the flights: flown side by side, judged one after the other when asked for."""
         demands = self.pilot.fly(np.array(inputs), np.array(headings))
         starts = self.pilot.starts(np.array(headings))
         each = zip(inputs, headings, demands, starts, strict=True)
-        return (self._try(*one) for one in each)
+        return (self._evaluate(*one) for one in each)
 
-    def _try(self, inputs: Array, heading: float, demand: Array, start: Array) -> CandidateFlight:
+    def _evaluate(
+        self, inputs: Array, heading: float, demand: Array, start: Array
+    ) -> CandidateFlight:
         time = ticks(self.setup.seconds)
         commands = self.pilot.authority.commands(time, demand, self.setup.lines)
         drives, (likeliest, rest) = self.setup.drives(commands), self._parts
@@ -99,15 +101,15 @@ class DesignProblem:
         """The likeliest of each rival, and all others."""
         return self.scenarios.split(len(self.prior.rivals))
 
-    def try_numbers(self, x: Sequence[Array]) -> Iterator[CandidateFlight]:
-        """Flights of numbers (1 + 5 j,) in [0, 1]: a heading, then five an axis; see `try_all`."""
+    def evaluate_numbers(self, x: Sequence[Array]) -> Iterator[CandidateFlight]:
+        """As `evaluate_all`, of numbers (1 + 5 j,) in [0, 1]: a heading, then five an axis."""
         seconds = self.setup.seconds
         inputs = [make_inputs(own[1:], self.axes, seconds) for own in x]
-        tried = self.try_all(inputs, [self.envelope.longest + np.pi * own[0] for own in x])
+        tried = self.evaluate_all(inputs, [self.envelope.longest + np.pi * own[0] for own in x])
         return (replace(one, numbers=own) for one, own in zip(tried, x, strict=True))
 
 
-def try_baselines(problem: DesignProblem, seed: int) -> dict[str, list[CandidateFlight]]:
+def evaluate_baselines(problem: DesignProblem, seed: int) -> dict[str, list[CandidateFlight]]:
     """The usual manoeuvres, each at all amplitudes, the largest utility first."""
     found, t = {}, ticks(problem.setup.seconds)
     levels = list(product(IN_PLANE, OUT_OF_PLANE))
@@ -115,7 +117,7 @@ def try_baselines(problem: DesignProblem, seed: int) -> dict[str, list[Candidate
         full = baseline.move(t, problem.axes, np.random.default_rng(seed))
         scales = [np.where(np.isin(np.arange(6), VERTICAL), b, a) for a, b in levels]
         headings = [problem.envelope.longest] * len(levels)
-        tried = problem.try_all([full * s for s in scales], headings)
+        tried = problem.evaluate_all([full * s for s in scales], headings)
         named = [
             replace(one, name=name, amplitude=level)
             for one, level in zip(tried, levels, strict=True)
@@ -141,7 +143,7 @@ def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[
     def rate(x: Array) -> Array:
         found = []
         for some in in_parts(np.clip(x.T, 0.0, 1.0)):
-            found += [Rated(one.numbers, _ranked(one)) for one in problem.try_numbers(some)]
+            found += [Rated(one.numbers, _ranked(one)) for one in problem.evaluate_numbers(some)]
         archive.extend(found)
         return np.array([-one.rank for one in found])
 

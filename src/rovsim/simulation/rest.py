@@ -1,7 +1,10 @@
-"""Where runs begin that nobody measured: at rest and level."""
+"""Where runs begin that nobody measured: at rest and level, where they were put."""
 
 import numpy as np
 from numpy import ndarray as Array
+
+# How exactly people put a vehicle where a flight is to begin: standard deviations, m and rad.
+PLACED, TURNED = 0.05, 0.05
 
 
 def rest_state(place: Array, heading: Array | float) -> Array:

@@ -14,10 +14,8 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands_csv import read_commands
 from rovsim.measurement.recording.tidying import tidy_commands
 from rovsim.results.experiment import Experiment
-from rovsim.simulation.rest import rest_state
+from rovsim.simulation.rest import PLACED, TURNED, rest_state
 
-# How exactly people put a vehicle where a flight is to begin: standard deviations, m and rad.
-PLACED, TURNED = 0.05, 0.05
 # s: less shows nothing; more is no flight that nobody steers, and would fill the memory with states
 SHORTEST, LONGEST = 2.0, 1800.0
 
