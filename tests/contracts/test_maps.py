@@ -16,6 +16,7 @@ ALIKE = (  # found by looking into the folder: each says itself what it is
     "reporting/figures",
     "apps/cli/commands",
     "application/export/targets",
+    "learning/learners",
 )
 
 

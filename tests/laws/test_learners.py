@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rovsim.learning.gaussian import GaussianSettings, huberize
-from rovsim.learning.knn import best_k
+from rovsim.learning.learners.knn import best_k
 
 
 def rows(noise, count=600, seed=3):

@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from os.path import relpath
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Iterable, Mapping, Sequence
 
 import rovsim
 from rovsim.core.schema import Section
@@ -21,7 +21,7 @@ from rovsim.measurement.campaign import Campaign
 SOURCE = Path(rovsim.__file__).parent
 MODEL, VEHICLE = "rovsim.dynamics.model", "rovsim.dynamics.vehicle.load"
 OF_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
-LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning")
+LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning.learners")
 UNRELATED = ("command", "tracking", "timing", "blind", "bench", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
 
@@ -48,14 +48,13 @@ def imports_of(script: Path) -> list[str]:
 def find_modules(*names: str) -> set[str]:
     """These modules of rovsim and all they import, however deep, as `digest` takes them."""
     graph = _graph()
-    wanted: set[str] = set()
-    for name in names:
-        wanted |= {name, *graph.find_descendants(name)}
-    for name in list(wanted):
-        wanted |= graph.find_upstream_modules(name)
-    for package in _discovered(wanted):
-        wanted |= graph.find_descendants(package)
-    return wanted
+
+    def found(packages: Iterable[str]) -> set[str]:
+        own = {name for package in packages for name in (package, *graph.find_descendants(package))}
+        return own.union(*(graph.find_upstream_modules(name) for name in own))
+
+    wanted = found(names)
+    return wanted | found(_discovered(wanted))
 
 
 def own_digest(package: str, described: Sequence[Path] = ()) -> str:

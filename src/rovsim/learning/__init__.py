@@ -4,9 +4,7 @@ pairs               training pairs: features, and what the acceleration misses
 scaling             features brought to one size
 settings            what every learner can be told
 learner             what every learner declares, and how they are found
-knn                 k nearest neighbours
-gp                  exact Gaussian process
-svgp                sparse variational Gaussian process
+learners            one file each: nearest neighbours, Gaussian processes
 gaussian            what both Gaussian processes share
 determinism         the same numbers for the same seed
 cross_validation    judged on stretches that were left out

@@ -41,8 +41,8 @@ class Kernel:
     """sum_i weights_i exp(-|(z - points_i) / lengthscale|^2 / 2) of scaled features z.
 
     `points` (n, d) in scaled features, `lengthscale` (d,), `weights` (n, outputs of this kernel).
-    `prior` (outputs of this kernel,) is the variance before anything was seen and `variance` what
-    reduces it; without `variance` the variance is the prior's and nothing fades.
+    Of a process, `prior` (outputs of this kernel,) is the variance before anything was seen and
+    `variance` what reduces it. Without them the sum has no variance, and nothing fades.
     """
 
     points: Array
@@ -86,6 +86,8 @@ def export_expansion(
 ) -> Array:
     """Mean (m,) plus one shared RBF kernel with m outputs, or m kernels with one each.
 
+    Either all kernels have a variance or none.
+
     Raises:
         BadInput: more points than the kernels have room for.
     """
@@ -98,6 +100,7 @@ def export_expansion(
             remedy="Set residual.max_points, or use svgp.",
         )
     variances = [kernel.variance for kernel in kernels if kernel.variance]
+    assert len(variances) in (0, len(kernels))
     header = _header(EXPANSION, features, points, len(mean), len(kernels))
     header[RANK] = max((len(v.spectrum) for v in variances), default=0)
     header[FADING_RANK] = max((v.fading_rank for v in variances), default=0) if fades else 0

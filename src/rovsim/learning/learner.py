@@ -1,4 +1,4 @@
-"""What every learner declares, and how learners are found: one module of this package each."""
+"""What every learner declares, and how learners are found: one file of `learners/` each."""
 
 import pkgutil
 from collections.abc import Callable, Mapping
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-import rovsim.learning
+import rovsim.learning.learners
 from rovsim import AXES
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.extras import require
@@ -71,20 +71,22 @@ class Learner:
     `fit(X, Y, settings, seed, progress)` trains on features X (n, d) and residual accelerations
     Y (n, 6). `library_from(arrays, settings)` rebuilds the library's own prediction from
     `Trained.arrays`, without pickle; `posterior_from(arrays, settings, fast)` its mean and
-    variance, where it has one.
+    variance, where it has one. `shrinkage` is the largest share of a target that it leaves out
+    where all rows agree: one that is regularised keeps away from what it was told.
     """
 
     settings: type[LearnerSettings]
     fit: Callable[..., Trained]
     library_from: Callable[[Mapping[str, Array], Any], Predict]
     posterior_from: Callable[..., Posterior] | None = None
+    shrinkage: float = 0.0
 
 
 def learners() -> dict[str, Learner]:
-    """Every learner by kind: the modules of this package that declare a `LEARNER`."""
-    names = [module.name for module in pkgutil.iter_modules(rovsim.learning.__path__)]
-    modules = [import_module(f"{rovsim.learning.__name__}.{name}") for name in names]
-    found = [module.LEARNER for module in modules if hasattr(module, "LEARNER")]
+    """Every learner by kind: what the modules of `rovsim.learning.learners` declare."""
+    package = rovsim.learning.learners
+    names = [module.name for module in pkgutil.iter_modules(package.__path__)]
+    found = [import_module(f"{package.__name__}.{name}").LEARNER for name in names]
     return {learner.settings.model_fields["kind"].default: learner for learner in found}
 
 

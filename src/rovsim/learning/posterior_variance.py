@@ -63,6 +63,7 @@ def decompose_exact(values: Array, vectors: Array, noise: float) -> PosteriorVar
         noise: in units of the prior variance.
     """
     kept = values > _least(noise, EXACT)
+    kept[-1] = True  # however noisy: none would say that there is no variance
     values, vectors = values[kept][::-1], vectors[:, kept][:, ::-1]
     spectrum = -values / (noise * (values + noise))
     fading_rank = int(np.sum(values > _least(noise, ROUGH)))

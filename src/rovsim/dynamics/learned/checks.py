@@ -87,14 +87,19 @@ def posterior(data: Array, X: Array, features: FeatureSettings) -> tuple[Array, 
     Raises:
         BadInput: the residual is no process, or X has other columns.
     """
-    if data[KIND] == EXPANSION:
+    if has_variance(data):
         return posterior_many(data, checked_rows(X, features))
     raise BadInput(
-        "nearest neighbours have no variance",
+        "this residual has no variance",
         where="posterior of a residual",
-        expected="a residual of kind gp or svgp",
+        expected="the residual of a process, such as gp or svgp",
         remedy="Train one, or use predict.",
     )
+
+
+def has_variance(data: Array) -> bool:
+    """Whether a variance was exported beside the mean."""
+    return bool(data[KIND] == EXPANSION and data[RANK] > 0.0)
 
 
 def checked_rows(X: Array, features: FeatureSettings, finite: bool = False) -> Array:

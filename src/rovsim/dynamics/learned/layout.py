@@ -10,6 +10,7 @@
 
 scaling = shift (d), scale (d); points = (n' / LANES, d', LANES). n' is n filled up to whole blocks
 of LANES; d', r' (of RANK) and w' (of m / p) are filled up to multiples of PASS; all with zeros.
+An expansion of RANK 0 has no variance: it is the mean of no process.
 """
 
 FORMAT, KIND, BLOCKS, WIDTH, POINTS, OUTPUTS, COUNT, WEIGHTING, RANK, FADING_RANK = range(10)
