@@ -38,7 +38,7 @@ def beside_others(effect: Effect | None, cls: type[Effect] | None = None) -> Mod
 
     They change nothing, and one engine serves all such models; loops need a log of their own.
     """
-    suits = SUITABLE.get((cls or type(effect)).through, {})
+    suits = SUITABLE.get((cls or type(effect)).requires, {})
     if "vehicle" in suits:
         found = nominal(load_vehicle(suits["vehicle"]))
         return found if effect is None else found + effect

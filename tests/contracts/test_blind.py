@@ -168,7 +168,7 @@ def test_weaker_cases_hide_the_same_but_less():
         strong, weak = (build_effect(one.hidden[0], built_in()) for one in (full, tenth))
         for p, a, b in zip(strong.parameters, strong.values, weak.values, strict=True):
             kept = p.name in RECIPES[name].fixed
-            expected = a if kept else p.combine(p.absence, a, 0.1)
+            expected = a if kept else p.combine(p.neutral_value, a, 0.1)
             assert b == pytest.approx(expected, rel=1e-3)
 
 

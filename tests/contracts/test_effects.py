@@ -6,7 +6,13 @@ import pytest
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Autopilot, Coefficients, Stick, Wander, Wrench
+from rovsim.dynamics.effects.base import (
+    Autopilot,
+    Coefficients,
+    DemandTransform,
+    StochasticCurrent,
+    Wrench,
+)
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
@@ -30,7 +36,7 @@ EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in())
 def driven(world):
     start = at_rest()
     start[7:] = [0.3, -0.2, 0.1, 0.2, -0.1, 0.3]
-    demands = any(isinstance(effect, Autopilot | Stick) for effect in world.effects)
+    demands = any(isinstance(effect, Autopilot | DemandTransform) for effect in world.effects)
     columns = world.thrust_path.columns("demand" if demands else "thruster")
     value, kind = sticks(1)[:, :columns], "demand" if demands else "thruster"
     run = motion(value, kind, seconds=1.0, start=start, site=tank())
@@ -73,10 +79,10 @@ def test_the_catalogue_is_the_public_one():
 @EVERY
 def test_defaults_change_nothing_and_values_do(cls):
     plain = driven(beside_others(None, cls))
-    if not issubclass(cls, Autopilot | Stick):  # which need another log
+    if not issubclass(cls, Autopilot | DemandTransform):  # which need another log
         np.testing.assert_allclose(driven(beside_others(cls())), plain, atol=1e-12)
     changed = np.abs(driven(beside_others(some(cls))) - plain).max() > 1e-6
-    assert changed != issubclass(cls, Wander)  # of which a model has the mean
+    assert changed != issubclass(cls, StochasticCurrent)  # of which a model has the mean
 
 
 @EVERY

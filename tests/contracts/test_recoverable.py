@@ -14,14 +14,18 @@ from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import build_effect
-from rovsim.dynamics.effects.base import Smoothing, Wander
+from rovsim.dynamics.effects.base import MeasurementFilter, StochasticCurrent
 from rovsim.dynamics.model import nominal
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 
 
 # Told by the noise: recovery/test_camera.py, recovery/test_drifting_current.py.
-EVERY = [name for name, cls in built_in().items() if not issubclass(cls, Smoothing | Wander)]
+EVERY = [
+    name
+    for name, cls in built_in().items()
+    if not issubclass(cls, MeasurementFilter | StochasticCurrent)
+]
 
 
 @pytest.fixture(scope="module")
@@ -75,5 +79,5 @@ def _moved_away(start, hidden):
     for name, value in hidden.items():
         known = _declared(start, name)
         if abs(start.effect[name] - value) < 0.25 * known.size(value):
-            values[name] = known.combine(known.absence, value, 0.7)
+            values[name] = known.combine(known.neutral_value, value, 0.7)
     return Term(start.effect.with_values(values), start.free)

@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.core.rotations import exp
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Autopilot, Stick
+from rovsim.dynamics.effects.base import Autopilot, DemandTransform
 from rovsim.evaluation.force_budget import RESTORING, balance_forces
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.force_budget import ForceBudget
@@ -35,7 +35,9 @@ def made(world, found=None):
 def test_the_parts_add_up_to_the_models_inertia_force(cls):
     world = beside_others(some(cls))
     columns = world.thrust_path.columns("thruster")
-    measured = run("demand" if issubclass(cls, Autopilot | Stick) else "thruster", columns)
+    measured = run(
+        "demand" if issubclass(cls, Autopilot | DemandTransform) else "thruster", columns
+    )
     true = undo_mocap_view(world, measured)
     at = drive_as_measured(world, true, ReplaySettings())
     expected = accelerate_as_measured(world, true, at) @ world.body.M.T

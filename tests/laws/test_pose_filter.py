@@ -214,7 +214,7 @@ def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood
     again, finer = absorb_delay(selection, base, smoothing)
     assert (again.found is rest) is absorbed
     assert (finer != smoothing) is absorbed
-    late = finer.effect.arrival(0.0) + 1.0 / (np.pi * finer.cutoff)
+    late = finer.effect.effective_time(0.0) + 1.0 / (np.pi * finer.cutoff)
     assert late == pytest.approx(1.0 / (6.0 * np.pi) + absorbed * delay)
     assert (finer.latency != 0.0) is (delay == 0.009)  # the noise knows the cutoff far better
 

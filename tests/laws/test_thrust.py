@@ -70,7 +70,7 @@ def test_commands_can_be_interpolated_between_lines():
 def test_a_delay_shifts_and_a_fast_clock_compresses():
     late = force(InputDelay(delay=0.1))
     np.testing.assert_allclose(late[10:], force()[:-10], atol=1e-9)
-    fast = model(ClockDrift(rate=0.01)).thrust_path.arrival(np.array([1.01]))
+    fast = model(ClockDrift(rate=0.01)).thrust_path.effective_time(np.array([1.01]))
     assert fast == pytest.approx([1.0])
 
 
@@ -163,8 +163,8 @@ def test_a_bent_curve_keeps_its_ends_and_its_sign(exponent):
 def test_a_curve_of_unequal_ends_is_bent_about_each_of_them():
     force, full = np.array([[-8.0, 4.0]]), np.array([[-16.0, -16.0], [40.0, 40.0]])
     expected = [-16.0 * 0.5**2, 40.0 * 0.1**2]
-    np.testing.assert_allclose(ForceCurve(exponent=2.0).bent(force, full)[0], expected)
-    assert ForceCurve(exponent=2.0).bent(force, 0.0 * full).tolist() == [[0.0, 0.0]]
+    np.testing.assert_allclose(ForceCurve(exponent=2.0).reshaped_force(force, full)[0], expected)
+    assert ForceCurve(exponent=2.0).reshaped_force(force, 0.0 * full).tolist() == [[0.0, 0.0]]
 
 
 def test_the_order_of_stages_is_fixed():

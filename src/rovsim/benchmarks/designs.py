@@ -78,7 +78,8 @@ def hide(case: str, seeds: Range) -> TankSettings:
         known = next(p for p in built_in()[name].parameters if p.name == own)
         recipe = RECIPES[name]
         change = (recipe.sign or 1) * STRENGTH * random.uniform(*recipe.sizes) * known.scale
-        value = Value(value=float(f"{known.combine(known.absence, known.absence + change):.4g}"))
+        neutral = known.neutral_value
+        value = Value(value=float(f"{known.combine(neutral, neutral + change):.4g}"))
         entry = EffectEntry(effect=name, parameters={own: value})
     own_tank: dict[str, Any] = {
         "name": "design", "seed": seed_of(case, seeds), "duration": SECONDS, "effects": (entry,),

@@ -156,7 +156,7 @@ class Authority:
         loops = self.model.thrust_path.autopilots if self.kind == "demand" else []
         left = np.ones(len(AXES))
         for loop in loops:
-            left = left * np.diag(loop.mixed(np.eye(len(AXES))))
+            left = left * np.diag(loop.mixer_demand(np.eye(len(AXES))))
         return left == 0.0
 
     @cached_property

@@ -79,7 +79,7 @@ def _check_shown(name: str, candidates: Sequence[Candidate]) -> None:
 def check_fitted(name: str, effect: type[Effect]) -> None:
     """Whether a parameter, `effect.parameter`, can have a standard deviation at all."""
     parameter = name.partition(".")[2]
-    names = [p.name for p in effect.parameters if not p.tried]
+    names = [p.name for p in effect.parameters if not p.discrete]
     able = f"{effect.id}. and one of {', '.join(names)}" if names else "a value that can be fitted"
     if parameter in names:
         return

@@ -83,7 +83,7 @@ def _list_std(rival: FittedHypothesis, then: Array, std_ratio: Array) -> dict[st
 
 def _std(scaled: float, parameter: Parameter) -> float:
     """As a diagnosis says it: within its grain a value could be anywhere (uniform: / √12)."""
-    return _round(float(np.hypot(scaled * parameter.scale, parameter.grain / np.sqrt(12.0))))
+    return _round(float(np.hypot(scaled * parameter.scale, parameter.resolution / np.sqrt(12.0))))
 
 
 def _list_odds(prior: PriorInformation, expected: ExpectedInformation) -> dict[str, RivalOdds]:

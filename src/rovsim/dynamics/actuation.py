@@ -15,13 +15,13 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Between, CommandKind, Commands, latest
 from rovsim.dynamics.effects.base import (
     Autopilot,
-    Clock,
-    Curve,
+    CommandTiming,
+    CommandTransform,
+    DemandTransform,
     Effect,
-    Response,
-    Shaping,
-    Stick,
-    Strength,
+    ThrustCurveShape,
+    ThrusterDynamics,
+    ThrustScaling,
     Wrench,
 )
 from rovsim.dynamics.step_cuts import StepCuts
@@ -73,13 +73,13 @@ class ThrustPath:
         ranked = sorted(effects, key=lambda effect: effect.rank)
         self.thrusters = thrusters
         self.surfaces = sum(len(e.names) for e in ranked if isinstance(e, Surfaces))
-        self.clocks = [e for e in ranked if isinstance(e, Clock)]
-        self.sticks = [e for e in ranked if isinstance(e, Stick)]
+        self.timings = [e for e in ranked if isinstance(e, CommandTiming)]
+        self.demand_transforms = [e for e in ranked if isinstance(e, DemandTransform)]
         self.autopilots = [e for e in ranked if isinstance(e, Autopilot)]
-        self.shapings = [e for e in ranked if isinstance(e, Shaping)]
-        self.curves = [e for e in ranked if isinstance(e, Curve)]
-        self.strengths = [e for e in ranked if isinstance(e, Strength)]
-        self.responses = [e for e in ranked if isinstance(e, Response)]
+        self.command_transforms = [e for e in ranked if isinstance(e, CommandTransform)]
+        self.curve_shapes = [e for e in ranked if isinstance(e, ThrustCurveShape)]
+        self.scalings = [e for e in ranked if isinstance(e, ThrustScaling)]
+        self.dynamics = [e for e in ranked if isinstance(e, ThrusterDynamics)]
         self.readers = [e for e in ranked if isinstance(e, Wrench) and e.reads()]
         # what their kernels read of the log beside commands
         self.channels = tuple(dict.fromkeys(name for e in self.readers for name in e.channels))
@@ -87,22 +87,22 @@ class ThrustPath:
     @property
     def key(self) -> tuple:
         """Equal where the same commands make the same thrust, whatever autopilots do beside it."""
-        left = [autopilot.mixed(np.eye(6)).tobytes() for autopilot in self.autopilots]
+        left = [autopilot.mixer_demand(np.eye(6)).tobytes() for autopilot in self.autopilots]
         acting = (
-            *self.clocks,
-            *self.sticks,
-            *self.shapings,
-            *self.curves,
-            *self.strengths,
-            *self.responses,
+            *self.timings,
+            *self.demand_transforms,
+            *self.command_transforms,
+            *self.curve_shapes,
+            *self.scalings,
+            *self.dynamics,
         )
         read = (bool(self.readers), *self.channels)
         return (*read, *left, *((e.id, e.values.tobytes()) for e in acting))
 
-    def arrival(self, time: Array) -> Array:
+    def effective_time(self, time: Array) -> Array:
         """Instants at which lines logged at `time` take effect."""
-        for clock in self.clocks:
-            time = clock.arrival(time)
+        for timing in self.timings:
+            time = timing.effective_time(time)
         return time
 
     def columns(self, kind: CommandKind) -> int:
@@ -120,9 +120,9 @@ class ThrustPath:
         if kind == "thruster":
             return value if value.shape[1] == self.thrusters.count else value[:, self._throttles]
         for autopilot in self.autopilots:
-            value = autopilot.mixed(value)
-        for stick in self.sticks:
-            value = stick.moved(value)
+            value = autopilot.mixer_demand(value)
+        for transform in self.demand_transforms:
+            value = transform.mixer_demand(value)
         return np.clip(value @ self.thrusters.mixing.T, -1.0, 1.0)
 
     def steering(self, value: Array, kind: CommandKind) -> tuple[Array, Array]:
@@ -157,13 +157,13 @@ class ThrustPath:
 
         `voltage` (m,) V of the battery, where it was logged.
         """
-        for shaping in self.shapings:
-            command = shaping.shaped(command)
+        for transform in self.command_transforms:
+            command = transform.thruster_command(command)
         force = self.thrusters.static_force(command, voltage)
-        for curve in self.curves:
-            force = curve.bent(force, self.full_force)
-        for strength in self.strengths:
-            force = strength.scaled(force, t, duration)
+        for shape in self.curve_shapes:
+            force = shape.reshaped_force(force, self.full_force)
+        for scaling in self.scalings:
+            force = scaling.scaled_force(force, t, duration)
         return force
 
     @cached_property
@@ -175,8 +175,8 @@ class ThrustPath:
     def respond(self, force: Array, h: float, states: list | None) -> tuple[Array, list]:
         """Dynamic mean forces over steps, and the states to go on from."""
         after: list = []
-        for i, response in enumerate(self.responses if self.thrusters.count else ()):
-            force, state = response.respond(force, h, states[i] if states else None)
+        for i, one in enumerate(self.dynamics if self.thrusters.count else ()):
+            force, state = one.respond(force, h, states[i] if states else None)
             after.append(state)
         return force, after
 
@@ -190,7 +190,7 @@ class ThrustPath:
         commands wherever a line falls inside a step. `cuts`: of these steps, if they are kept.
         """
         start, duration = commands.recording(edges)
-        arrival = start + self.arrival(commands.time - start)  # clocks agree at the start
+        arrival = start + self.effective_time(commands.time - start)  # clocks agree at the start
         lines = replace(commands, time=arrival)
         some = [edges[k : k + AT_ONCE + 1] for k in range(0, len(edges) - 1, AT_ONCE)]
         static = Thrust.joined(
@@ -254,7 +254,7 @@ class ThrustPath:
 
     def _is_steady(self, lines: Commands) -> bool:
         """Whether the same command makes the same thrust at all times, and nothing else is read."""
-        timed = "voltage" in lines.auxiliary or any(not s.steady for s in self.strengths)
+        timed = "voltage" in lines.auxiliary or any(not s.steady for s in self.scalings)
         timed = timed or bool(self.channels)
         return len(lines.time) > 0 and not timed
 

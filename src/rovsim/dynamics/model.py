@@ -10,7 +10,13 @@ from numpy import ndarray as Array
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.body import Body, packed
-from rovsim.dynamics.effects.base import Coefficients, Effect, Sensing, Smoothing, Wrench
+from rovsim.dynamics.effects.base import (
+    Coefficients,
+    Effect,
+    FrameMisalignment,
+    MeasurementFilter,
+    Wrench,
+)
 from rovsim.dynamics.engine.types import Constants
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.dynamics.low_pass import LowPass
@@ -105,7 +111,7 @@ class Model:
         """Wrench (k, 6) of thruster forces (k, n), and of loops that took demands (k, 6)."""
         wrench = force @ self.body.B.T
         for loop in self.thrust_path.autopilots:
-            wrench = wrench + loop.asked(demand, np.diag(self.M))
+            wrench = wrench + loop.demanded_wrench(demand, np.diag(self.M))
         return wrench
 
     @cached_property
@@ -116,12 +122,13 @@ class Model:
     @cached_property
     def mocap_view(self) -> MocapView:
         """What the motion capture makes of the true motion."""
-        sensing = sorted((e for e in self.effects if isinstance(e, Sensing)), key=lambda e: e.rank)
-        smoothing = [e for e in self.effects if isinstance(e, Smoothing)]
-        if not sensing and not smoothing:
+        frames = [e for e in self.effects if isinstance(e, FrameMisalignment)]
+        filters = [e for e in self.effects if isinstance(e, MeasurementFilter)]
+        if not frames and not filters:
             return NO_CHANGE
-        low_pass = LowPass(tuple(T for e in smoothing for T in e.time_constants()))
-        return MocapView.through((e.transforms() for e in sensing), low_pass)
+        low_pass = LowPass(tuple(T for e in filters for T in e.time_constants()))
+        ranked = sorted(frames, key=lambda e: e.rank)
+        return MocapView.through((e.transforms() for e in ranked), low_pass)
 
     def check(self, site: Site, kind: CommandKind) -> None:
         """Refuse a run that lacks what an effect needs.

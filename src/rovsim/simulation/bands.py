@@ -13,7 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import conjugate, multiply, rotate, short_way, to_euler
-from rovsim.dynamics.effects.base import Wander
+from rovsim.dynamics.effects.base import StochasticCurrent
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
@@ -40,7 +40,7 @@ def why_without_bands(model: Model, motion: Motion) -> str | None:
         return "its file does not say what noise there is"
     if motion.measured is not None:
         return "how the noise of parts of a pose passes the filters is not known"
-    if any(isinstance(effect, Wander) for effect in model.effects):
+    if any(isinstance(effect, StochasticCurrent) for effect in model.effects):
         return "where its current wanders to is not known"
     return None
 

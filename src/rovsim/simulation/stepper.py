@@ -93,7 +93,7 @@ class Stepper:
 
     def _give(self, command: Array) -> None:
         """Put the command behind those that have not taken effect; forget what is over."""
-        arrival = self.model.thrust_path.arrival(np.array([self.time]))
+        arrival = self.model.thrust_path.effective_time(np.array([self.time]))
         over = int(latest(self._arrival, self.time))
         self._arrival = np.append(self._arrival[over:], arrival)
         self._value = np.vstack([self._value[over:], command])
@@ -112,7 +112,7 @@ class Stepper:
 
 def _refuse_foresight(model: Model) -> None:
     """Refuse clocks by which a command acts before it is given."""
-    if (model.thrust_path.arrival(np.array([0.0, 3600.0])) >= [0.0, 3600.0]).all():
+    if (model.thrust_path.effective_time(np.array([0.0, 3600.0])) >= [0.0, 3600.0]).all():
         return
     raise BadInput(
         "its commands act before they are given",

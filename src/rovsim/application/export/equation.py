@@ -107,7 +107,7 @@ class Equation:
         """Which command (n,), counted from 0, each thruster follows."""
         order = np.arange(self.model.thrust_path.thrusters.count)[None]
         for swapped in self._those(ThrusterOrder):
-            order = swapped.shaped(order)
+            order = swapped.thruster_command(order)
         return np.asarray(order[0], dtype=int)
 
     @property
@@ -135,7 +135,7 @@ class Equation:
         """Factor (n,) on the force of each thruster, after the curve."""
         force = np.ones((1, self.model.thrust_path.thrusters.count))
         for gain in self._those(ThrusterGain):
-            force = gain.scaled(force, np.zeros(1), 1.0)
+            force = gain.scaled_force(force, np.zeros(1), 1.0)
         return np.asarray(force[0])
 
     @property

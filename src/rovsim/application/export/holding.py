@@ -7,14 +7,14 @@ from numpy import ndarray as Array
 
 from rovsim.dynamics.effects.base import (
     Autopilot,
-    Clock,
+    CommandTiming,
+    DemandTransform,
     Effect,
-    Response,
-    Sensing,
-    Smoothing,
-    Stick,
-    Strength,
-    Wander,
+    FrameMisalignment,
+    MeasurementFilter,
+    StochasticCurrent,
+    ThrusterDynamics,
+    ThrustScaling,
 )
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.file import HeldAxes
@@ -34,14 +34,14 @@ STATIC = (
 RESIDUAL = "learned residual"
 
 WHY: tuple[tuple[type[Effect], str], ...] = (
-    (Sensing, "what the motion capture reports; no force"),
-    (Smoothing, "what the motion capture reports; no force"),
-    (Wander, "a model has its mean, still water; no force"),
-    (Clock, "commands act when they are given"),
-    (Stick, "it takes forces or commands of thrusters, no demands"),
+    (FrameMisalignment, "what the motion capture reports; no force"),
+    (MeasurementFilter, "what the motion capture reports; no force"),
+    (StochasticCurrent, "a model has its mean, still water; no force"),
+    (CommandTiming, "commands act when they are given"),
+    (DemandTransform, "it takes forces or commands of thrusters, no demands"),
     (Autopilot, "it takes forces or commands of thrusters, no demands"),
-    (Response, "thrusters push at once"),
-    (Strength, "thrust does not change with time"),
+    (ThrusterDynamics, "thrusters push at once"),
+    (ThrustScaling, "thrust does not change with time"),
 )
 
 Hold = Callable[[Effect], tuple[Effect, str]]

@@ -14,7 +14,12 @@ from rovsim import AXES
 from rovsim.application.export.holding import Left
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import RunInfo, Site
-from rovsim.dynamics.effects.base import Autopilot, Sensing, Smoothing, Stick
+from rovsim.dynamics.effects.base import (
+    Autopilot,
+    DemandTransform,
+    FrameMisalignment,
+    MeasurementFilter,
+)
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.signals.motion import Motion
@@ -60,9 +65,10 @@ def typical_flight(model: Model) -> Motion:
     Its own effects act, its residual does not. What is logged are commands of the thrusters, or
     demands per axis where an effect acts on these.
     """
-    demands = any(isinstance(effect, Autopilot | Stick) for effect in model.effects)
+    demands = any(isinstance(effect, Autopilot | DemandTransform) for effect in model.effects)
     flown = replace(model, residual=None, effects=tuple(
-        e.neutral() if isinstance(e, Sensing | Smoothing) else e for e in model.effects
+        e.neutral() if isinstance(e, FrameMisalignment | MeasurementFilter) else e
+        for e in model.effects
     ))  # fmt: skip
     settings = _calm(model.vehicle, demands)
     try:

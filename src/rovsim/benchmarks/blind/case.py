@@ -106,7 +106,7 @@ def _shrunk_outside(one: Unlisted) -> Unlisted:
 
 
 def _closer(value: float, parameter: Parameter) -> float:
-    return float(f"{parameter.combine(parameter.absence, value, WEAKER):.4g}")
+    return float(f"{parameter.combine(parameter.neutral_value, value, WEAKER):.4g}")
 
 
 def seed_of(case_id: str, seeds: Range) -> int:

@@ -9,7 +9,7 @@ from math import cos, exp, floor, pi, sin, tanh
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Effect, Parameter, Response, Wrench
+from rovsim.dynamics.effects.base import Effect, Parameter, ThrusterDynamics, Wrench
 
 
 class SquareWave(Wrench):
@@ -194,7 +194,7 @@ class Compression(Wrench):
         return F * at.R[2][0], F * at.R[2][1], F * at.R[2][2], 0.0, 0.0, 0.0
 
 
-class Backlash(Response):
+class Backlash(ThrusterDynamics):
     """Hysteresis of the thrusters: the force follows only once it has to move by a whole band."""
 
     id = "backlash"

@@ -139,7 +139,7 @@ def _swapped(random: np.random.Generator) -> EffectEntry:
 
 def _moved(p: Parameter, scales: float, strength: float) -> float:
     """A share of the change of a parameter by some of its scales, inside its range, rounded."""
-    return _rounded(p.combine(p.absence, p.absence + scales * p.scale, strength))
+    return _rounded(p.combine(p.neutral_value, p.neutral_value + scales * p.scale, strength))
 
 
 def _rounded(value: float) -> float:

@@ -18,14 +18,14 @@ from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Means, Wander
+from rovsim.dynamics.effects.base import Requirement, StochasticCurrent
 from rovsim.dynamics.vehicle import Vehicle
 
 SURELY = 2.0  # standard deviations: found in 97 of 100 such recordings
 # kg, the BlueROV2 Heavy (conf/vehicle): what is worth looking for in the catalogue is of its size.
 SCALED_FOR = 13.5
 OF_SIZE = ("N", "kg")  # units of what a larger vehicle has more of
-LOGGED: tuple[Means, ...] = ("commands", "demands")  # without a log of them, not observable
+LOGGED: tuple[Requirement, ...] = ("commands", "demands")  # without a log of them, not observable
 
 
 def list_not_observable(
@@ -41,13 +41,15 @@ def list_not_observable(
     larger = max(1.0, vehicle.rigid_body.mass / SCALED_FOR)
     shown = find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, larger)
     if selection.found.hypothesis.model.thrust_path.autopilots:
-        driven = [block for block in blocks if block.candidate.effect.through == "thrusters"]
+        driven = [block for block in blocks if block.candidate.effect.requires == "thrusters"]
         sizes = workspace.columns.sizes(selection.found.hypothesis)
         shown |= find_shown(sizes, driven, workspace.penalty, larger)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
     if not workspace.bank.shows_drift(workspace.noise):
-        silent |= {name for name, effect in catalogue.items() if issubclass(effect, Wander)}
+        silent |= {
+            name for name, effect in catalogue.items() if issubclass(effect, StochasticCurrent)
+        }
     silent -= {term.id for term in selection.found.hypothesis.terms}
     silent -= {rival.effect for rival in selection.named_rivals}  # tried in the place of a name
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
@@ -89,5 +91,5 @@ def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: V
     needed = (*LOGGED, *(("thrusters",) if vehicle.thrusters.units else ()))
     return {
         name for name, effect in catalogue.on(vehicle).items()
-        if effect.through in needed and effect.through not in means
+        if effect.requires in needed and effect.requires not in means
     }  # fmt: skip

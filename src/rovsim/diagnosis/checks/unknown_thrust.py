@@ -6,7 +6,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import ThrustPath
-from rovsim.dynamics.effects.base import Shaping
+from rovsim.dynamics.effects.base import CommandTransform
 from rovsim.dynamics.model import Model
 
 GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
@@ -28,7 +28,7 @@ def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
     change[steps < GAP * np.median(steps)] = 0.0
     lost = change > max(0.0, np.quantile(change, 1.0 - FEW))
     before = commands.before
-    at = path.arrival(commands.time - run.edges[0] + before) - before
+    at = path.effective_time(commands.time - run.edges[0] + before) - before
     return np.column_stack([at[:-1][lost], at[1:][lost]])
 
 
@@ -71,8 +71,8 @@ def _list_either_side(h: Hypothesis) -> list[tuple[Model, Model]]:
     found = []
     for term, columns in zip(h.terms, h.columns, strict=True):
         for parameter, column in zip(term.parameters, columns, strict=True):
-            if isinstance(term.effect, Shaping) and parameter.grain:
+            if isinstance(term.effect, CommandTransform) and parameter.resolution:
                 half = np.zeros(len(h.x))
-                half[column] = 0.5 * parameter.grain / parameter.scale
+                half[column] = 0.5 * parameter.resolution / parameter.scale
                 found.append((h.at(h.x - half).model, h.at(h.x + half).model))
     return found

@@ -164,7 +164,7 @@ class LawSearch:
             [AXES[i] for i in np.flatnonzero(axes)],
             list_means(runs, start.base.vehicle),
         )
-        for kind in (k for k in FORMS if k.effect.through in means):
+        for kind in (k for k in FORMS if k.effect.requires in means):
             beside = tuple(term for term in start.terms if term.id not in kind.imitates)
             bare = self.selection.fit(replace(start, terms=beside))
             if not bare.held:

@@ -75,7 +75,9 @@ class Term:
             return more
         given, added = self.effect.given(), more.effect.given()
         known = {p.name: p for p in self.effect.parameters}
-        values = {k: known[k].combine(given.get(k, known[k].absence), v) for k, v in added.items()}
+        values = {
+            k: known[k].combine(given.get(k, known[k].neutral_value), v) for k, v in added.items()
+        }
         free = (*self.free, *(name for name in more.free if name not in self.free))
         return replace(self, effect=self.effect.with_values(values), free=free)
 
@@ -128,7 +130,7 @@ class Hypothesis:
     def steps(self) -> Array:
         """A step of each scaled parameter (k,) that stays inside its range, to see what changes."""
         parameters = [p for term in self.terms for p in term.parameters]
-        sizes = [max(STEP, p.grain / p.scale) for p in parameters]
+        sizes = [max(STEP, p.resolution / p.scale) for p in parameters]
         return np.array([
             -step if (x + step) * p.scale > p.high else step
             for x, step, p in zip(self.x, sizes, parameters, strict=True)

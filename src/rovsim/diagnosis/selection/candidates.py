@@ -7,7 +7,13 @@ from rovsim.core.errors import BadInput
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Effect, Means, Smoothing, Wander, Wrench
+from rovsim.dynamics.effects.base import (
+    Effect,
+    MeasurementFilter,
+    Requirement,
+    StochasticCurrent,
+    Wrench,
+)
 from rovsim.dynamics.vehicle import Vehicle
 
 
@@ -36,9 +42,9 @@ def list_candidates(
     site, means = runs[0].motion.site, list_means(runs, vehicle)
     found = []
     for cls in catalogue.on(vehicle).values():
-        if issubclass(cls, Smoothing | Wander):  # told by camera.py and drifting_current.py
-            continue
-        if cls.through not in means:
+        if issubclass(cls, MeasurementFilter | StochasticCurrent):
+            continue  # told by camera.py and drifting_current.py
+        if cls.requires not in means:
             continue
         for values in cls.starts_at(site):
             start = cls(**values)
@@ -47,12 +53,12 @@ def list_candidates(
     return found
 
 
-def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Means]:
+def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Requirement]:
     """By what effects could act in these runs of that vehicle."""
     commands = [one.motion.commands for one in runs if len(one.motion.commands.time)]
     kinds = {one.kind for one in commands}
-    given: dict[Means, object] = {
-        "any": True,
+    given: dict[Requirement, object] = {
+        "nothing": True,
         "commands": commands,
         "demands": "demand" in kinds,
         "thrusters": vehicle.thrusters.units and kinds - {"wrench"},

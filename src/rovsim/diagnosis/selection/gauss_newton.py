@@ -273,7 +273,7 @@ def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:
 def _hold(bowl: _Bowl, goal: Array, trust: float) -> Iterator[Array]:
     """Goals (k,) like this one, in which coarse parameters move less, and the others as is best."""
     x, parameters = bowl.at.x, [p for term in bowl.at.terms for p in term.parameters]
-    grains = np.array([p.grain / p.scale for p in parameters])
+    grains = np.array([p.resolution / p.scale for p in parameters])
     coarse = grains > 0.0
     if not coarse.any() or coarse.all():
         return

@@ -140,7 +140,7 @@ def find_std(found: Fit, i: int) -> dict[str, float]:
     """Standard deviations by name; within its grain a value could be anywhere (uniform: / √12)."""
     term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
     return {
-        p.name: float(np.hypot(found.std[k] * p.scale, p.grain / np.sqrt(12.0)))
+        p.name: float(np.hypot(found.std[k] * p.scale, p.resolution / np.sqrt(12.0)))
         for p, k in zip(term.parameters, columns, strict=True)
     }
 

@@ -123,6 +123,9 @@ def _turned(a: Array, b: Array) -> float:
 def _list_loops(model: Model) -> tuple:
     """Which demands loops on board take, and in which mode; empty where there are none."""
     return tuple(
-        (loop.mixed(np.eye(6)).tobytes(), *(loop[p.name] for p in loop.parameters if not p.fitted))
+        (
+            loop.mixer_demand(np.eye(6)).tobytes(),
+            *(loop[p.name] for p in loop.parameters if not p.fitted),
+        )
         for loop in model.thrust_path.autopilots
     )

@@ -3,19 +3,20 @@
 An effect acts at one place of the equation of motion; the base class says which, and asks for one
 method. Effects are immutable and add: a model is a list of them.
 
-    base class      acts on                                    method
-    Coefficients    the constants of Fossen's equation         enter(body)
-    Wrench          the forces at one instant (compiled)       wrench(at, p) -> 6 numbers
-    Wander          the water, at random                       draw(ticks, dt, random) -> current
-    Clock           when a logged command takes effect         arrival(time) -> time
-    Stick           the demand before the mixer                moved(demand) -> demand
-    Autopilot       demands in place of the mixer              mixed(demand) -> demand; asked(...)
-    Shaping         the thruster command                       shaped(command) -> command
-    Curve           the shape of the static force curve        bent(force, full) -> force
-    Strength        the static thruster force                  scaled(force, t, duration) -> force
-    Response        the dynamic thruster force                 respond(force, h, state) -> ...
-    Sensing         what the motion capture reports            transforms() -> two rigid transforms
-    Smoothing       what its software makes of that            time_constants() -> of low-passes
+    base class         acts on                               method
+    Coefficients       the constants of Fossen's equation    enter(body)
+    Wrench             the forces at one instant (compiled)  wrench(at, p) -> 6 numbers
+    StochasticCurrent  the water, at random                  draw(ticks, dt, random) -> current
+    CommandTiming      when a logged command takes effect    effective_time(time) -> time
+    DemandTransform    the demand before the mixer           mixer_demand(demand) -> demand
+    Autopilot          demands in place of the mixer         mixer_demand(demand) -> demand;
+                                                             demanded_wrench(...) -> wrench
+    CommandTransform   the thruster command                  thruster_command(command) -> command
+    ThrustCurveShape   the shape of the static force curve   reshaped_force(force, full) -> force
+    ThrustScaling      the static thruster force             scaled_force(force, t, ...) -> force
+    ThrusterDynamics   the dynamic thruster force            respond(force, h, state) -> ...
+    FrameMisalignment  what the motion capture reports       transforms() -> two rigid transforms
+    MeasurementFilter  what its software makes of that       time_constants() -> of low-passes
 """
 
 from abc import ABC, abstractmethod
@@ -33,7 +34,7 @@ from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.parameters import Parameter, Signature
 from rovsim.dynamics.engine.types import At, Vector6
 
-Means = Literal["any", "commands", "demands", "thrusters", "surfaces", "waterplane"]
+Requirement = Literal["nothing", "commands", "demands", "thrusters", "surfaces", "waterplane"]
 
 
 class Actuated(Protocol):
@@ -68,7 +69,7 @@ class Effect(ABC):
     signature: ClassVar[Signature | None] = None  # how the catalogue page shows it
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
-    through: ClassVar[Means] = "any"  # by what it acts: without, nothing can show it
+    requires: ClassVar[Requirement] = "nothing"  # by what it acts: without, no run can show it
 
     def __init__(self, **values: float) -> None:
         known = [p.name for p in self.parameters]
@@ -194,7 +195,7 @@ class Wrench(Effect):
         return bool(cls.channels) or "actuators" in cls.wrench.__code__.co_names
 
 
-class Wander(Effect):
+class StochasticCurrent(Effect):
     """Moves the water at random: the tank draws it, and a model has its mean, still water."""
 
     @abstractmethod
@@ -202,79 +203,79 @@ class Wander(Effect):
         """Current (ticks, 3) m/s in NED that it adds during each tick of dt s."""
 
 
-class Clock(Effect):
+class CommandTiming(Effect):
     """Moves the instants at which logged commands take effect."""
 
-    through: ClassVar[Means] = "commands"
+    requires: ClassVar[Requirement] = "commands"
 
     @abstractmethod
-    def arrival(self, time: Array) -> Array:
+    def effective_time(self, time: Array) -> Array:
         """Instants (m,) in s, increasing, at which lines logged at `time` (m,) take effect."""
 
 
-class Stick(Effect):
+class DemandTransform(Effect):
     """Changes the demand before the mixer."""
 
-    through = "demands"
+    requires = "demands"
 
     @abstractmethod
-    def moved(self, demand: Array) -> Array:
+    def mixer_demand(self, demand: Array) -> Array:
         """Demands (m, 6) as the mixer sees them."""
 
 
 class Autopilot(Effect):
     """Acts on some axes itself: their demands do not reach the mixer."""
 
-    through = "demands"
+    requires = "demands"
 
     @abstractmethod
-    def mixed(self, demand: Array) -> Array:
+    def mixer_demand(self, demand: Array) -> Array:
         """Demands (m, 6) in [-1, 1] that are left to the mixer."""
 
     @abstractmethod
-    def asked(self, demand: Array, inertia: Array) -> Array:
+    def demanded_wrench(self, demand: Array, inertia: Array) -> Array:
         """Wrench (m, 6) for the demands (m, 6) it took; `inertia` (6,) diagonal of the whole M.
 
         What it does about the vehicle's motion is its `wrench`.
         """
 
 
-class Shaping(Effect):
+class CommandTransform(Effect):
     """Changes the thruster command before the force curve."""
 
-    through = "thrusters"
+    requires = "thrusters"
 
     @abstractmethod
-    def shaped(self, command: Array) -> Array:
+    def thruster_command(self, command: Array) -> Array:
         """Commands (m, n) in [-1, 1] as the propellers see them."""
 
 
-class Curve(Effect):
+class ThrustCurveShape(Effect):
     """Changes the shape of the static force curve."""
 
-    through = "thrusters"
+    requires = "thrusters"
 
     @abstractmethod
-    def bent(self, force: Array, full: Array) -> Array:
+    def reshaped_force(self, force: Array, full: Array) -> Array:
         """Forces (m, n) in N of nominal ones; `full` (2, n) at full command backwards, forwards."""
 
 
-class Strength(Effect):
+class ThrustScaling(Effect):
     """Changes the static thruster force after the force curve; `steady`: the same at all times."""
 
     steady = False
 
-    through = "thrusters"
+    requires = "thrusters"
 
     @abstractmethod
-    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+    def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Forces (m, n) in N at times t (m,) s into a recording of that duration."""
 
 
-class Response(Effect):
+class ThrusterDynamics(Effect):
     """Gives the thruster force dynamics of its own."""
 
-    through = "thrusters"
+    requires = "thrusters"
 
     @abstractmethod
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
@@ -284,7 +285,7 @@ class Response(Effect):
         """
 
 
-class Sensing(Effect):
+class FrameMisalignment(Effect):
     """Changes what the motion capture reports of a motion, never the motion itself."""
 
     @abstractmethod
@@ -292,8 +293,8 @@ class Sensing(Effect):
         """World side and body side: measured pose = world o true pose o body."""
 
 
-class Smoothing(Effect):
-    """Smooths the poses that the motion capture reports, after all `Sensing`."""
+class MeasurementFilter(Effect):
+    """Smooths the poses that the motion capture reports, after all `FrameMisalignment`."""
 
     @abstractmethod
     def time_constants(self) -> tuple[float, ...]:

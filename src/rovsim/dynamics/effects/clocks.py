@@ -2,11 +2,11 @@
 
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Clock, Parameter
+from rovsim.dynamics.effects.base import CommandTiming, Parameter
 from rovsim.dynamics.effects.parameters import STAMP, Signature
 
 
-class InputDelay(Clock):
+class InputDelay(CommandTiming):
     """Commands take effect late: transport delay, or a constant offset between two clocks."""
 
     id = "input_delay"
@@ -23,16 +23,16 @@ class InputDelay(Clock):
         "the response, a lag rounds it, and with a drifting clock the shift grows during the run."
     )
     signature = Signature({"delay": 0.2}, "sway", "change of sway thrust")
-    parameters = (Parameter("delay", "s", r"\delta", scale=0.05, grain=STAMP),)
+    parameters = (Parameter("delay", "s", r"\delta", scale=0.05, resolution=STAMP),)
     # a step of a command that comes 0.1 s late looks like nothing that a small delay does
     starts = ({}, {"delay": 0.1}, {"delay": 0.3}, {"delay": -0.1})
 
-    def arrival(self, time: Array) -> Array:
+    def effective_time(self, time: Array) -> Array:
         """Every line arrives later by the delay."""
         return time + self["delay"]
 
 
-class ClockDrift(Clock):
+class ClockDrift(CommandTiming):
     """The computer that logged the commands has a clock that runs fast."""
 
     id = "clock_drift"
@@ -47,11 +47,11 @@ class ClockDrift(Clock):
     )
     signature = Signature({"rate": 0.005}, "surge", "time in the run", size=True)
     parameters = (  # one stamp in a minute
-        Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002, grain=STAMP / 60.0),
+        Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002, resolution=STAMP / 60.0),
     )
     # 0.2 s and 0.6 s after a minute; see InputDelay
     starts = ({}, {"rate": 0.003}, {"rate": -0.003}, {"rate": 0.01}, {"rate": -0.01})
 
-    def arrival(self, time: Array) -> Array:
+    def effective_time(self, time: Array) -> Array:
         """Instant on the MoCap clock at which the command clock shows `time`."""
         return time / (1.0 + self["rate"])

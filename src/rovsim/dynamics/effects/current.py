@@ -4,7 +4,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter, Wander
+from rovsim.dynamics.effects.base import Coefficients, Parameter, StochasticCurrent
 from rovsim.dynamics.effects.parameters import Signature
 
 
@@ -33,7 +33,7 @@ class Current(Coefficients):
         body.current += self.values
 
 
-class CurrentDrift(Wander):
+class CurrentDrift(StochasticCurrent):
     """The current wanders, from still water on, north and east.
 
     A model has the mean of it, which is still water, so it adds nothing to a replay. The synthetic

@@ -21,7 +21,7 @@ class FinEffectiveness(Coefficients):
 
     id = "fin_effectiveness"
     rank = 1
-    through = "surfaces"
+    requires = "surfaces"
     equation = r"L \to g\,g_i\,L"
     symbols = (
         ("L", "lift of control surface i"),

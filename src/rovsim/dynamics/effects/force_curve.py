@@ -3,11 +3,11 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Curve, Parameter
+from rovsim.dynamics.effects.base import Parameter, ThrustCurveShape
 from rovsim.dynamics.effects.parameters import Signature
 
 
-class ForceCurve(Curve):
+class ForceCurve(ThrustCurveShape):
     """Thrusters whose curve is more bent, or straighter, than the published one.
 
     The force at full command stays; below 1 small commands push more, above 1 less.
@@ -30,7 +30,7 @@ class ForceCurve(Curve):
     # at a tenth of full force a change of 0.1 is a fifth of the force: 0.1^0.1 = 0.8
     parameters = (Parameter("exponent", "1", "e", low=0.1, default=1.0, scale=0.1),)
 
-    def bent(self, force: Array, full: Array) -> Array:
+    def reshaped_force(self, force: Array, full: Array) -> Array:
         """A power of the share of the full force."""
         most = np.abs(np.where(force < 0.0, full[0], full[1]))
         share = np.divide(np.abs(force), most, out=np.zeros_like(force), where=most > 0.0)

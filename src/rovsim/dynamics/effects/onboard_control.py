@@ -65,7 +65,7 @@ class OnboardControl(Wrench, Autopilot):
             Parameter(f"bandwidth_{axis}", "1/s", f"b_{{{axis}}}", low=0.0, scale=1.0)
             for axis in AXES
         ),
-        Parameter("attitude", "1", "a", low=0.0, high=1.0, scale=1.0, fitted=False, tried=True),
+        Parameter("attitude", "1", "a", low=0.0, high=1.0, scale=1.0, fitted=False, discrete=True),
     )
     starts = (
         {"gain_yaw": 1.0, "bandwidth_yaw": 2.0},
@@ -101,11 +101,11 @@ class OnboardControl(Wrench, Autopilot):
     def _closed(self) -> Array:
         return self.values[6:12] > 0.0
 
-    def mixed(self, demand: Array) -> Array:
+    def mixer_demand(self, demand: Array) -> Array:
         """Demands of axes without a loop."""
         return np.where(self._closed, 0.0, demand)
 
-    def asked(self, demand: Array, inertia: Array) -> Array:
+    def demanded_wrench(self, demand: Array, inertia: Array) -> Array:
         """What the loops push for their set-points alone: M_ii b_i g_i demand_i.
 
         In attitude mode roll and pitch ask for b_i g_i demand_i, a rate in proportion to the angle.

@@ -15,9 +15,9 @@ class Parameter:
     """One number of an effect: its name, SI unit, symbol, allowed range and value when absent.
 
     A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
-    change worth looking for: a fit works in multiples of it. `grain`: changes much smaller than
-    this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`: only
-    when asked for. `tried`: it has a few values, one of which is right: they are tried.
+    change worth looking for: a fit works in multiples of it. `resolution`: changes much smaller
+    than this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`:
+    only when asked for. `discrete`: it has a few values, one of which is right: they are tried.
     `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
     """
 
@@ -28,27 +28,27 @@ class Parameter:
     high: float = np.inf
     default: float = 0.0
     scale: float = field(kw_only=True)
-    grain: float = field(default=0.0, kw_only=True)
+    resolution: float = field(default=0.0, kw_only=True)
     fitted: bool = field(default=True, kw_only=True)
-    tried: bool = field(default=False, kw_only=True)
+    discrete: bool = field(default=False, kw_only=True)
     reciprocal: bool = field(default=False, kw_only=True)
 
     @property
-    def absence(self) -> float:
+    def neutral_value(self) -> float:
         """The value that changes nothing; zero where the site would decide."""
         return self.default if np.isfinite(self.default) else 0.0
 
     def combine(self, value: float, other: float, share: float = 1.0) -> float:
-        """A value with a share of the change from absence to another on top, inside the range."""
+        """A value with a share of the change from neutral to another on top, inside the range."""
         if self.reciprocal:
-            both = 1.0 / (1.0 / value + share * (1.0 / other - 1.0 / self.absence))
+            both = 1.0 / (1.0 / value + share * (1.0 / other - 1.0 / self.neutral_value))
         else:
-            both = value + share * (other - self.absence)
+            both = value + share * (other - self.neutral_value)
         return float(np.clip(both, self.low, self.high))
 
     def size(self, value: float) -> float:
-        """How large a change from absence is, in the parameter's unit."""
-        return abs(value) if self.reciprocal else abs(value - self.absence)
+        """How large a change from neutral is, in the parameter's unit."""
+        return abs(value) if self.reciprocal else abs(value - self.neutral_value)
 
 
 def per_axis(

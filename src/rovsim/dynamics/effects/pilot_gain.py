@@ -3,11 +3,11 @@
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.dynamics.effects.base import Parameter, Stick
+from rovsim.dynamics.effects.base import DemandTransform, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
 
-class PilotGain(Stick):
+class PilotGain(DemandTransform):
     """A gain between the logged demand and the mixer: the autopilot gives more or less of it."""
 
     id = "pilot_gain"
@@ -24,6 +24,6 @@ class PilotGain(Stick):
         Parameter(axis, "1", rf"g_{{{axis}}}", default=1.0, scale=0.1) for axis in AXES
     )
 
-    def moved(self, demand: Array) -> Array:
+    def mixer_demand(self, demand: Array) -> Array:
         """Each demand times its gain."""
         return demand * self.values

@@ -4,14 +4,14 @@ from math import pi
 
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Clock, Parameter, Smoothing
+from rovsim.dynamics.effects.base import CommandTiming, MeasurementFilter, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
 NONE = 1e3  # Hz, ten times what cameras see: no filter at all
 LATEST = 0.2  # s, two frames of the slowest cameras
 
 
-class PoseFilter(Smoothing, Clock):
+class PoseFilter(MeasurementFilter, CommandTiming):
     """The software of the motion capture smooths the poses it reports, and so reports them late.
 
     Position and attitude pass two equal first-order low-passes; a cutoff of 1000 Hz means none.
@@ -20,7 +20,7 @@ class PoseFilter(Smoothing, Clock):
     """
 
     id = "pose_filter"
-    through = "any"
+    requires = "nothing"
     equation = (
         r"y_k = a\,y_{k-1} + (1 - a)\,x_k \text{ twice},\quad a = e^{-2 \pi f_c\,\Delta t},"
         r"\quad u(t - \delta_y)"
@@ -55,6 +55,6 @@ class PoseFilter(Smoothing, Clock):
         cutoff = self["cutoff"]
         return () if cutoff >= NONE else 2 * (1.0 / (2.0 * pi * cutoff),)
 
-    def arrival(self, time: Array) -> Array:
+    def effective_time(self, time: Array) -> Array:
         """On the clock of the poses every line takes effect later by the latency."""
         return time + self["latency"]

@@ -3,11 +3,11 @@
 import numpy as np
 
 from rovsim.core.rotations import Rigid
-from rovsim.dynamics.effects.base import Parameter, Sensing
+from rovsim.dynamics.effects.base import FrameMisalignment, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
 
-class MarkerOffset(Sensing):
+class MarkerOffset(FrameMisalignment):
     """The rigid body was defined about a point that is not CO."""
 
     id = "marker_offset"
@@ -32,7 +32,7 @@ class MarkerOffset(Sensing):
         return Rigid.by(), Rigid.by(shift=self.values)
 
 
-class MarkerMisalignment(Sensing):
+class MarkerMisalignment(FrameMisalignment):
     """The rigid body was defined with axes that are not the vehicle's."""
 
     id = "marker_misalignment"
@@ -61,7 +61,7 @@ class MarkerMisalignment(Sensing):
         return Rigid.by(), Rigid.by(turn=self.values)
 
 
-class WorldTilt(Sensing):
+class WorldTilt(FrameMisalignment):
     """The room was calibrated with an L-frame that did not stand level."""
 
     id = "world_tilt"

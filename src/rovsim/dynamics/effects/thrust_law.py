@@ -27,7 +27,7 @@ class ThrustLaw(Wrench):
 
     id = "thrust_law"
     listed = False
-    through = "thrusters"
+    requires = "thrusters"
     equation = r"\tau_i = c\,|T_j|\,\nu_k"
     neglects = "what differs between thrusters"
     source = "definition"

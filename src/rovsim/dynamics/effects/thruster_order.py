@@ -7,11 +7,11 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Actuated, Effect, Parameter, Shaping
+from rovsim.dynamics.effects.base import Actuated, CommandTransform, Effect, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
 
-class ThrusterOrder(Shaping):
+class ThrusterOrder(CommandTransform):
     """Two outputs are swapped: each of two thrusters does what the log says of the other.
 
     Numbers from 1, in the vehicle file's order; they are tried, not fitted. 0: nothing is swapped.
@@ -33,7 +33,7 @@ class ThrusterOrder(Shaping):
     )
     signature = Signature({"first": 5.0, "second": 7.0}, "pitch", "pitch thrust")
     parameters = tuple(
-        Parameter(name, "1", symbol, low=0.0, scale=1.0, fitted=False, tried=True)
+        Parameter(name, "1", symbol, low=0.0, scale=1.0, fitted=False, discrete=True)
         for name, symbol in (("first", "i"), ("second", "j"))
     )
     starts = ({"first": 1.0, "second": 2.0},)
@@ -49,7 +49,7 @@ class ThrusterOrder(Shaping):
         """All pairs of its thrusters."""
         return _among(vehicle.thruster_count)
 
-    def shaped(self, command: Array) -> Array:
+    def thruster_command(self, command: Array) -> Array:
         """Two columns in each other's place."""
         count = command.shape[1]
         i, j = (int(k) for k in self.values)

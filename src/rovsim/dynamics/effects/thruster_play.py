@@ -3,10 +3,10 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Parameter, Response
+from rovsim.dynamics.effects.base import Parameter, ThrusterDynamics
 
 
-class ThrusterPlay(Response):
+class ThrusterPlay(ThrusterDynamics):
     """The force of a thruster follows only once what is asked of it has moved by a band."""
 
     id = "thruster_play"

@@ -8,13 +8,19 @@ from numpy import ndarray as Array
 
 from rovsim.core.pwm import SPAN
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter, Response, Shaping, Strength
+from rovsim.dynamics.effects.base import (
+    Coefficients,
+    CommandTransform,
+    Parameter,
+    ThrusterDynamics,
+    ThrustScaling,
+)
 from rovsim.dynamics.effects.parameters import STAMP, Signature
 
 THRUSTERS = tuple(f"t{i}" for i in range(1, 9))
 
 
-class ThrusterDeadband(Shaping):
+class ThrusterDeadband(CommandTransform):
     """A thruster that does not start below a small command; above it the curve is unchanged."""
 
     id = "thruster_deadband"
@@ -29,15 +35,15 @@ class ThrusterDeadband(Shaping):
     )
     signature = Signature({"width": 0.15}, "surge", "surge thrust")
     # two steps of a log in whole microseconds: between them no command changes sides
-    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, grain=2 / SPAN),)
+    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN),)
     starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us)
 
-    def shaped(self, command: Array) -> Array:
+    def thruster_command(self, command: Array) -> Array:
         """Commands inside the band become zero."""
         return np.where(np.abs(command) <= self["width"], 0.0, command)
 
 
-class ThrusterGain(Strength):
+class ThrusterGain(ThrustScaling):
     """Thrusters stronger or weaker than the published curve; negative means reversed wiring."""
 
     steady = True
@@ -64,14 +70,14 @@ class ThrusterGain(Strength):
         for name in (*THRUSTERS, "all")
     )
 
-    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+    def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Forces times each thruster's gain and the common one."""
         each, own = np.ones(force.shape[1]), self.values[: len(THRUSTERS)][: force.shape[1]]
         each[: len(own)] = own
         return force * (self["all"] * each)
 
 
-class ThrustAsymmetry(Strength):
+class ThrustAsymmetry(ThrustScaling):
     """Propellers push less backwards than forwards."""
 
     steady = True
@@ -88,12 +94,12 @@ class ThrustAsymmetry(Strength):
     signature = Signature({"ratio": 0.7}, "heave", "heave thrust")
     parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0, scale=0.1),)
 
-    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+    def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Negative forces times the ratio."""
         return np.where(force < 0.0, self["ratio"] * force, force)
 
 
-class VoltageSag(Strength):
+class VoltageSag(ThrustScaling):
     """The battery empties: thrust fades over the run.
 
     `fraction` is lost by the end of a run, however long it is; `rate` in every second. Fitted to
@@ -123,13 +129,13 @@ class VoltageSag(Strength):
         """A fraction is of a run."""
         return self["fraction"] != 0.0
 
-    def scaled(self, force: Array, t: Array, duration: float) -> Array:
+    def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Forces that fade linearly with time."""
         lost = self["fraction"] * t / duration + self["rate"] * t
         return force * np.maximum(0.0, 1.0 - lost)[:, None]
 
 
-class ThrusterLag(Response):
+class ThrusterLag(ThrusterDynamics):
     """Propellers take time to spin up: first order on the force."""
 
     id = "thruster_lag"
@@ -146,7 +152,7 @@ class ThrusterLag(Response):
         "response by its time constant at any step size, added mass only slows the rise."
     )
     signature = Signature({"time_constant": 0.2}, "surge", "change of surge thrust")
-    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1, grain=STAMP),)
+    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1, resolution=STAMP),)
     starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
@@ -167,7 +173,7 @@ class AdvanceLoss(Coefficients):
     """A propeller that advances through the water pushes less; opposing inflow raises thrust."""
 
     id = "advance_loss"
-    through = "thrusters"
+    requires = "thrusters"
     equation = r"F \to F\,(1 - c\,\mathrm{sign}(F)\,d_i \cdot v_r)"
     symbols = (
         ("d_i", "direction of thruster i"),
@@ -195,7 +201,7 @@ class PropellerTorque(Coefficients):
     """The reaction moment of each propeller about its axis."""
 
     id = "propeller_torque"
-    through = "thrusters"
+    requires = "thrusters"
     equation = r"\tau_\text{rotation} \to \tau_\text{rotation} + q\,s_i F_i d_i"
     symbols = (
         (r"\tau_\text{rotation}", "moment on the vehicle"),

@@ -9,7 +9,7 @@ class WaterplaneStiffness(Coefficients):
     """The waterplane rights a floating vehicle more or less stiffly than the vehicle file says."""
 
     id = "waterplane_stiffness"
-    through = "waterplane"
+    requires = "waterplane"
     equation = r"\tau = -\Delta k \cdot (z - z_0,\ \phi,\ \theta)"
     symbols = (
         (r"\Delta k", "stiffness that is missing"),

@@ -9,18 +9,18 @@ import numpy as np
 from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import (
     Autopilot,
-    Clock,
     Coefficients,
-    Curve,
+    CommandTiming,
+    CommandTransform,
+    DemandTransform,
     Effect,
+    FrameMisalignment,
+    MeasurementFilter,
     Parameter,
-    Response,
-    Sensing,
-    Shaping,
-    Smoothing,
-    Stick,
-    Strength,
-    Wander,
+    StochasticCurrent,
+    ThrustCurveShape,
+    ThrusterDynamics,
+    ThrustScaling,
     Wrench,
 )
 from rovsim.dynamics.effects.parameters import Signature
@@ -30,16 +30,20 @@ from rovsim.reporting.words.symbols import explain_symbols
 PAGE, PICTURES = "catalogue.md", "images/effects"
 LONG = 8  # rows of a table that is folded away
 KINDS = {
-    "What the vehicle weighs and displaces, and what pushes it": (Coefficients, Wander, Wrench),
-    "From a logged command to a thruster's force": (
-        Clock,
-        Stick,
-        Shaping,
-        Curve,
-        Strength,
-        Response,
+    "What the vehicle weighs and displaces, and what pushes it": (
+        Coefficients,
+        StochasticCurrent,
+        Wrench,
     ),
-    "What the motion capture reports": (Sensing, Smoothing),
+    "From a logged command to a thruster's force": (
+        CommandTiming,
+        DemandTransform,
+        CommandTransform,
+        ThrustCurveShape,
+        ThrustScaling,
+        ThrusterDynamics,
+    ),
+    "What the motion capture reports": (FrameMisalignment, MeasurementFilter),
 }
 INTRODUCTION = """\
 # The catalogue of effects

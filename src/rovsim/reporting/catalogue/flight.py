@@ -59,7 +59,7 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
         turbulence=Turbulence(force=0.1, moment=0.004),
         effects=(describe_effect(cls(**signature.values)),),
     )
-    known = SUITABLE.get(cls.through, {})
+    known = SUITABLE.get(cls.requires, {})
     suits = {k: known[k] for k in ("vehicle", "tank") if k in known}
     log = calm.log.model_copy(update=known.get("log", {}))
     return TankSettings.model_validate({**dict(calm), **suits, "log": log})

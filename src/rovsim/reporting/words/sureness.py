@@ -3,7 +3,7 @@
 from typing import Mapping
 
 from rovsim.core.normal import Z_95
-from rovsim.dynamics.effects.base import Effect, Wander
+from rovsim.dynamics.effects.base import Effect, StochasticCurrent
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.thrusters import name_parameter
@@ -27,7 +27,7 @@ def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) ->
     sentences = []
     for one in found.selected:
         known = catalogue.get(one.effect)
-        absence = {p.name: p.absence for p in known.parameters} if known else {}
+        absence = {p.name: p.neutral_value for p in known.parameters} if known else {}
         unsure = [name for name, v in one.parameters.items() if _holds(v, absence.get(name, 0.0))]
         if unsure and (one.probability or 0.0) > 1.0 - IMPROBABLE:
             names = [name_parameter(one.effect, name, found.thrusters) for name in unsure]
@@ -47,7 +47,7 @@ def _holds(value: FittedValue, other: float) -> bool:
 
 def _say_why(one: FittedEffect, found: Diagnosis, known: type[Effect] | None) -> str:
     proposal = found.unexplained.proposal
-    if known and issubclass(known, Wander):
+    if known and issubclass(known, StochasticCurrent):
         return "what is left unexplained may seem a current that wanders"
     if proposal and one.effect not in {each.effect for each in proposal.beside}:
         return "the proposed equation does without it"

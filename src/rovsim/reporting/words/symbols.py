@@ -61,4 +61,4 @@ def _name_parameters(effect: type[Effect], values: Collection[str] | None) -> It
 def _name(parameter: Parameter, values: Collection[str] | None) -> str:
     if values is None or parameter.name in values:
         return parameter.name
-    return f"{parameter.name}, {parameter.absence:g} here"
+    return f"{parameter.name}, {parameter.neutral_value:g} here"

@@ -7,7 +7,7 @@ from typing import Mapping, Sequence
 from rovsim import AXES
 from rovsim.core.normal import Z_95
 from rovsim.core.signs import minus
-from rovsim.dynamics.effects.base import Effect, Wander
+from rovsim.dynamics.effects.base import Effect, StochasticCurrent
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.units import FORCE_UNITS, unit
@@ -147,7 +147,7 @@ def _missing(
         for name, v in one.parameters.items()
     )
     removed = _removed(one.error_reduction, above)
-    if known and issubclass(known, Wander):
+    if known and issubclass(known, StochasticCurrent):
         removed = "cannot be foreseen"
     worth = f"{removed}, {sure}"
     return Missing(one.effect, meaning, values, worth, equation, tuple(symbols), cause)

@@ -11,7 +11,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator, mo
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.schema import Section
 from rovsim.dynamics.effect_entry import EffectEntry
-from rovsim.dynamics.effects.base import Means
+from rovsim.dynamics.effects.base import Requirement
 from rovsim.dynamics.vehicle import default_vehicle
 
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -176,7 +176,7 @@ MOST_STEPS = 10_000  # a second: a run of a minute then takes 60 MB
 
 # Where effects show that need more than the default vehicle: room to go ahead; waves that heave,
 # list and trim what floats.
-SUITABLE: Mapping[Means, Mapping[str, Any]] = {
+SUITABLE: Mapping[Requirement, Mapping[str, Any]] = {
     "demands": {"log": {"kind": "demand"}},
     "surfaces": {
         "vehicle": "remus100",

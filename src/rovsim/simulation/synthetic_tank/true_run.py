@@ -175,11 +175,11 @@ class _TrueVehicle:
 
         No command acts before it is given: where the clocks say so, the log's clock is ahead.
         """
-        stamp, arrival = t, self.model.thrust_path.arrival
-        if not self.model.thrust_path.clocks:
+        stamp, effective = t, self.model.thrust_path.effective_time
+        if not self.model.thrust_path.timings:
             return t
         for _ in range(FIXED_POINT):
-            stamp += max(0.0, t - float(arrival(np.array([stamp]))[0]))
+            stamp += max(0.0, t - float(effective(np.array([stamp]))[0]))
         return stamp
 
     def advance(self, k: int, command: Array, state: Array, pushes: Array) -> Array:
@@ -187,7 +187,7 @@ class _TrueVehicle:
         self.times[k], self.commands[k] = self._stamp(k * self.tick), command
         path, t = self.model.thrust_path, k * self.tick
         middle = t + self.h * (0.5 + np.arange(len(pushes)))
-        arrival = path.arrival(self.times[self.begin : k + 1])
+        arrival = path.effective_time(self.times[self.begin : k + 1])
         acting = latest(arrival, middle)
         held = self.commands[self.begin + acting]
         self.begin += int(acting[0])

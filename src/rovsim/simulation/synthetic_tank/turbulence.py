@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core import gauss_markov
-from rovsim.dynamics.effects.base import Wander
+from rovsim.dynamics.effects.base import StochasticCurrent
 from rovsim.dynamics.model import Model
 from rovsim.simulation.synthetic_tank.settings import Turbulence
 
@@ -39,7 +39,7 @@ def _pushes(
 
 def draw_currents(model: Model, ticks: int, dt: float, random: np.random.Generator) -> Array:
     """Current (ticks, 3) m/s in NED that wanders, drawn by generators of its own."""
-    wandering = [effect for effect in model.effects if isinstance(effect, Wander)]
+    wandering = [effect for effect in model.effects if isinstance(effect, StochasticCurrent)]
     found = np.zeros((ticks, 3))
     for effect, own in zip(wandering, random.spawn(len(wandering)), strict=True):
         found += effect.draw(ticks, dt, own)
