@@ -8,7 +8,9 @@ import pytest
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Logged, Site
 from rovsim.dynamics.actuation import Thrust
-from rovsim.dynamics.catalogue import load_catalogue
+from rovsim.dynamics.catalogue import built_in, load_catalogue
+from rovsim.dynamics.effects.base import Wrench
+from rovsim.dynamics.effects.thrust_law import ThrustLaw
 from rovsim.dynamics.engine.types import NO_MEMORY
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
@@ -44,6 +46,44 @@ def probe(tmp_path):
     return load_catalogue([tmp_path / "probe.py"])["probe"]
 
 
+HELPED = """
+import numpy as np
+from rovsim.dynamics.effects.base import Parameter, Wrench
+from rovsim.dynamics.engine.compiled import inlined
+
+@inlined
+def actuator(at, i):
+    return at.actuators.force[i]
+
+@inlined
+def twice(at):
+    return 2.0 * actuator(at, 0)
+
+class Helped(Wrench):
+    "Reads through helpers."
+    id = "helped"
+    equation, neglects, source = "X = 2 k F", "all else", "a test"
+    parameters = (Parameter("k", "1", "k", scale=1.0),)
+
+    @staticmethod
+    def wrench(at, p):
+        return p.k * twice(at), 0.0, 0.0, 0.0, 0.0, 0.0
+"""
+
+
+def test_a_helper_may_read_for_it(tmp_path):
+    (tmp_path / "helped.py").write_text(HELPED)
+    helped = load_catalogue([tmp_path / "helped.py"])["helped"]
+    found = read(load_vehicle("remus100"), helped(k=0.5), [0.5, 0.1, -0.2], np.zeros(6), ())
+    np.testing.assert_allclose(found, [3.86 * 0.25, 0.0, 0.0, 0.0, 0.0, 0.0], atol=1e-9)
+
+
+def test_only_effects_that_read_are_handed_what_is_read():
+    reading = {name for name, cls in built_in().items() if issubclass(cls, Wrench) and cls.reads()}
+    assert reading == set()
+    assert ThrustLaw.reads()
+
+
 def push(world, thrust, nu):
     """M nu_dot (6,) at a velocity."""
     state = np.concatenate([at_rest()[:7], nu])
@@ -52,11 +92,11 @@ def push(world, thrust, nu):
     return world.body.M @ found[0]
 
 
-def read(vehicle, effect, command, nu):
+def read(vehicle, effect, command, nu, channels=(0.3, -2.0)):
     """What the probe shows of a torpedo."""
     none = np.full((1, 6), np.nan)
     force = nominal(vehicle).thrust_path.thrusters.static_force(np.array([[command[0]]]))
-    seen = np.array([[*command, 0.3, -2.0]])
+    seen = np.array([[*command, *channels]])
     thrust = Thrust(force, np.zeros((1, 6)), none, angle=np.array([command[1:]]), read=seen)
     return push(nominal(vehicle) + effect, thrust, nu) - push(nominal(vehicle), thrust, nu)
 

@@ -31,6 +31,7 @@ from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.rotations import Rigid
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.body import Body
+from rovsim.dynamics.effects.kernels import says
 from rovsim.dynamics.effects.parameters import Parameter, Signature
 from rovsim.dynamics.engine.types import At, Vector6
 
@@ -164,9 +165,9 @@ class Coefficients(Effect):
 class Wrench(Effect):
     """Pushes the vehicle: a wrench that depends on the state and on time.
 
-    A kernel that says `at.actuators` reads forces, commands and inflow of the actuators, and
-    `at.channels.NAME` what was logged beside the commands, by the names in `channels`
-    (`rovsim.dynamics.engine.reading`).
+    A kernel that says `at.actuators`, itself or in a helper, reads forces, commands and inflow of
+    the actuators, and `at.channels.NAME` what was logged beside the commands, by the names in
+    `channels` (`rovsim.dynamics.engine.reading`).
     """
 
     channels: ClassVar[tuple[str, ...]] = ()
@@ -191,8 +192,8 @@ class Wrench(Effect):
 
     @classmethod
     def reads(cls) -> bool:
-        """Whether its kernel reads actuators or channels."""
-        return bool(cls.channels) or "actuators" in cls.wrench.__code__.co_names
+        """Whether its kernel, or a helper that it calls, reads actuators or channels."""
+        return bool(cls.channels) or says(cls.wrench, "actuators")
 
 
 class StochasticCurrent(Effect):
