@@ -6,7 +6,7 @@ import pytest
 from rovsim.diagnosis.observer.evidence import linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.gauss_newton import descend
+from rovsim.diagnosis.selection.gauss_newton import levenberg_marquardt
 from rovsim.dynamics.catalogue import built_in
 from worlds import model
 
@@ -48,7 +48,7 @@ def test_drag_is_fitted_while_the_derivative_of_a_dead_band_promises_too_much():
             Term(built_in()["thruster_deadband"](width=WIDTH), ("width",)),
         ),
     )
-    found = descend(start, Jumping(), FIRST_NOISE).at.terms
+    found = levenberg_marquardt(start, Jumping(), FIRST_NOISE).at.terms
     assert found[0].effect["surge"] == pytest.approx(40.0, abs=0.5)
     assert found[1].effect["width"] < WIDTH + 2.0 * GRAIN
 
@@ -66,6 +66,6 @@ class Saturated(Errors):
 
 def test_a_step_that_damping_made_short_is_followed_by_others():
     start = Hypothesis(model(), (Term(built_in()["quadratic_damping"](), ("surge", "sway")),))
-    (found,) = descend(start, Saturated(), FIRST_NOISE).at.terms
+    (found,) = levenberg_marquardt(start, Saturated(), FIRST_NOISE).at.terms
     assert found.effect["surge"] == pytest.approx(35.0, abs=0.5)
     assert found.effect["sway"] == pytest.approx(40.0, abs=0.5)

@@ -32,7 +32,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection.gauss_newton import Fit, descend, judge
+from rovsim.diagnosis.selection.gauss_newton import Fit, judge, levenberg_marquardt
 from rovsim.diagnosis.selection.nominal_terms import (
     GAIN,
     GAIN_SCALE,
@@ -55,7 +55,7 @@ def fit_whole_file(found: Fit, bank: FilterBank) -> Fit | None:
         return None
     freed = free_rest(found.hypothesis)
     prior = _know(found.hypothesis, freed)
-    seen = descend(freed, bank, found.noise, prior)
+    seen = levenberg_marquardt(freed, bank, found.noise, prior)
     return judge(seen, bank, found.noise, prior) if seen.finite else None
 
 

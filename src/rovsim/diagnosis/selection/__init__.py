@@ -7,7 +7,7 @@ proposals           what each promises, and what chance would seem to gain
 white_columns       the same under one noise, beside what was found
 workspace           the runs, the columns, one noise for all; what is fitted already
 prior               what is known of parameters before the runs are looked at
-gauss_newton        the most likely parameters, and their spread
+gauss_newton        the most likely parameters by damped least squares, and their spread
 pruning             without what is not worth its penalty
 forward_selection   add, refit, swap, prune
 vehicle_file_steps  what the vehicle file explains as well as something rarer

@@ -15,22 +15,22 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.prior import Prior
 
 MOST_ITERATIONS = 12
-CONVERGED = 0.02  # standard deviations: a smaller step changes nothing anyone could see
-ROUGH = 1e-2  # of what the model does not explain: a wrong model need not be fitted finely
+STEP_TOLERANCE = 0.02  # standard deviations: a smaller step changes nothing anyone could see
+# Of what the model does not explain: a wrong model need not be fitted finely.
+MISFIT_TOLERANCE = 1e-2
 # Scales: where much is free at once, what acts only together (drag and a loop, drag and thrust)
 # stays near where it began.
 REACH = 10.0
-# Of the decrease that the derivatives promised: so close to it they need not be found anew.
-FORESEEN = 0.1
-# Damping of the steps (Levenberg-Marquardt).
-FIRST_TRUST, LEAST_TRUST, LARGEST_TRUST = 1e-4, 1e-8, 1e4
-LIGHT = 0.1  # damping: a step under more is short for that reason, and says nothing of the rest
-POLISHED = 2  # times: the noise of the first is already the right one
-# Times the decrease that its derivatives promise: so much more a fit may yet reach. Of 234 that
+# Off a gain ratio of one: decreases so close to what was predicted need no new derivatives.
+GAIN_RATIO_TOLERANCE = 0.1
+INITIAL_DAMPING, MIN_DAMPING, MAX_DAMPING = 1e-4, 1e-8, 1e4  # larger: shorter steps, downhill
+LIGHT_DAMPING = 0.1  # a step under more is short for that reason, and says nothing of the rest
+POLISHING_ROUNDS = 2  # the noise of the first is already the right one
+# Times the reduction that its derivatives predict: so much more a fit may yet reach. Of 234 that
 # were given up and went on all the same one gained more (5, of 1), and none what it had to reach.
-YET = 4.0
+REACHABLE = 4.0
 
-Watch = Callable[[Linearised, float], None]
+Monitor = Callable[[Linearised, float], None]
 
 
 class GivenUp(Exception):
@@ -79,7 +79,7 @@ def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf
 
     A model that diverges in spite of the observer's corrections is infinitely unlikely.
     """
-    return judge(descend(start, bank, noise, Prior.around(start.x, reach)), bank, noise)
+    return judge(levenberg_marquardt(start, bank, noise, Prior.around(start.x, reach)), bank, noise)
 
 
 def fit_or_give_up(
@@ -90,13 +90,13 @@ def fit_or_give_up(
     `first`: a start, and derivatives that are roughly right there.
     """
 
-    def watch(seen: Linearised, promised: float) -> None:
-        if bank.fit_noise(seen.e, noise).likelihood + YET * promised < least:
+    def monitor(seen: Linearised, predicted_reduction: float) -> None:
+        if bank.fit_noise(seen.e, noise).likelihood + REACHABLE * predicted_reduction < least:
             raise GivenUp
 
     prior = Prior.around(first.at.x, reach)
     try:
-        return judge(descend(first.at, bank, noise, prior, first, watch), bank, noise)
+        return judge(levenberg_marquardt(first.at, bank, noise, prior, first, monitor), bank, noise)
     except GivenUp:
         return None
 
@@ -114,7 +114,7 @@ def polish(
         return fit(found.hypothesis, bank, found.noise, reach), bank
 
     polished = again(found)
-    for _ in range(1, POLISHED):
+    for _ in range(1, POLISHING_ROUNDS):
         finer = again(polished[0])
         if not finer[0].held:
             break
@@ -125,20 +125,22 @@ def polish(
 def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None) -> Fit:
     """A hypothesis as it stands, the noise fitted to what it leaves, beside what was known."""
     if not seen.finite:
-        unsure = np.full((len(seen.at.x), len(seen.at.x)), np.inf)
-        return Fit(seen, noise, -np.inf, unsure)
+        unknown = np.full((len(seen.at.x), len(seen.at.x)), np.inf)
+        return Fit(seen, noise, -np.inf, unknown)
     own, likelihood = bank.fit_noise(seen.e, noise)
-    told = inner_products(as_rows(bank.whiten(seen.J, own)))
+    information = inner_products(as_rows(bank.whiten(seen.J, own)))
     if prior is not None:
-        told = told + np.diag(prior.weights(seen.at.x))
-    return Fit(seen, own, likelihood, solve(told, np.eye(len(told))))
+        information = information + np.diag(prior.weights(seen.at.x))
+    return Fit(seen, own, likelihood, solve(information, np.eye(len(information))))
 
 
-def descend(
+def levenberg_marquardt(
     start: Hypothesis, evidence: Evidence, noise: Noise, prior: Prior | None = None,
-    first: Linearised | None = None, watch: Watch = lambda seen, promised: None,
+    first: Linearised | None = None, monitor: Monitor = lambda seen, predicted_reduction: None,
 ) -> Linearised:  # fmt: skip
-    """Least squares from a hypothesis, beside what is known before: where it leads.
+    """Damped least squares from a hypothesis, beside what is known before: where they lead.
+
+    Levenberg (1944) and Marquardt (1963): the larger the damping, the shorter the step.
 
     Args:
         start: where it begins.
@@ -146,39 +148,33 @@ def descend(
         noise: of that.
         prior: what is known before.
         first: the start, and derivatives that are roughly right there; it does not end with these.
-        watch: told, each time derivatives were found anew, where the fit is and by how much they
-            promise to lower the sum of squares yet.
+        monitor: told, each time derivatives were found anew, where the fit is and by how much they
+            predict that the sum of squares is lowered yet.
     """
-    problem = _Problem(evidence, noise, prior or Prior.around(start.x, np.inf))
-    seen, trust, rough = first or evidence.linearise(start), FIRST_TRUST, first is not None
+    problem = _LeastSquares(evidence, noise, prior or Prior.around(start.x, np.inf))
+    seen, damping, rough = first or evidence.linearise(start), INITIAL_DAMPING, first is not None
     if not len(start.x) or not seen.finite:
         return seen
-    bowl = problem.expand(seen)
+    quadratic = problem.expand(seen)
     for _ in range(MOST_ITERATIONS):
-        step, ended = _find_step(problem, bowl, trust), False
-        if step is None and seen.at is bowl.at and not rough:
+        step, ended = _find_reducing_step(problem, quadratic, damping), False
+        if step is None and seen.at is quadratic.at and not rough:
             return seen
         if step is not None:
-            trust = max(step.damping / 10.0, LEAST_TRUST)
-            ended = _is_small(step, bowl)
-            bowl = problem.shift(bowl, step)
-            if step.as_foreseen and not ended:
+            damping = max(step.damping / 10.0, MIN_DAMPING)
+            ended = _is_small(step, quadratic)
+            quadratic = problem.shift(quadratic, step)
+            if step.gain_ratio_near_one and not ended:
                 continue
-        seen, ended, rough = evidence.linearise(bowl.at), ended and not rough, False
+        seen, ended, rough = evidence.linearise(quadratic.at), ended and not rough, False
         if ended or not seen.finite:
             return seen
-        bowl = problem.expand(seen)
-        watch(seen, bowl.promised)
-    return evidence.linearise(bowl.at)
+        quadratic = problem.expand(seen)
+        monitor(seen, quadratic.predicted_reduction)
+    return evidence.linearise(quadratic.at)
 
 
-def _is_small(step: "_Step", bowl: "_Bowl") -> bool:
-    """Whether a step need not be followed by another."""
-    excess = max(0.0, step.cost - bowl.size)
-    return step.damping <= LIGHT and step.length < max(CONVERGED**2 * len(bowl.g), ROUGH * excess)
-
-
-class _Bowl(NamedTuple):
+class QuadraticModel(NamedTuple):
     """Sum of squares of `size` errors about a hypothesis: curvature (k, k), slope (k,), value.
 
     `rows` (k, size) are the derivatives of the errors.
@@ -192,28 +188,29 @@ class _Bowl(NamedTuple):
     rows: Array
 
     @property
-    def promised(self) -> float:
+    def predicted_reduction(self) -> float:
         """The decrease of the sum of squares from here to where the slope vanishes."""
         return float(self.g @ solve(self.H, self.g))
 
 
-class _Step(NamedTuple):
+class TrialStep(NamedTuple):
     """Where a step leads, what it costs there, and how damped it was.
 
-    `length`, squared, in standard deviations; `target` (size,) the errors there; `as_foreseen`:
-    the derivatives from where it began still hold.
+    `length`, squared, in standard deviations; `residuals` (size,) the errors there. The
+    gain ratio is the reduction of the cost over the predicted one: near one, the derivatives from
+    where it began still hold.
     """
 
     to: Hypothesis
     cost: float
     damping: float
     length: float
-    target: Array
-    as_foreseen: bool
+    residuals: Array
+    gain_ratio_near_one: bool
 
 
 @dataclass(frozen=True, eq=False)
-class _Problem:
+class _LeastSquares:
     """Whitened errors, and a prior."""
 
     evidence: Evidence
@@ -227,73 +224,87 @@ class _Problem:
             return np.array([np.inf])
         return self.evidence.whiten(e, self.noise).ravel()
 
-    def cost(self, wanted: Hypothesis, target: Array) -> float:
+    def cost(self, wanted: Hypothesis, residuals: Array) -> float:
         """Sum of squares of errors, and what the prior says of the hypothesis."""
-        return float(target @ target) + self.prior.cost(wanted.x)
+        return float(residuals @ residuals) + self.prior.cost(wanted.x)
 
-    def expand(self, seen: Linearised) -> _Bowl:
+    def expand(self, seen: Linearised) -> QuadraticModel:
         """The sum of squares to second order about a hypothesis."""
         rows = as_rows(self.evidence.whiten(seen.J, self.noise))
-        target = self.evidence.whiten(seen.e, self.noise).ravel()
+        residuals = self.evidence.whiten(seen.e, self.noise).ravel()
         H = inner_products(rows) + np.diag(self.prior.weights(seen.at.x))
-        g = rows @ target + self._pull(seen.at.x)
-        return _Bowl(seen.at, H, g, self.cost(seen.at, target), len(target), rows)
+        g = rows @ residuals + self._prior_slope(seen.at.x)
+        return QuadraticModel(seen.at, H, g, self.cost(seen.at, residuals), len(residuals), rows)
 
-    def shift(self, bowl: _Bowl, step: _Step) -> _Bowl:
+    def shift(self, quadratic: QuadraticModel, step: TrialStep) -> QuadraticModel:
         """The same about where a step leads, with the derivatives from where it began."""
-        g = bowl.rows @ step.target + self._pull(step.to.x)
-        return bowl._replace(at=step.to, g=g, cost=step.cost)
+        g = quadratic.rows @ step.residuals + self._prior_slope(step.to.x)
+        return quadratic._replace(at=step.to, g=g, cost=step.cost)
 
-    def _pull(self, x: Array) -> Array:
+    def _prior_slope(self, x: Array) -> Array:
         return self.prior.weights(x) * (x - self.prior.about)
 
 
-def _find_step(problem: _Problem, bowl: _Bowl, trust: float) -> _Step | None:
+def _is_small(step: TrialStep, quadratic: QuadraticModel) -> bool:
+    """Whether a step need not be followed by another."""
+    excess = max(0.0, step.cost - quadratic.size)
+    small = max(STEP_TOLERANCE**2 * len(quadratic.g), MISFIT_TOLERANCE * excess)
+    return step.damping <= LIGHT_DAMPING and step.length < small
+
+
+def _find_reducing_step(
+    problem: _LeastSquares, quadratic: QuadraticModel, damping: float
+) -> TrialStep | None:
     """A step that lowers the cost; None when none does, or only one too small to see.
 
-    Coarse parameters, on which errors depend in jumps, have derivatives that promise what is not
+    Coarse parameters, on which errors depend in jumps, have derivatives that predict what is not
     there farther off: where a step of all fails, these move by a grain at most, or not at all.
     """
-    while trust < LARGEST_TRUST:
-        goal = bowl.at.x - solve(bowl.H + trust * np.diag(np.diag(bowl.H)), bowl.g)
+    while damping < MAX_DAMPING:
+        damped = quadratic.H + damping * np.diag(np.diag(quadratic.H))
+        goal = quadratic.at.x - solve(damped, quadratic.g)
         if not np.isfinite(goal).all():
             break
-        step = _try_step(problem, bowl, trust, goal)
-        if step.cost >= bowl.cost:
-            careful = [_try_step(problem, bowl, trust, x) for x in _hold(bowl, goal, trust)]
+        step = _try_step(problem, quadratic, damping, goal)
+        if step.cost >= quadratic.cost:
+            goals = _move_coarse_less(quadratic, goal, damping)
+            careful = [_try_step(problem, quadratic, damping, x) for x in goals]
             step = min([step, *careful], key=lambda one: one.cost)
-        if step.cost < bowl.cost:
+        if step.cost < quadratic.cost:
             return step
-        if step.length < CONVERGED**2:
+        if step.length < STEP_TOLERANCE**2:
             break
-        trust *= 10.0
+        damping *= 10.0
     return None
 
 
-def _hold(bowl: _Bowl, goal: Array, trust: float) -> Iterator[Array]:
+def _move_coarse_less(quadratic: QuadraticModel, goal: Array, damping: float) -> Iterator[Array]:
     """Goals (k,) like this one, in which coarse parameters move less, and the others as is best."""
-    x, parameters = bowl.at.x, [p for term in bowl.at.terms for p in term.parameters]
+    x, parameters = quadratic.at.x, [p for term in quadratic.at.terms for p in term.parameters]
     grains = np.array([p.resolution / p.scale for p in parameters])
     coarse = grains > 0.0
     if not coarse.any() or coarse.all():
         return
-    H = bowl.H[np.ix_(~coarse, ~coarse)]
-    damped = H + trust * np.diag(np.diag(H))
+    H = quadratic.H[np.ix_(~coarse, ~coarse)]
+    damped = H + damping * np.diag(np.diag(H))
     for reach in (1.0, 0.0):
         moved = x.copy()
         moved[coarse] += np.clip((goal - x)[coarse], *(reach * grains[coarse] * [[-1.0], [1.0]]))
-        drawn = bowl.H[np.ix_(~coarse, coarse)] @ (moved - x)[coarse]
-        moved[~coarse] -= solve(damped, bowl.g[~coarse] + drawn)
+        coupled = quadratic.H[np.ix_(~coarse, coarse)] @ (moved - x)[coarse]
+        moved[~coarse] -= solve(damped, quadratic.g[~coarse] + coupled)
         if np.isfinite(moved).all():
             yield moved
 
 
-def _try_step(problem: _Problem, bowl: _Bowl, trust: float, goal: Array) -> _Step:
+def _try_step(
+    problem: _LeastSquares, quadratic: QuadraticModel, damping: float, goal: Array
+) -> TrialStep:
     """Where a step to a goal (k,) leads."""
-    wanted = bowl.at.at(goal)
-    step = wanted.x - bowl.at.x
-    target = problem.errors(wanted)
-    cost, length = problem.cost(wanted, target), float(step @ bowl.H @ step)
-    foreseen = -float(2.0 * bowl.g @ step + length)
-    true = abs(bowl.cost - cost - foreseen) < FORESEEN * foreseen
-    return _Step(wanted, cost, trust, length, target, true)
+    wanted = quadratic.at.at(goal)
+    step = wanted.x - quadratic.at.x
+    residuals = problem.errors(wanted)
+    cost, length = problem.cost(wanted, residuals), float(step @ quadratic.H @ step)
+    predicted = -float(2.0 * quadratic.g @ step + length)
+    # gain ratio (actual over predicted reduction) within the tolerance of 1
+    near_one = abs(quadratic.cost - cost - predicted) < GAIN_RATIO_TOLERANCE * predicted
+    return TrialStep(wanted, cost, damping, length, residuals, near_one)

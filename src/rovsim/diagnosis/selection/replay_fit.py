@@ -21,7 +21,7 @@ from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, sol
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, descend, judge
+from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, levenberg_marquardt
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.dynamics.model import Model
 
@@ -95,7 +95,9 @@ def soften(x: Array) -> Array:
 def fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
     evidence = Replays(bank.runs)
-    seen = descend(found.hypothesis, evidence, found.noise, Prior.around(found.hypothesis.x, REACH))
+    seen = levenberg_marquardt(
+        found.hypothesis, evidence, found.noise, Prior.around(found.hypothesis.x, REACH)
+    )
     covariance = _sandwich(
         evidence.whiten(seen.e, found.noise), evidence.whiten(seen.J, found.noise),
         evidence.number(),
