@@ -45,13 +45,13 @@ def test_a_tank_that_hides_it_gives_it_back(name, settings, tmp_path):
     listed = [c for c in list_candidates(runs, built_in(), base.vehicle) if c.effect.id == name]
     if not listed[0].free:  # tried, not fitted
         fits = [fit(Hypothesis(base, (c.term(),)), bank, FIRST_NOISE) for c in listed]
-        best = max(fits, key=lambda one: one.likelihood)
+        best = max(fits, key=lambda one: one.two_log_likelihood)
         assert best.hypothesis.terms[0].effect.given() == hidden
         return
     known = [c for c in listed if set(hidden) <= set(c.free)]
     starts = [_moved_away(_free_all(c, hidden), hidden) for c in known]
     fits = [fit(Hypothesis(base, (term,)), bank, FIRST_NOISE) for term in starts]
-    best = max(fits, key=lambda one: one.likelihood)
+    best = max(fits, key=lambda one: one.two_log_likelihood)
     fresh = bank.redesign(best.hypothesis.model, best.noise)
     best = fit(best.hypothesis, fresh, best.noise)
     (term,) = best.hypothesis.terms

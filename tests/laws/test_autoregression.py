@@ -42,7 +42,7 @@ def foretold(z, i, j, lag):
 
 def test_what_the_past_foretells_is_gone():
     z = driven(0.2)
-    past, gain = fit_autoregression([z], stretches())
+    past, lr_statistic = fit_autoregression([z], stretches())
     white = past.whiten(z, stretches())
     assert foretold(z, YAW, SWAY, 1) > 10.0
     assert foretold(z, SWAY, YAW, 2) > 10.0
@@ -52,22 +52,22 @@ def test_what_the_past_foretells_is_gone():
                 assert foretold(white, i, j, lag) < 3.5
     np.testing.assert_allclose(white.std(axis=1), 1.0, rtol=0.01)
     foretold_share = 0.2**2  # of the variance of each of the two axes
-    assert gain == pytest.approx(2 * sum(LENGTHS) * np.log(1.0 + foretold_share), rel=0.5)
+    assert lr_statistic == pytest.approx(2 * sum(LENGTHS) * np.log(1.0 + foretold_share), rel=0.5)
 
 
 def test_what_is_drawn_twice_counts_once():
     z = driven(0.2)
-    once, gain = fit_autoregression([z], stretches())
+    once, lr_statistic = fit_autoregression([z], stretches())
     twice, same = fit_autoregression([z, z], stretches())
     np.testing.assert_allclose(twice.weights, once.weights, atol=1e-12)
-    assert same == pytest.approx(gain)
+    assert same == pytest.approx(lr_statistic)
 
 
 def test_where_nothing_is_foretold_little_is_gained():
     """Chance gives one, in twice the log likelihood, for each of the ninety weights."""
     z = driven(0.0)
-    _, gain = fit_autoregression([z], stretches())
-    assert 45.0 < gain < 150.0
+    _, lr_statistic = fit_autoregression([z], stretches())
+    assert 45.0 < lr_statistic < 150.0
 
 
 def test_it_looks_back_and_only_within_a_stretch():

@@ -34,4 +34,4 @@ def test_the_torque_of_propellers_is_foreseen_beside_a_loop_about_yaw(tmp_path):
     workspace = first.redesign(loop, FIRST_NOISE)
     (proposal,) = workspace.propose(workspace.fit(loop))
     assert proposal.term.effect["ratio"] == pytest.approx(RATIO, rel=0.1)
-    assert proposal.gain > 0.0
+    assert proposal.net_decrease > 0.0

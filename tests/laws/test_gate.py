@@ -8,7 +8,7 @@ import pytest
 from flown import observed
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.gate import Gate, find_sure_gain, keep_apart, surely_costs
+from rovsim.diagnosis.selection.gate import Gate, find_sure_improvement, keep_apart, surely_costs
 from rovsim.diagnosis.selection.rivals import Selection
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
@@ -33,12 +33,12 @@ def test_short_runs_are_used_whole(tmp_path):
 
 def test_only_what_is_sure_and_matters_is_less():
     error = np.linspace(0.5, 1.5, 20)
-    assert find_sure_gain(error, 0.5 * error) == pytest.approx(1.0 - np.sqrt(0.5))
-    assert find_sure_gain(error, 0.99 * error) == 0.0  # too little
+    assert find_sure_improvement(error, 0.5 * error) == pytest.approx(1.0 - np.sqrt(0.5))
+    assert find_sure_improvement(error, 0.99 * error) == 0.0  # too little
     uneven = error * np.where(np.arange(20) == 3, 1.0, 0.0)
-    assert find_sure_gain(error + 20.0 * uneven, error) == 0.0  # a single window
-    assert find_sure_gain(np.full(20, np.inf), error) == np.inf
-    assert find_sure_gain(error, np.full(20, np.nan)) == 0.0
+    assert find_sure_improvement(error + 20.0 * uneven, error) == 0.0  # a single window
+    assert find_sure_improvement(np.full(20, np.inf), error) == np.inf
+    assert find_sure_improvement(error, np.full(20, np.nan)) == 0.0
 
 
 def test_a_body_that_cannot_exist_replays_nothing(tmp_path):

@@ -36,20 +36,20 @@ def test_it_ends_where_it_would_or_is_given_up(bank, name, free):
     first = bank.linearise(start(bank, name, *free))
     for J in first.J:
         J *= 1.2  # derivatives that are roughly right
-    for least in whole.likelihood + np.array([-1e3, -1.0]):  # what it reaches, is reached
+    for least in whole.two_log_likelihood + np.array([-1e3, -1.0]):  # what it reaches, is reached
         found = fit_or_give_up(first, bank, FIRST_NOISE, least)
-        assert found.likelihood == pytest.approx(whole.likelihood, abs=0.5)
+        assert found.two_log_likelihood == pytest.approx(whole.two_log_likelihood, abs=0.5)
         assert np.abs((found.hypothesis.x - whole.hypothesis.x) / whole.std).max() < 0.05
 
 
 def test_what_cannot_reach_the_truth_is_given_up(bank, monkeypatch):
     true = fit(start(bank, "quadratic_damping", "surge", "sway"), bank, FIRST_NOISE)
     other = start(bank, "added_mass", "surge", "sway")
-    assert fit(other, bank, FIRST_NOISE).likelihood < true.likelihood - 100.0
+    assert fit(other, bank, FIRST_NOISE).two_log_likelihood < true.two_log_likelihood - 100.0
     first, asked = bank.linearise(other, true.seen), []
     find = FilterBank.linearise
     monkeypatch.setattr(FilterBank, "linearise", lambda *a: asked.append(a) or find(*a))
-    assert fit_or_give_up(first, bank, FIRST_NOISE, true.likelihood - 100.0) is None
+    assert fit_or_give_up(first, bank, FIRST_NOISE, true.two_log_likelihood - 100.0) is None
     assert len(asked) == 1  # derivatives are found anew once
 
 

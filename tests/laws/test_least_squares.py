@@ -27,7 +27,7 @@ def test_the_few_that_matter_are_chosen_among_many(columns):
     assert by_name[2] == pytest.approx(3.0, abs=0.05)
     assert by_name[6] == pytest.approx(-2.0, abs=0.05)
     left = target + found.x @ columns[list(found.chosen)]
-    assert found.decrease == pytest.approx(target @ target - left @ left, rel=1e-6)
+    assert found.ss_decrease == pytest.approx(target @ target - left @ left, rel=1e-6)
 
 
 def test_two_that_hide_each_other_are_found_from_above(columns):
@@ -39,7 +39,7 @@ def test_two_that_hide_each_other_are_found_from_above(columns):
     found = eliminate_columns(H, b, penalty=2.0 * alone)
     assert set(found.chosen) == {0, 7, 8}
     assert found.x == pytest.approx([20.0, -1.0, -20.0])
-    assert found.decrease == pytest.approx(target @ target)
+    assert found.ss_decrease == pytest.approx(target @ target)
 
 
 def test_nothing_is_kept_of_what_explains_nothing(columns):
@@ -53,7 +53,7 @@ def test_the_joint_solution_is_the_bounded_one(columns):
     np.testing.assert_allclose(free.x, [3.0, -2.0], atol=1e-6)
     held = solve_bounded(H, b, 0.0, np.full(2, -1.0), np.full(2, 1.0))
     np.testing.assert_allclose(held.x, [1.0, -1.0], atol=1e-6)
-    assert 0.0 < held.decrease < free.decrease
+    assert 0.0 < held.ss_decrease < free.ss_decrease
 
 
 def test_projected_columns_are_gone(columns):

@@ -202,7 +202,7 @@ def test_binned_recordings_are_turned_back_too():
 )  # fmt: skip
 def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood, absorbed):
     smoothing, base = (
-        Smoothing(6.0, std=0.3, gain=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01),
+        Smoothing(6.0, std=0.3, lr_statistic=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01),
         model(),
     )
     delayed = Term(InputDelay(delay=delay), ("delay",))
@@ -227,7 +227,9 @@ def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood
 def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
     """`likelier`: by how much the lag is than the filter's latency, twice the log likelihood."""
     base = model()
-    smoothing = Smoothing(6.0, std=0.3, gain=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01)
+    smoothing = Smoothing(
+        6.0, std=0.3, lr_statistic=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01
+    )
 
     def found(start, score=0.0):
         std = np.full(len(start.x), 0.01)

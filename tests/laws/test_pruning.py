@@ -19,23 +19,25 @@ class Wald:
 
     penalty = PENALTY
 
-    def __init__(self, z: dict[str, float], likelihood: float) -> None:
-        self.z, self.likelihood = z, likelihood
+    def __init__(self, z: dict[str, float], two_log_likelihood: float) -> None:
+        self.z, self.two_log_likelihood = z, two_log_likelihood
 
     def fit(self, h: Hypothesis) -> SimpleNamespace:
         left = [name for term in h.terms for name in term.free]
         gone = sum(self.z[name] ** 2 for name in self.z if name not in left)
         std = np.array([abs(x) / self.z[name] for x, name in zip(h.x, left, strict=True)])
-        likelihood = self.likelihood - gone
-        held = np.isfinite(likelihood)
-        return SimpleNamespace(hypothesis=h, std=std, likelihood=likelihood, held=held)
+        two_log_likelihood = self.two_log_likelihood - gone
+        held = np.isfinite(two_log_likelihood)
+        return SimpleNamespace(
+            hypothesis=h, std=std, two_log_likelihood=two_log_likelihood, held=held
+        )
 
     def score(self, found: SimpleNamespace) -> float:
-        return found.likelihood - PENALTY * len(found.hypothesis.x)
+        return found.two_log_likelihood - PENALTY * len(found.hypothesis.x)
 
 
 @pytest.mark.parametrize(
-    ("z", "likelihood", "left"),
+    ("z", "two_log_likelihood", "left"),
     [
         ({"surge": 2.3}, 100.0, []),
         ({"surge": 5.0}, 100.0, ["surge"]),
@@ -43,9 +45,9 @@ class Wald:
         ({"surge": 2.3}, -np.inf, ["surge"]),  # it could not be fitted: nothing is known of it
     ],
 )
-def test_a_parameter_stays_that_is_worth_its_price(z, likelihood, left):
+def test_a_parameter_stays_that_is_worth_its_price(z, two_log_likelihood, left):
     term = Term(ConstantWrench(**dict.fromkeys(z, 1.0)), tuple(z))
-    workspace = Wald(z, likelihood)
+    workspace = Wald(z, two_log_likelihood)
     start = workspace.fit(Hypothesis(nominal(load_vehicle(default_vehicle())), (term,)))
     kept = prune(workspace, start).hypothesis
     assert [name for one in kept.terms for name in one.free] == left

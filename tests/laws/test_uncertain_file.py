@@ -100,7 +100,7 @@ def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
     hidden = columns[0] - columns[1]  # of opposite sign: hardly anything is left of them
     rows = np.vstack([-50.0 * hidden, columns])
     alone = rank_proposals(rows @ rows.T, blocks, penalty=400.0)
-    assert all(one.gain < 0.0 for one in alone)
+    assert all(one.net_decrease < 0.0 for one in alone)
     base = nominal(load_vehicle(default_vehicle()))
     workspace = SimpleNamespace(
         penalty=400.0, columns=SimpleNamespace(products=lambda seen: rows @ rows.T),

@@ -125,7 +125,7 @@ def test_a_flow_that_differs_from_place_to_place_does_not_wander(tmp_path, hidde
     base, runs = observed(tmp_path, duration=60.0, effects=(hidden,), catalogue=known)
     bank, noise = settled_noise(base, runs)
     e = bank.innovations(base)
-    assert bank.measure_drift(e, noise).rate.gain > LIKELY
+    assert bank.measure_drift(e, noise).rate.lr_statistic > LIKELY
     assert bank.varies_with_place(e, noise) is by_place
 
 

@@ -77,7 +77,7 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     found, bank = selection.found, selection.workspace.bank
     terms = {t.id: t.effect for t in found.hypothesis.terms}
     assert "thruster_gain" not in terms
-    assert all(r.deficit > 0.0 for r in selection.rivals)
+    assert all(r.deviance_difference > 0.0 for r in selection.rivals)
     loops, body = terms["onboard_control"], found.hypothesis.model.body
     for axis in AXES:
         pushed = loops[f"gain_{axis}"] * loops[f"bandwidth_{axis}"]

@@ -161,7 +161,10 @@ def _start(found: Plan, tried: CandidateFlight) -> Start:
 def _reached(before: PriorInformation, after: PriorInformation) -> dict[str, Any]:
     """Log odds of the truth, or standard deviation and value, before and after."""
     if after.rival_names:
-        return {"log_odds": 0.5 * after.deficit, "log_odds_before": 0.5 * before.deficit}
+        return {
+            "log_odds": 0.5 * after.deviance_difference,
+            "log_odds_before": 0.5 * before.deviance_difference,
+        }
     (own,), (old,) = after.rivals, before.rivals
     scale = own.hypothesis.terms[0].parameters[0].scale
     std, was = float(own.std()[0]), float(old.std()[0])

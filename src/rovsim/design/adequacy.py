@@ -38,7 +38,7 @@ def warn_of_misfit(prior: PriorInformation, question: Question) -> tuple[str, ..
 
     Of two rivals the likelier one is judged.
     """
-    rival = max(range(len(prior.rivals)), key=lambda k: prior.rivals[k].likelihood)
+    rival = max(range(len(prior.rivals)), key=lambda k: prior.rivals[k].two_log_likelihood)
     lasting, model = prior.low_frequency[rival], prior.rivals[rival].hypothesis.model
     if not lasting.large.any():
         return ()

@@ -118,7 +118,7 @@ def _free(
     if len(tried) == 1:
         return tried[0]
     fits = [_fit(one, runs)[0] for one in tried]
-    return max(fits, key=lambda one: one.likelihood).hypothesis
+    return max(fits, key=lambda one: one.two_log_likelihood).hypothesis
 
 
 def _without(h: Hypothesis, *names: str) -> Hypothesis:
@@ -133,7 +133,7 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     bank = FilterBank.design(runs, h.model, FIRST_NOISE)
     noise, _ = bank.fit_noise(bank.innovations(h.model), FIRST_NOISE)
     found = fit(h, bank.redesign(h.model, noise), noise, REACH)
-    if not np.isfinite(found.likelihood):
+    if not np.isfinite(found.two_log_likelihood):
         raise BadInput(
             "the train runs drive the model away from all numbers",
             where=f"model {h.base.name}",
@@ -150,13 +150,15 @@ def _summarise(
     names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = penalty * sum(term.choices for term in found.hypothesis.terms)
-    likelihood, taking_up = found.likelihood - paid, found.hypothesis
+    two_log_likelihood, taking_up = found.two_log_likelihood - paid, found.hypothesis
     information = held = inner_products(bank.flatten(found.seen.J, found.noise))
     if widest is not None:
         seen = bank.linearise(widest)
         if seen.finite:  # else it cannot move with what nobody needs free
             taking_up, held = widest, inner_products(bank.flatten(seen.J, found.noise))
-    return FittedHypothesis(found.hypothesis, information, chosen, likelihood, taking_up, held)
+    return FittedHypothesis(
+        found.hypothesis, information, chosen, two_log_likelihood, taking_up, held
+    )
 
 
 def _fit_rivals(
@@ -176,7 +178,7 @@ def _fit_rivals(
         names = found.hypothesis.parameter_names
         wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
         rivals.append(_summarise(found, bank, wanted, penalty, widen(found.hypothesis, name)))
-    best, bank = max(fits, key=lambda one: one[0].likelihood)
+    best, bank = max(fits, key=lambda one: one[0].two_log_likelihood)
     asked = tuple(question.between)
     return PriorInformation(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
 

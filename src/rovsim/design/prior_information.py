@@ -23,7 +23,7 @@ class FittedHypothesis:
     """A hypothesis as the train runs leave it.
 
     `information` (k, k) they hold about its scaled parameters, of which those `of_interest` (j,)
-    are asked for; `likelihood` twice its logarithm, with the penalty of its parameters. `widest`
+    are asked for; `two_log_likelihood` with the penalty of its parameters. `widest`
     has all parameters free with which a rival might take up a flight, `widest_information` (w, w)
     is what they hold about these.
     """
@@ -31,7 +31,7 @@ class FittedHypothesis:
     hypothesis: Hypothesis
     information: Array
     of_interest: Array
-    likelihood: float
+    two_log_likelihood: float
     widest: Hypothesis
     widest_information: Array
 
@@ -107,12 +107,12 @@ class PriorInformation:
         )
 
     @property
-    def deficit(self) -> float:
-        """How much less likely the second rival is than the first, in twice the log."""
-        return self.rivals[0].likelihood - self.rivals[1].likelihood
+    def deviance_difference(self) -> float:
+        """How much less likely the second rival is than the first."""
+        return self.rivals[0].two_log_likelihood - self.rivals[1].two_log_likelihood
 
     @property
     def likely(self) -> Array:
         """Which rivals (r,) the train runs leave possible; without rivals the one hypothesis."""
-        found = np.array([rival.likelihood for rival in self.rivals])
+        found = np.array([rival.two_log_likelihood for rival in self.rivals])
         return found > np.max(found) - 2.0 * np.log(RULED_OUT)

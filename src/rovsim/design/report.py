@@ -89,7 +89,7 @@ def _std(scaled: float, parameter: Parameter) -> float:
 def _list_odds(prior: PriorInformation, expected: ExpectedInformation) -> dict[str, RivalOdds]:
     if not len(expected.log_odds_gain):
         return {}
-    found, sides = {}, (0.5 * prior.deficit, -0.5 * prior.deficit)
+    found, sides = {}, (0.5 * prior.deviance_difference, -0.5 * prior.deviance_difference)
     names = prior.rival_names
     for name, now, gain in zip(names, sides, expected.log_odds_gain, strict=True):
         then = now + gain

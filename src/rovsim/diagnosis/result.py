@@ -83,9 +83,11 @@ def report(
         not_commanded=found.not_commanded,
         not_observable=tuple(found.not_observable),
         rivals=tuple(
-            RivalEffect(effect=r.effect, instead_of=r.instead_of, deficit=rounded(r.deficit))
+            RivalEffect(
+                effect=r.effect, instead_of=r.instead_of, deficit=rounded(r.deviance_difference)
+            )
             for r in found.rivals
-            if np.isfinite(r.deficit)
+            if np.isfinite(r.deviance_difference)
         ),
         noise=_noise(found),
         posterior=_describe_posterior(found),
@@ -138,7 +140,7 @@ def _listed(found: TrainDiagnosis) -> list[Ranked]:
 
 def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
     """Groups of effects that explain the data about equally well; groups that meet are one."""
-    pairs = [(r.effect, r.instead_of) for r in rivals if r.deficit < SURE]
+    pairs = [(r.effect, r.instead_of) for r in rivals if r.deviance_difference < SURE]
     names = sorted({name for pair in pairs for name in pair})
     near = np.zeros((len(names), len(names)), bool)
     for one, other in pairs:
@@ -177,8 +179,8 @@ def _describe_posterior(found: TrainDiagnosis) -> Posterior | None:
     """How the values hang together, and what else may act, by the odds of each name."""
     if found.fit is None:
         return None
-    near = [(r, r.fit) for r in found.rivals if r.deficit < SURE and r.fit is not None]
-    odds = [float(np.exp(-0.5 * max(r.deficit, 0.0))) for r, _ in near]
+    near = [(r, r.fit) for r in found.rivals if r.deviance_difference < SURE and r.fit is not None]
+    odds = [float(np.exp(-0.5 * max(r.deviance_difference, 0.0))) for r, _ in near]
     return Posterior(
         correlation=found.correlation or Correlation(),
         instead=tuple(

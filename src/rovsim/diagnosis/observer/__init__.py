@@ -20,4 +20,8 @@ hypothesis        a base model and terms, whose parameters may be free
 evidence          errors of a hypothesis, and how they change with its parameters
 least_squares     any of many columns, from their inner products
 windows           errors in windows of 2 s: what users see of a model
+
+How likely something is, is told as `two_log_likelihood`, and how much likelier than something else
+as `lr_statistic`, twice the logarithm of the likelihood ratio: odds of 20 to 1 are 6, of a thousand
+to one 13.8. Penalties, limits and scores are in the same measure.
 """

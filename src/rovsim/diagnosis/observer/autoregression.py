@@ -70,13 +70,13 @@ class Autoregression:
 def fit_autoregression(
     draws: Sequence[Array], stretches: Stretches
 ) -> tuple[Autoregression, float]:
-    """The likeliest autoregression of innovations, and its gain in twice the log likelihood.
+    """The likeliest autoregression of innovations, and its likelihood-ratio statistic.
 
     Args:
         draws: innovations (6, n), whitened axis by axis; each might be the true ones.
         stretches: where they begin, and which are there.
     """
-    weights, spread, gain = np.zeros((6, 6, len(GROUPS))), np.ones(6), 0.0
+    weights, spread, lr_statistic = np.zeros((6, 6, len(GROUPS))), np.ones(6), 0.0
     for axes in SUBSYSTEMS:
         past = [np.concatenate([_past(z[j], stretches.first) for j in axes]) for z in draws]
         for i in axes:
@@ -89,8 +89,8 @@ def fit_autoregression(
             variance = float(np.mean((z - found @ before) ** 2))
             weights[i, list(axes)] = found.reshape(len(axes), -1)
             spread[i] = np.sqrt(variance)
-            gain += float(z @ z) / len(draws) - shown.sum() * (1.0 + np.log(variance))
-    return Autoregression(weights, spread), gain
+            lr_statistic += float(z @ z) / len(draws) - shown.sum() * (1.0 + np.log(variance))
+    return Autoregression(weights, spread), lr_statistic
 
 
 def _past(z: Array, first: Array) -> Array:

@@ -30,7 +30,7 @@ SHAPE = 0.1
 
 @dataclass(frozen=True)
 class Smoothing:
-    """A software filter: `cutoff` Hz and its standard deviation, `gain` in twice the likelihood.
+    """A software filter: `cutoff` Hz and its standard deviation, its `lr_statistic`.
 
     The noise tells the cutoff `told`, and leaves those from `lowest` to `highest` open, if it may
     be of any kind. `frame` s: from one pose to the next. `latency` s: of a `PoseFilter`.
@@ -38,7 +38,7 @@ class Smoothing:
 
     cutoff: float
     std: float
-    gain: float
+    lr_statistic: float
     told: float
     lowest: float
     highest: float
@@ -64,16 +64,17 @@ def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
     costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in tried] for kind in KINDS])
     likely = [_refine(spectra, kind, tried, own) for kind, own in zip(KINDS, costs, strict=True)]
     least, cutoff, std = min(likely)
-    gain = min(_cost(spectra, kind, None) + _penalty(spectra, kind) for kind in KINDS) - least
+    unfiltered = min(_cost(spectra, kind, None) + _penalty(spectra, kind) for kind in KINDS)
+    lr_statistic = unfiltered - least
     # far below what is looked at a filter only makes the motion fall off more steeply, as it does
     # by itself where a vehicle tumbles: its cutoff is then hardly known
-    if gain < SURE or cutoff > 0.98 * highest or not std < KNOWN * cutoff:
+    if lr_statistic < SURE or cutoff > 0.98 * highest or not std < KNOWN * cutoff:
         return None
     possible = tried[costs.min(axis=0) < costs.min() + OPEN**2]
     off = max(OPEN * std, SHAPE * cutoff)
     lowest, highest = min(cutoff - off, possible[0]), max(cutoff + off, possible[-1])
     frame = max(s.period for s in spectra)
-    return Smoothing(cutoff, std, gain, cutoff, float(lowest), float(highest), frame)
+    return Smoothing(cutoff, std, lr_statistic, cutoff, float(lowest), float(highest), frame)
 
 
 def _cost(spectra: Sequence[Spectrum], kind: Kind, cutoff: float | None) -> float:

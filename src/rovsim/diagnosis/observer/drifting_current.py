@@ -18,9 +18,9 @@ from rovsim.simulation.measured_states import undo_mocap_view
 
 NUDGE = 0.05  # m/s, a usual current
 RATE = 0.005  # m/s per sqrt(s), a usual drift, or N per sqrt(s)
-# Twice the log likelihood. Where no current wandered, physics outside of the catalogue reached 4 in
-# eight of nine development cases, and a jet in one corner 11 (a force along the tank 330); where
-# one did, gains were thousands.
+# Likelihood-ratio statistic. Where no current wandered, physics outside of the catalogue reached 4
+# in eight of nine development cases, and a jet in one corner 11 (a force along the tank 330);
+# where one did, it was thousands.
 LIKELY = 25.0
 # Along the way of a vehicle: an eddy a sixth as wide as the tank is seen.
 HALF_WAVES = 6
@@ -32,16 +32,16 @@ SURE = 13.8
 class DriftFit(NamedTuple):
     """The likeliest drift of the current, and by how much it is likelier than what else may wander.
 
-    `surplus`, in twice the log likelihood; that of nothing where nothing else comes as close.
+    `lr_margin`: its likelihood-ratio statistic less that of what else comes close, if that does.
     """
 
     rate: Rate
-    surplus: float
+    lr_margin: float
 
     @property
     def sure(self) -> bool:
         """Whether the current wanders."""
-        return self.rate.gain > LIKELY and self.surplus > SURE
+        return self.rate.lr_statistic > LIKELY and self.lr_margin > SURE
 
 
 Push = Callable[[Model, ObservedRun], Array]
@@ -101,26 +101,26 @@ class MovingWater:
             tunings: the filters that made them so.
         """
         found = self.walk.fit_rate(z, tunings)
-        if found.gain < LIKELY:
-            return DriftFit(found, found.gain)
+        if found.lr_statistic < LIKELY:
+            return DriftFit(found, found.lr_statistic)
         forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
-        others = [self._walk(pushes).fit_rate(z, tunings).gain for pushes in forces]
-        by_place = self._gain_by_place(z, tunings, _lines(self.runs))
+        others = [self._walk(pushes).fit_rate(z, tunings).lr_statistic for pushes in forces]
+        by_place = self._lr_by_place(z, tunings, _lines(self.runs))
         if not self.paths:  # about its own path what wanders is always likelier than a steady flow
-            flow = self._gain_by_place(z, tunings, _eddies(self.runs))
-            if flow - found.gain > SURE:
-                return DriftFit(found, found.gain - flow)
-        return DriftFit(found, found.gain - max(0.0, by_place, *others))
+            flow = self._lr_by_place(z, tunings, _eddies(self.runs))
+            if flow - found.lr_statistic > SURE:
+                return DriftFit(found, found.lr_statistic - flow)
+        return DriftFit(found, found.lr_statistic - max(0.0, by_place, *others))
 
     def varies_with_place(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> bool:
         """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
         found = self.walk.fit_rate(z, tunings)
-        return found.gain - self._gain_by_place(z, tunings, _eddies(self.runs)) < SURE
+        return found.lr_statistic - self._lr_by_place(z, tunings, _eddies(self.runs)) < SURE
 
-    def _gain_by_place(
+    def _lr_by_place(
         self, z: Sequence[Array], tunings: Sequence[Tuning], fields: Sequence[Array]
     ) -> float:
-        """What a current would gain that is steady, and of another size at every place.
+        """Likelihood-ratio statistic of a current that is steady, of another size at every place.
 
         A vehicle that moves through it meets a current that wanders. `fields` (k, n) of each run:
         how each part of it varies along the way.
@@ -131,12 +131,12 @@ class MovingWater:
             whiten_run(self._show(run, found, *how), run, found, wanted)
             for run, found, wanted, how in every
         ]
-        return fit_common(columns, z).gain
+        return fit_common(columns, z).lr_statistic
 
     def shows_drift(self, tunings: Sequence[Tuning]) -> bool:
         """Whether a drift worth looking for would be told from none."""
         (rate,) = CurrentDrift.parameters
-        return self.walk.promise(rate.scale, tunings) > LIKELY
+        return self.walk.expected_lr(rate.scale, tunings) > LIKELY
 
     def _walk(self, pushes: Sequence[Array]) -> RandomWalk:
         each = zip(self.runs, self.tunings, pushes, self.bends, strict=True)

@@ -118,8 +118,8 @@ class FilterBank:
         if not self.coupled:
             return self._fit_drift(e, found) if thorough and self.looks_for_drift else found
         white = [self.whiten(own, found.noise) for own in self._draws(e)]
-        past, gain = fit_autoregression(white, self._stretches)
-        return NoiseFit(replace(found.noise, autoregression=past), found.likelihood + gain)
+        past, more = fit_autoregression(white, self._stretches)
+        return NoiseFit(replace(found.noise, autoregression=past), found.two_log_likelihood + more)
 
     def fit_axes(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
         """The same, each axis by itself, also where they are coupled; beside a drift as it is."""
@@ -131,11 +131,11 @@ class FilterBank:
         found = self._fit_calm(rests, start, thorough)
         paths = (Path(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
         noise = replace(found.noise, drift=start.drift._replace(paths=tuple(paths)))
-        gains = [
-            self._gain_by_drift(own, rest, noise, start.drift.rate)
+        lr_statistics = [
+            self._lr_of_drift(own, rest, noise, start.drift.rate)
             for own, rest in zip(draws, rests, strict=True)
         ]
-        return NoiseFit(noise, found.likelihood + float(np.mean(gains)))
+        return NoiseFit(noise, found.two_log_likelihood + float(np.mean(lr_statistics)))
 
     def _fit_calm(self, draws: Sequence[Sequence[Array]], start: Noise, colour: bool) -> NoiseFit:
         count = len(draws)
@@ -176,13 +176,13 @@ class FilterBank:
         z, tunings = self._split(e, noise), self.tune(noise)
         return self._water.walk.take_out(e, z, rate, tunings)
 
-    def _gain_by_drift(
+    def _lr_of_drift(
         self, e: Sequence[Array], rest: Sequence[Array], noise: Noise, rate: float
     ) -> float:
         """By how much likelier innovations are with a drift than what it left is without."""
         z, left = self._split(e, noise), self._split(rest, noise)
         more = sum(float(np.sum(a**2) - np.sum(b**2)) for a, b in zip(left, z, strict=True))
-        return more + self._water.walk.gain(z, rate, self.tune(noise))
+        return more + self._water.walk.lr_statistic(z, rate, self.tune(noise))
 
     def _split(self, e: Sequence[Array], noise: Noise) -> list[Array]:
         """Settled innovations (6, m) of each run, whitened axis by axis."""

@@ -39,15 +39,15 @@ def project_out(M: Array, columns: Sequence[int]) -> Array:
 
 
 @dataclass(frozen=True)
-class Gain:
-    """What some columns explain: decrease of the sum of squares, and their coefficients."""
+class Reduction:
+    """By how much some columns lower the sum of squares, and their coefficients."""
 
-    decrease: float
+    ss_decrease: float
     chosen: tuple[int, ...]
     x: Array
 
 
-def solve_bounded(H: Array, b: Array, offset: float, low: Array, high: Array) -> Gain:
+def solve_bounded(H: Array, b: Array, offset: float, low: Array, high: Array) -> Reduction:
     """All columns together, their coefficients (k,) between bounds.
 
     `b` (k,) are their products with the target, `offset` is what the target itself costs more.
@@ -56,10 +56,10 @@ def solve_bounded(H: Array, b: Array, offset: float, low: Array, high: Array) ->
     root = np.sqrt(np.maximum(values, RIDGE * max(values[-1], 1e-300)))
     A = root[:, None] * vectors.T  # A'A = H
     x = lsq_linear(A, -(vectors.T @ b) / root, (low, high), method="bvls").x
-    return Gain(float(-2.0 * b @ x - x @ H @ x) - offset, tuple(range(len(b))), x)
+    return Reduction(float(-2.0 * b @ x - x @ H @ x) - offset, tuple(range(len(b))), x)
 
 
-def select_columns(H: Array, b: Array, penalty: float) -> Gain:
+def select_columns(H: Array, b: Array, penalty: float) -> Reduction:
     """The columns that are worth their penalty each, added one by one, then pruned."""
     chosen: list[int] = []
     while len(chosen) < min(len(b), MOST):
@@ -79,10 +79,10 @@ def select_columns(H: Array, b: Array, penalty: float) -> Gain:
             break
         chosen.pop(weakest)
     x = -solve(H[np.ix_(chosen, chosen)], b[chosen])
-    return Gain(float(-b[chosen] @ x), tuple(chosen), x)
+    return Reduction(float(-b[chosen] @ x), tuple(chosen), x)
 
 
-def eliminate_columns(H: Array, b: Array, penalty: float) -> Gain:
+def eliminate_columns(H: Array, b: Array, penalty: float) -> Reduction:
     """The columns that are worth their penalty beside each other: from all of them, down.
 
     Two of opposite sign (linear and quadratic drag of one axis) are found, though neither explains
@@ -95,9 +95,9 @@ def eliminate_columns(H: Array, b: Array, penalty: float) -> Gain:
         worth = x**2 / variance
         weakest = int(np.argmin(worth))
         if worth[weakest] >= penalty:
-            return Gain(float(b[chosen] @ x), tuple(chosen), -x)
+            return Reduction(float(b[chosen] @ x), tuple(chosen), -x)
         chosen.pop(weakest)
-    return Gain(0.0, (), np.empty(0))
+    return Reduction(0.0, (), np.empty(0))
 
 
 def _worth(H: Array, b: Array, chosen: list[int]) -> Array:

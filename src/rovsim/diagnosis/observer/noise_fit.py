@@ -27,10 +27,10 @@ COLOURED = 12.0  # in twice the log likelihood: two more numbers, and sure of it
 
 
 class NoiseFit(NamedTuple):
-    """The most likely noise, and twice the log likelihood under it, up to a constant."""
+    """The most likely noise, and 2 log L under it, up to a constant."""
 
     noise: Noise
-    likelihood: float
+    two_log_likelihood: float
 
 
 def fit_noise(

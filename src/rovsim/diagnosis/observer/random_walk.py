@@ -25,11 +25,11 @@ STEP = 0.05  # of the log of a rate: for its second derivative
 
 
 class Rate(NamedTuple):
-    """The likeliest rate, its standard deviation, and its gain in twice the log likelihood."""
+    """The likeliest rate, its standard deviation, and its likelihood-ratio statistic."""
 
     value: float
     std: float
-    gain: float
+    lr_statistic: float
 
 
 class _Principal(NamedTuple):
@@ -81,18 +81,18 @@ class RandomWalk:
             first = at.stop
         return out
 
-    def gain(self, z: Sequence[Array], rate: float, tunings: Sequence[Tuning]) -> float:
-        """By how much likelier it makes whitened innovations (6, m) of each run, twice the log."""
-        return _Evidence.of(z, self._decompose(tunings)).gain(rate)
+    def lr_statistic(self, z: Sequence[Array], rate: float, tunings: Sequence[Tuning]) -> float:
+        """Likelihood-ratio statistic: how much likelier it makes innovations (6, m) of each run."""
+        return _WalkLikelihood.of(z, self._decompose(tunings)).lr_statistic(rate)
 
     def fit_rate(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> Rate:
         """The likeliest rate for whitened innovations (6, m) of each run."""
-        return _Evidence.of(z, self._decompose(tunings)).fit()
+        return _WalkLikelihood.of(z, self._decompose(tunings)).fit()
 
-    def promise(self, rate: float, tunings: Sequence[Tuning]) -> float:
-        """What a walk of that rate would gain on average."""
+    def expected_lr(self, rate: float, tunings: Sequence[Tuning]) -> float:
+        """The likelihood-ratio statistic that a walk of that rate would reach on average."""
         power = np.concatenate([own.power for own in self._decompose(tunings)])
-        return _Evidence(1.0 + rate**2 * power, power).gain(rate)
+        return _WalkLikelihood(1.0 + rate**2 * power, power).lr_statistic(rate)
 
     def take_out(
         self, e: Sequence[Array], z: Sequence[Array], rate: float, tunings: Sequence[Tuning]
@@ -123,7 +123,7 @@ def fit_common(columns: Sequence[Array], z: Sequence[Array]) -> Rate:
     """
     joined = np.concatenate([own.reshape(len(own), -1) for own in columns], axis=1)
     white = np.concatenate([own.ravel() for own in z])
-    return _Evidence.of([white], [_decompose(joined)]).fit()
+    return _WalkLikelihood.of([white], [_decompose(joined)]).fit()
 
 
 def _decompose(columns: Array) -> _Principal:
@@ -137,34 +137,36 @@ def _decompose(columns: Array) -> _Principal:
 
 
 @dataclass(frozen=True, eq=False)
-class _Evidence:
+class _WalkLikelihood:
     """Squares (k,) of innovations along the directions of a walk, and its power (k,) there."""
 
     squares: Array
     power: Array
 
     @staticmethod
-    def of(z: Sequence[Array], principal: Sequence[_Principal]) -> "_Evidence":
+    def of(z: Sequence[Array], principal: Sequence[_Principal]) -> "_WalkLikelihood":
         """Of all runs."""
         pairs = zip(z, principal, strict=True)
         squares = np.concatenate([(own.directions @ one.ravel()) ** 2 for one, own in pairs])
-        return _Evidence(squares, np.concatenate([own.power for own in principal]))
+        return _WalkLikelihood(squares, np.concatenate([own.power for own in principal]))
 
-    def gain(self, rate: float) -> float:
-        """In twice the log likelihood."""
+    def lr_statistic(self, rate: float) -> float:
+        """Twice the logarithm of the likelihood ratio to no walk."""
         more = rate**2 * self.power
         return float(np.sum(self.squares * more / (1.0 + more) - np.log1p(more)))
 
     def fit(self) -> Rate:
         """The likeliest rate."""
         tried = np.linspace(np.log(LEAST), np.log(MOST), TRIED)
-        best = tried[int(np.argmax([self.gain(np.exp(x)) for x in tried]))]
+        best = tried[int(np.argmax([self.lr_statistic(np.exp(x)) for x in tried]))]
         width = tried[1] - tried[0]
         found = minimize_scalar(
-            lambda x: -self.gain(np.exp(x)), bounds=(best - width, best + width), method="bounded"
+            lambda x: -self.lr_statistic(np.exp(x)),
+            method="bounded",
+            bounds=(best - width, best + width),
         )
-        x, gain = float(found.x), -float(found.fun)
-        sides = self.gain(np.exp(x - STEP)) + self.gain(np.exp(x + STEP))
-        bend = (2.0 * gain - sides) / STEP**2  # of twice the log likelihood
+        x, lr_statistic = float(found.x), -float(found.fun)
+        sides = self.lr_statistic(np.exp(x - STEP)) + self.lr_statistic(np.exp(x + STEP))
+        bend = (2.0 * lr_statistic - sides) / STEP**2
         std = np.exp(x) * np.sqrt(2.0 / bend) if bend > 0.0 else np.inf
-        return Rate(float(np.exp(x)), float(std), gain)
+        return Rate(float(np.exp(x)), float(std), lr_statistic)

@@ -25,7 +25,7 @@ from rovsim.diagnosis.selection.workspace import HOPELESS, Removed, SearchWorksp
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
-SWAP = 1.0  # in twice the log likelihood: less is not worth another name
+SWAP = 1.0  # of the deviance: less is not worth another name
 SLIGHT = 0.01  # of what the last addition gained: while more is sought, less is not worth a swap
 PROMISING = 0.5  # of what a term explains: another name may do better than it promises, not twice
 # Of the best predicted gain: effects that promise about the same are all refitted, for the order of
@@ -35,13 +35,13 @@ CLOSE = 0.2  # of the best predicted gain: less has never turned out best after 
 
 
 def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
-    """The proposals that should gain something."""
-    return [p for p in workspace.propose(current) if p.gain > 0.0]
+    """The proposals that should lower the sum of squares by more than their penalty."""
+    return [p for p in workspace.propose(current) if p.net_decrease > 0.0]
 
 
 def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
     """The first proposals, as far as they could turn out best once refitted."""
-    return [p for p in ranked[:trials] if p.gain > CLOSE * ranked[0].gain]
+    return [p for p in ranked[:trials] if p.net_decrease > CLOSE * ranked[0].net_decrease]
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
@@ -52,7 +52,7 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
     """
     left, off = list_promising(workspace, current), is_off(current.hypothesis)
     for _ in range(ROUNDS):
-        level = sum(p.gain > LEVEL * left[0].gain for p in left)
+        level = sum(p.net_decrease > LEVEL * left[0].net_decrease for p in left)
         trying = keep_close(left, max(workspace.settings.trials, level))
         left = [p for p in left if p not in trying]
         tried = [(workspace.fit(current.hypothesis.with_term(p.term)), p.term.id) for p in trying]
@@ -91,25 +91,28 @@ def contest(
     Names that promise less than half of what the term explains are not refitted, unless for that
     they ask so much less that they seem likelier.
 
-    `swap`: by how much more, in twice the log likelihood.
+    `swap`: the least difference of the scores.
     """
     rivals, off = [], is_off(current.hypothesis)
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_challengers(workspace, term, rest, trials):
-            deficit, trial = rest.loss - workspace.penalty * term.choices - p.gain, None
-            if deficit < 0.0 or _explains(workspace, p) > PROMISING * rest.loss:
-                start, deficit = rest.hypothesis.with_term(p.term), HOPELESS
+            trial, worse = (
+                None,
+                rest.ss_increase - workspace.penalty * term.choices - p.net_decrease,
+            )
+            if worse < 0.0 or _explains(workspace, p) > PROMISING * rest.ss_increase:
+                start, worse = rest.hypothesis.with_term(p.term), HOPELESS
                 trial = workspace.challenge(start, current, workspace.score(current))
             if trial is not None:
-                deficit = workspace.score(current) - workspace.score(trial)
-                if deficit < -swap and not (
+                worse = workspace.score(current) - workspace.score(trial)
+                if worse < -swap and not (
                     off and uncertain_file.explains(workspace, trial, p.term.id)
                 ):
                     return contest(workspace, prune(workspace, trial), trials, swap)
-                weight = uncertain_file.weigh(workspace, (current, term), (trial, p.term), deficit)
-                deficit = max(0.0, weight)  # likelier only beside a loose file: not told apart
-            rivals.append(Rival(p.term.id, term.id, deficit, trial))
+                weight = uncertain_file.weigh(workspace, (current, term), (trial, p.term), worse)
+                worse = max(0.0, weight)  # likelier only beside a loose file: not told apart
+            rivals.append(Rival(p.term.id, term.id, worse, trial))
     return current, rivals
 
 
@@ -123,14 +126,15 @@ def find_challengers(
     worth its penalty, a rival need not be: the two share the evidence.
     """
     others = [p for p in rest.others if p.term.id != term.id]
-    trials = max(trials, sum(p.gain > LEVEL * rest.loss for p in others))
-    worth = keep_close([p for p in others if p.gain > 0.0], trials)
-    return worth or [p for p in others[:trials] if _explains(workspace, p) > PROMISING * rest.loss]
+    trials = max(trials, sum(p.net_decrease > LEVEL * rest.ss_increase for p in others))
+    worth = keep_close([p for p in others if p.net_decrease > 0.0], trials)
+    least = PROMISING * rest.ss_increase
+    return worth or [p for p in others[:trials] if _explains(workspace, p) > least]
 
 
 def _explains(workspace: SearchWorkspace, proposal: Proposal) -> float:
     """Decrease of the sum of squares, without its penalty."""
-    return proposal.gain + workspace.penalty * proposal.term.choices
+    return proposal.net_decrease + workspace.penalty * proposal.term.choices
 
 
 def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:

@@ -86,7 +86,7 @@ class Gate:
         if not self.runs:
             return False
         errors = self._errors([model, before])
-        return find_sure_gain(errors[0], errors[1]) > 0.0
+        return find_sure_improvement(errors[0], errors[1]) > 0.0
 
     def improves(self, more: Model, less: Model, share: float) -> bool:
         """Whether one model errs less than the other by that share on all runs."""
@@ -109,9 +109,9 @@ class Gate:
         if not self.runs:
             return None
         own, others = self._errors([one, other])
-        if find_sure_gain(others, own) > 0.0:
+        if find_sure_improvement(others, own) > 0.0:
             return True
-        return False if find_sure_gain(own, others) > 0.0 else None
+        return False if find_sure_improvement(own, others) > 0.0 else None
 
     def keep_earning(self, selection: Selection) -> Selection:
         """Where physics is left that no name explains: only what makes a difference there.
@@ -142,9 +142,10 @@ class Gate:
     def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:
         """Without the effect whose absence helps most; None where each of them earns its place."""
         fewer, errors = self._do_without(selection, found, [(t,) for t in found.hypothesis.terms])
-        gains = [find_sure_gain(errors[0], other, len(errors) - 1) for other in errors[1:]]
-        best = int(np.argmax(gains))
-        return fewer[best] if gains[best] > 0.0 else None
+        tried = len(errors) - 1
+        improvements = [find_sure_improvement(errors[0], one, tried) for one in errors[1:]]
+        best = int(np.argmax(improvements))
+        return fewer[best] if improvements[best] > 0.0 else None
 
     def _do_without(
         self, selection: Selection, found: Fit, groups: Sequence[Sequence[Term]]
@@ -226,7 +227,7 @@ def _find_limit(windows: int, tried: int) -> float:
     return float(student.isf(chance, windows - 1) * np.sqrt(windows / (windows - 1.0)))
 
 
-def find_sure_gain(error: Array, other: Array, tried: int = 1) -> float:
+def find_sure_improvement(error: Array, other: Array, tried: int = 1) -> float:
     """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure.
 
     Of so many that were `tried` the best is smaller by chance as well.

@@ -41,19 +41,19 @@ class GivenUp(Exception):
 class Fit:
     """A fitted hypothesis.
 
-    `seen` with its errors and how they change; `noise` fitted to it; `likelihood` twice the log
-    likelihood under that noise; `covariance` (k, k) of the scaled parameters.
+    `seen` with its errors and how they change; `noise` fitted to it; `two_log_likelihood` under
+    that noise; `covariance` (k, k) of the scaled parameters.
     """
 
     seen: Linearised
     noise: Noise
-    likelihood: float
+    two_log_likelihood: float
     covariance: Array
 
     @property
     def held(self) -> bool:
         """Whether the filters could hold the model; if not, nothing is known of it."""
-        return bool(np.isfinite(self.likelihood))
+        return bool(np.isfinite(self.two_log_likelihood))
 
     @property
     def hypothesis(self) -> Hypothesis:
@@ -85,13 +85,14 @@ def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf
 def fit_or_give_up(
     first: Linearised, bank: FilterBank, noise: Noise, least: float, reach: float = np.inf
 ) -> Fit | None:
-    """The same, but None as soon as nothing says that twice the log likelihood reaches `least`.
+    """The same, but None as soon as nothing says that its `two_log_likelihood` reaches `least`.
 
     `first`: a start, and derivatives that are roughly right there.
     """
 
     def monitor(seen: Linearised, predicted_reduction: float) -> None:
-        if bank.fit_noise(seen.e, noise).likelihood + REACHABLE * predicted_reduction < least:
+        here = bank.fit_noise(seen.e, noise).two_log_likelihood
+        if here + REACHABLE * predicted_reduction < least:
             raise GivenUp
 
     prior = Prior.around(first.at.x, reach)
@@ -127,11 +128,11 @@ def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None 
     if not seen.finite:
         unknown = np.full((len(seen.at.x), len(seen.at.x)), np.inf)
         return Fit(seen, noise, -np.inf, unknown)
-    own, likelihood = bank.fit_noise(seen.e, noise)
+    own, two_log_likelihood = bank.fit_noise(seen.e, noise)
     information = inner_products(as_rows(bank.whiten(seen.J, own)))
     if prior is not None:
         information = information + np.diag(prior.weights(seen.at.x))
-    return Fit(seen, own, likelihood, solve(information, np.eye(len(information))))
+    return Fit(seen, own, two_log_likelihood, solve(information, np.eye(len(information))))
 
 
 def levenberg_marquardt(

@@ -1,4 +1,4 @@
-"""What looks worth adding, judged to first order, and what chance alone would seem to gain."""
+"""What looks worth adding, judged to first order, and what chance alone would seem to explain."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.observer.least_squares import Gain, select_columns, solve_bounded
+from rovsim.diagnosis.observer.least_squares import Reduction, select_columns, solve_bounded
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 
 TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
@@ -15,10 +15,13 @@ TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
-    """A term worth trying: what it should gain, with its penalty, and where to start."""
+    """A term worth trying, and where to start.
+
+    `net_decrease`: predicted, of the sum of squares, less the penalty of its parameters.
+    """
 
     term: Term
-    gain: float
+    net_decrease: float
 
 
 def rank_proposals(M: Array, blocks: Sequence[CandidateColumns], penalty: float) -> list[Proposal]:
@@ -27,25 +30,25 @@ def rank_proposals(M: Array, blocks: Sequence[CandidateColumns], penalty: float)
     Args:
         M: inner products (1 + c, 1 + c) of the innovations and all columns.
         blocks: which columns are whose.
-        penalty: of a parameter, in twice the log likelihood.
+        penalty: of a parameter.
     """
     best: dict[str, Proposal] = {}
     for block in blocks:
-        gain = _predict_gain(M, block, penalty)
+        reduction = _predict_reduction(M, block, penalty)
         candidate = block.candidate
-        term = candidate.term([candidate.free[j] for j in gain.chosen])
-        worth = gain.decrease - penalty * term.choices
+        term = candidate.term([candidate.free[j] for j in reduction.chosen])
+        worth = reduction.ss_decrease - penalty * term.choices
         known = best.get(term.id)
-        if known is None or worth > known.gain:
-            best[term.id] = Proposal(term.at(term.x + gain.x), worth)
-    return sorted(best.values(), key=lambda one: -one.gain)
+        if known is None or worth > known.net_decrease:
+            best[term.id] = Proposal(term.at(term.x + reduction.x), worth)
+    return sorted(best.values(), key=lambda one: -one.net_decrease)
 
 
-def _predict_gain(M: Array, block: CandidateColumns, penalty: float) -> Gain:
+def _predict_reduction(M: Array, block: CandidateColumns, penalty: float) -> Reduction:
     own = [1 + j for j in block.derivatives]
     if block.secant is not None and not own:
         s = 1 + block.secant
-        return Gain(float(-2.0 * M[0, s] - M[s, s]), (), np.empty(0))
+        return Reduction(float(-2.0 * M[0, s] - M[s, s]), (), np.empty(0))
     H, b = M[np.ix_(own, own)], M[own, 0]
     if block.secant is None:
         return select_columns(H, b, penalty)
@@ -54,15 +57,15 @@ def _predict_gain(M: Array, block: CandidateColumns, penalty: float) -> Gain:
     return solve_bounded(H, b + M[own, s], 2.0 * M[0, s] + M[s, s], low, high)
 
 
-def draw_chance_gains(
+def draw_chance_decreases(
     M: Array, blocks: Sequence[CandidateColumns], penalty: float, draws: int, seed: int
 ) -> Array:
-    """The best gain (draws,), less its penalty, that noise alone would give to any candidate.
+    """The largest net decrease (draws,) that noise alone would give to any candidate.
 
     Args:
         M: inner products (c, c) of all columns.
         blocks: which columns are whose.
-        penalty: of a parameter, in twice the log likelihood.
+        penalty: of a parameter.
         draws: how many.
         seed: of the draws.
     """
@@ -72,12 +75,12 @@ def draw_chance_gains(
     z = np.random.default_rng(seed).normal(size=(draws, len(M))) @ root.T * scale
     best = np.full(draws, -np.inf)
     for block in blocks:
-        best = np.maximum(best, _chance_gains(M, z, block, penalty))
+        best = np.maximum(best, _chance_decreases(M, z, block, penalty))
     return best
 
 
-def _chance_gains(M: Array, z: Array, block: CandidateColumns, penalty: float) -> Array:
-    """What one candidate would gain (draws,) from drawn products (draws, c) with its columns."""
+def _chance_decreases(M: Array, z: Array, block: CandidateColumns, penalty: float) -> Array:
+    """Net decrease (draws,) by one candidate, of drawn products (draws, c) with its columns."""
     own, s = list(block.derivatives), block.secant
     if s is None:  # the best of its columns alone
         return (

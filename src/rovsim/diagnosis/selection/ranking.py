@@ -75,7 +75,7 @@ def name_terms(found: Fit, rivals: Sequence[Rival]) -> list[Named]:
 def name_smoothing(smoothing: Smoothing) -> Named:
     """What the camera does, as an effect; white noise was tried in its place."""
     term = Term(smoothing.effect, ("cutoff",))
-    return Named(term, {"cutoff": smoothing.std}, _odds(smoothing.gain))
+    return Named(term, {"cutoff": smoothing.std}, _odds(smoothing.lr_statistic))
 
 
 def leads(one: Named) -> bool:
@@ -122,13 +122,13 @@ def name_drift(drift: DriftFit, lasting: bool) -> Named:
     be what seems to wander.
     """
     term = Term(CurrentDrift(rate=drift.rate.value), ("rate",))
-    probability = None if lasting else _odds(drift.surplus)
+    probability = None if lasting else _odds(drift.lr_margin)
     return Named(term, {"rate": drift.rate.std}, probability)
 
 
-def _odds(surplus: float) -> float:
-    """Probability of a name that is so much likelier, in twice the log likelihood."""
-    return float(1.0 / (1.0 + np.exp(-0.5 * min(surplus, 700.0))))
+def _odds(lr_margin: float) -> float:
+    """Probability of a name that is likelier by that likelihood-ratio statistic."""
+    return float(1.0 / (1.0 + np.exp(-0.5 * min(lr_margin, 700.0))))
 
 
 def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
@@ -148,8 +148,8 @@ def find_std(found: Fit, i: int) -> dict[str, float]:
 def _share_of_odds(found: Fit, i: int, rivals: Sequence[Rival]) -> float | None:
     """Of this name among all that were tried in its place, from their likelihoods; None: none."""
     name = found.hypothesis.terms[i].id
-    tried = [r.deficit for r in rivals if r.instead_of == name]
-    odds = sum(np.exp(-0.5 * min(deficit, 700.0)) for deficit in tried)
+    tried = [r.deviance_difference for r in rivals if r.instead_of == name]
+    odds = sum(np.exp(-0.5 * min(deviance_difference, 700.0)) for deviance_difference in tried)
     return float(1.0 / (1.0 + odds)) if tried else None
 
 
@@ -164,9 +164,9 @@ def rank_alone(workspace: SearchWorkspace, nothing: Fit, found: Fit) -> list[Ran
     fits.sort(key=workspace.score, reverse=True)
     terms = [one.hypothesis.terms[0] for one in fits]
     terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
-    gain = np.array([0.5 * (workspace.score(one) - workspace.score(nothing)) for one in fits])
-    weight = np.exp(gain - np.max(gain, initial=0.0))
-    share = weight / (weight.sum() + np.exp(-np.max(gain, initial=0.0)))
+    log_odds = np.array([0.5 * (workspace.score(one) - workspace.score(nothing)) for one in fits])
+    weight = np.exp(log_odds - np.max(log_odds, initial=0.0))
+    share = weight / (weight.sum() + np.exp(-np.max(log_odds, initial=0.0)))
     base = nothing.hypothesis.base
     models = [base, *(base + term.effect for term in terms)]
     error = _score(models, workspace.bank.runs)

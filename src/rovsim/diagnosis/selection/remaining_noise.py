@@ -46,7 +46,9 @@ def fit_remaining_noise(
             break
     found = bank.fit_noise(draw_remainder(bank, e, columns, noise), noise, thorough=True)
     own = _fit_own_noise(bank, at.model, found.noise)
-    return (own if own.likelihood > found.likelihood + sensitivities.count else found).noise
+    return (
+        own if own.two_log_likelihood > found.two_log_likelihood + sensitivities.count else found
+    ).noise
 
 
 def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
@@ -61,7 +63,7 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
     for _ in range(ROUNDS):
         bank = bank.redesign(model, found.noise)
         again = bank.fit_noise(bank.innovations(model), first)
-        if not again.likelihood > found.likelihood + SETTLED:
+        if not again.two_log_likelihood > found.two_log_likelihood + SETTLED:
             break
         found = again
     return found

@@ -16,13 +16,13 @@ SURE = 6.0  # twice a log likelihood: odds of 20 to 1
 class Rival:
     """An effect that could stand in for a selected one, and by how much it is less likely.
 
-    `deficit` is in twice the log likelihood, with penalties: 6 are odds of 20 to 1; at least that
-    much where its fit was given up. `fit` with it in the other's place, where it was refitted.
+    `deviance_difference` includes penalties: 6 are odds of 20 to 1; at least that much where its
+    fit was given up. `fit` with it in the other's place, where it was refitted.
     """
 
     effect: str
     instead_of: str
-    deficit: float
+    deviance_difference: float
     fit: Fit | None = field(default=None, compare=False, repr=False)
 
 

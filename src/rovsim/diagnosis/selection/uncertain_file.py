@@ -108,16 +108,19 @@ def explains(workspace: SearchWorkspace, found: Fit, name: str) -> bool:
 
 
 def weigh(
-    workspace: SearchWorkspace, own: tuple[Fit, Term], other: tuple[Fit, Term], deficit: float
+    workspace: SearchWorkspace,
+    own: tuple[Fit, Term],
+    other: tuple[Fit, Term],
+    deviance_difference: float,
 ) -> float:
     """How much less likely the other term's fit is, beside a file that is off if it is.
 
-    Both of the file, or hopeless: `deficit`, what is known of the two fits as they are.
+    Both of the file, or hopeless: `deviance_difference`, what is known of the two fits as they are.
     """
     (current, term), (trial, rival) = own, other
     both = term.id in STATED and rival.id in STATED
-    if both or not is_off(current.hypothesis) or deficit >= HOPELESS:
-        return deficit
+    if both or not is_off(current.hypothesis) or deviance_difference >= HOPELESS:
+        return deviance_difference
     more = measure_cost(workspace, trial) - measure_cost(workspace, current)
     return more + find_limit(workspace, rival) - find_limit(workspace, term)
 
@@ -130,9 +133,9 @@ def propose_file(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     """
     numbers = [n for n in list_numbers(workspace) if n.candidate.effect is not ThrusterGain]
     own, M = [number.row for number in numbers], workspace.columns.products(current.seen)
-    gain = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.penalty)
+    reduction = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.penalty)
     found = current.hypothesis
-    for j, x in zip(gain.chosen, gain.x, strict=True):
+    for j, x in zip(reduction.chosen, reduction.x, strict=True):
         term = numbers[j].candidate.term([numbers[j].parameter])
         found = found.with_term(term.at(term.x + x))
-    return found if gain.chosen else None
+    return found if reduction.chosen else None

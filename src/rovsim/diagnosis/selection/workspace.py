@@ -19,7 +19,7 @@ from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit, fit_or_give_up
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain
-from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_gains, rank_proposals
+from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_decreases, rank_proposals
 from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
 from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_candidates
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
@@ -32,13 +32,13 @@ HOPELESS = 100.0  # twice the log likelihood: what is less likely by e^50 need n
 class Removed:
     """A hypothesis without one of its terms, judged to first order.
 
-    `products` (1 + c, 1 + c) as of `WhiteColumns`; `loss`: increase of the sum of squares;
+    `products` (1 + c, 1 + c) as of `WhiteColumns`; `ss_increase`: increase of the sum of squares;
     `others`: all candidates for what the term took, best first.
     """
 
     hypothesis: Hypothesis
     products: Array
-    loss: float
+    ss_increase: float
     others: list[Proposal]
 
 
@@ -106,7 +106,7 @@ class SearchWorkspace:
 
     @cached_property
     def penalty(self) -> float:
-        """What a free parameter costs, in twice the log likelihood."""
+        """What a free parameter costs, as a likelihood-ratio statistic."""
         return 2.0 * float(np.log(self.sensitivities.count))
 
     def fit(self, start: Hypothesis, reach: float = np.inf) -> Fit:
@@ -139,10 +139,10 @@ class SearchWorkspace:
 
     def score(self, found: Fit) -> float:
         """Twice the log likelihood, less the penalty of the free parameters, and an odd gain."""
-        return found.likelihood - self._ask(found.hypothesis)
+        return found.two_log_likelihood - self._ask(found.hypothesis)
 
     def _ask(self, at: Hypothesis) -> float:
-        """What a hypothesis costs, in twice the log likelihood."""
+        """What a hypothesis costs."""
         return self.penalty * sum(t.choices for t in at.terms) + doubt_gain(at)
 
     def remove_each(self, current: Fit) -> list[Removed]:
@@ -224,9 +224,9 @@ class SearchWorkspace:
         return self._proposed[key]
 
     def chance_limit(self, current: Fit, seed: int) -> float:
-        """What the best of all candidates gains by chance, but for the false alarms allowed."""
-        gains = draw_chance_gains(
+        """Net decrease by the best candidate where all is chance, but for false alarms allowed."""
+        decreases = draw_chance_decreases(
             self.columns.products(current.seen)[1:, 1:], self.sensitivities.blocks, self.penalty,
             self.settings.draws, seed,
         )  # fmt: skip
-        return max(0.0, float(np.quantile(gains, 1.0 - self.settings.false_alarm)))
+        return max(0.0, float(np.quantile(decreases, 1.0 - self.settings.false_alarm)))
