@@ -18,7 +18,10 @@ def test_no_reading_is_on_both_sides(tmp_path):
     _, runs = observed(tmp_path, duration=60.0)
     (chosen,), (held,) = keep_apart(runs)
     assert not np.any(chosen.motion.usable & held.motion.usable)
-    ends = [set(run.sample[a] for a, b in run.spans for a in range(a, b)) for run in (chosen, held)]
+    ends = [
+        set(run.reading_samples[a] for a, b in run.segments for a in range(a, b))
+        for run in (chosen, held)
+    ]
     assert not ends[0] & ends[1]
     seconds = [run.settled.sum() * run.period for run in (chosen, held)]
     assert seconds[1] / sum(seconds) == pytest.approx(0.2, abs=0.06)
@@ -62,9 +65,9 @@ def test_where_a_current_wanders_the_windows_of_one_run_are_one_sample(tmp_path)
     _, held = keep_apart(runs)
     slower = base + LinearDamping(surge=60.0, sway=60.0)
     assert Gate(held, runs).refuses(slower, base)
-    assert not Gate(held, runs, wanders=True).refuses(slower, base)
-    assert not Gate([*held, *held], runs, wanders=True).refuses(base, slower)
-    assert Gate([*held, *held], runs, wanders=True).refuses(slower, base)
+    assert not Gate(held, runs, current_drifts=True).refuses(slower, base)
+    assert not Gate([*held, *held], runs, current_drifts=True).refuses(base, slower)
+    assert Gate([*held, *held], runs, current_drifts=True).refuses(slower, base)
 
 
 def test_where_physics_is_left_a_name_must_be_surely_worth_it():

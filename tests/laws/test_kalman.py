@@ -176,9 +176,9 @@ def observed(start, y):
     run = SimpleNamespace(
         axis_periods=np.full(6, H),
         reading_kinds=np.full(6, POSE),
-        shown=np.ones((n, 6), bool),
+        innovation_mask=np.ones((n, 6), bool),
         motion=SimpleNamespace(binned=False),
-        rows=np.array([[0, n]]),
+        innovation_segments=np.array([[0, n]]),
         settled=np.arange(n) > 100,
         group=1,
     )

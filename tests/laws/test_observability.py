@@ -69,7 +69,7 @@ def test_what_acts_on_axes_that_nobody_reads_has_no_length(tmp_path):
     in_roll = [own * (np.arange(6) == 3)[:, None] for own in columns]
     assert (measure_columns(bank, in_roll) > 0.0).all()
     for run in runs:
-        vars(run)["shown"] = run.shown & (np.arange(6) != 3)
+        vars(run)["innovation_mask"] = run.innovation_mask & (np.arange(6) != 3)
     assert not measure_columns(bank, in_roll).any()
     assert (measure_columns(bank, columns) > 0.0).all()
 

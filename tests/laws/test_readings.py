@@ -56,8 +56,8 @@ def test_steps_end_where_bins_end():
         state_nu=rows[:, 7:], usable=np.ones(len(time), bool), binned=True, end=time[-1] + 0.1,
     )  # fmt: skip
     run = prepare_run(bins, bins, ReplaySettings(), built_in(), np.ones(6, bool))
-    np.testing.assert_allclose(run.edges[run.ends], time, atol=0.005)
-    fine = np.round((run.edges - time[0]) / 0.01)[run.ends]
+    np.testing.assert_allclose(run.edges[run.reading_steps], time, atol=0.005)
+    fine = np.round((run.edges - time[0]) / 0.01)[run.reading_steps]
     np.testing.assert_array_equal(fine, np.round((time - time[0]) / 0.01))
     assert np.all(np.diff(run.edges) < 0.08)
 
@@ -101,8 +101,8 @@ def test_what_thrusters_did_under_a_lost_line_is_not_held_against_a_model(tmp_pa
     turned = np.where(log.time[:, None] - run.edges[0] < at, log.value, -log.value)
     kept = np.arange(len(log.time)) != np.argmax(log.time - run.edges[0] >= at)
     logs = replace(log, value=turned), replace(log, time=log.time[kept], value=turned[kept])
-    fine = np.linspace(run.edges[0], run.edges[-1], int(run.parts.sum()) + 1)
-    drives = [Drives(one, fine, "held", run.parts) for one in logs]
+    fine = np.linspace(run.edges[0], run.edges[-1], int(run.substeps.sum()) + 1)
+    drives = [Drives(one, fine, "held", run.substeps) for one in logs]
     motions = [replace(run.motion, commands=one) for one in logs]
     each = zip(motions, drives, strict=True)
     told, lossy = (replace(run, motion=own, drives=driven) for own, driven in each)
@@ -140,8 +140,8 @@ def test_a_reading_is_the_pose_in_the_middle_of_its_frames(tmp_path):
     _, (run,) = observed(tmp_path, duration=8.0, camera=camera)
     readings = run.read(NO_CHANGE)
     assert run.group == 5
-    first, last = run.spans[0]
-    middle = run.frames[run.sample]
+    first, last = run.segments[0]
+    middle = run.frames[run.reading_samples]
     np.testing.assert_allclose(readings[first:last, :7], middle[first:last, :7], atol=3e-5)
     curve = np.mean(run.frames[: 5 * len(middle), 0].reshape(-1, 5), axis=1) - middle[:, 0]
     error = readings[:, 0] - middle[:, 0]

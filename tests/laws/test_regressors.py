@@ -22,7 +22,13 @@ def run():
     state[:, 7:] = np.random.default_rng(1).normal(size=(COUNT, 6))
     motion = SimpleNamespace(state=state, time=t)
     rows = np.array([[0, COUNT]])
-    return SimpleNamespace(motion=motion, index=np.arange(COUNT), period=PERIOD, time=t, rows=rows)
+    return SimpleNamespace(
+        motion=motion,
+        innovation_samples=np.arange(COUNT),
+        period=PERIOD,
+        time=t,
+        innovation_segments=rows,
+    )
 
 
 @pytest.mark.parametrize(("on", "along"), [(0, 0), (0, 1), (1, 0), (1, 1)])

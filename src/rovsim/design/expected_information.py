@@ -108,7 +108,7 @@ def _mix_motions(
     """How errors go on in the train runs and a flight, each as long as it lasts."""
     some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
     own = np.array(estimate_errors(rival.hypothesis.model, [some]).motions)
-    before, lasts = prior.seconds, float(run.instants[-1])
+    before, lasts = prior.seconds, float(run.reading_times[-1])
     both = (before * np.array(prior.motions) + lasts * own) / (before + lasts)
     return tuple(AxisMotion(float(d), float(k)) for d, k in both)
 

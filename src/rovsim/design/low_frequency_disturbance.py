@@ -86,7 +86,7 @@ def _follow(model: Model, run: ObservedRun, tuning: Tuning) -> Array:
     """The disturbance (n, 6) that an observer finds at the readings."""
     e = np.nan_to_num(observe([model], run, tuning)[0])
     found, decay = np.zeros(e.T.shape), tuning.decay(np.array([run.period]))[0]
-    for first, last in run.rows:
+    for first, last in run.innovation_segments:
         for i, gain in enumerate(tuning.gains[2]):
             found[first:last, i] = scipy.signal.lfilter([gain], [1.0, -decay[i]], e[i, first:last])
     return found

@@ -91,7 +91,7 @@ class PriorInformation:
     @cached_property
     def seconds(self) -> float:
         """Of the train runs."""
-        return float(sum(run.motion.usable.mean() * run.instants[-1] for run in self.runs))
+        return float(sum(run.motion.usable.mean() * run.reading_times[-1] for run in self.runs))
 
     @cached_property
     def readings(self) -> int:

@@ -88,7 +88,7 @@ class RecordingSetup:
         own = self.like.motion.measured
         if own is None:
             return None
-        seen = self.like.seen
+        seen = self.like.reading_mask
         count = len(self.edges[:: self.parts])
         when = seen[np.arange(count) % len(seen)]
         return Measured(own.coordinates, own.heading, own.axes, own.summed, when, own.cutoff)
@@ -118,13 +118,15 @@ def describe_setup(
             expected="a campaign that logs commands: they are what a flight is made of",
             remedy="Record a run with commands first, however short.",
         )
-    like = max(commanded, key=lambda one: len(one.ends))
+    like = max(commanded, key=lambda one: len(one.reading_steps))
     held = np.ones(6, bool) if axes is None else np.isin(np.arange(6), axes)
     largest = np.zeros(6)
     for one in commanded:
         if one.motion.commands.kind == "wrench":
             largest = np.maximum(largest, np.max(np.abs(one.motion.commands.value), axis=0))
-    return RecordingSetup(like, seconds, held & like.free, largest, _span(runs), replay, catalogue)
+    return RecordingSetup(
+        like, seconds, held & like.free_axes, largest, _span(runs), replay, catalogue
+    )
 
 
 def _span(runs: Sequence[ObservedRun]) -> Array:

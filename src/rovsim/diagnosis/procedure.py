@@ -111,7 +111,7 @@ def _diagnose(
     selection = search(workspace, nothing, seed)
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
-    gate = Gate(apart, usable.runs, wanders=selection.found.noise.drift is not None)
+    gate = Gate(apart, usable.runs, current_drifts=selection.found.noise.drift is not None)
     found = _unmask(settle_noticed(selection, usable, gate, seed))
     if smoothing and gate.refuses(found.fit.hypothesis.model, base):
         return _diagnose(base, usable, settings, catalogue, seed, stage, smooths=False)

@@ -25,7 +25,7 @@ INDEPENDENT = 1e-6  # of a column's power: less is what was fitted already
 def earlier_states(run: ObservedRun) -> Array:
     """States (n, 13) as measured a little before each reading; zero where nothing was measured."""
     past = max(1, round(EARLIER / run.period))
-    at = np.clip(run.index - past, 0, len(run.motion.time) - 1)
+    at = np.clip(run.innovation_samples - past, 0, len(run.motion.time) - 1)
     return np.nan_to_num(run.motion.state[at])
 
 
@@ -135,7 +135,7 @@ def find_spread(products: Array, power: float, blocks: Array) -> float:
 def _lag(v: Array, run: ObservedRun, memory: float) -> Array:
     """v through a first-order lag, stretch by stretch."""
     lag, out = LowPass((memory,)), np.empty_like(v)
-    for first, last in run.rows:
+    for first, last in run.innovation_segments:
         stretch = v[first:last, None]
         out[first:last] = lag.smooth(stretch, run.period, first=np.zeros((1, 1)))[:, 0]
     return out

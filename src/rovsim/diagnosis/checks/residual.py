@@ -97,7 +97,7 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
     """How a push (n,) on one axis shows in the settled innovations of one run."""
     b, a = f.response
     out = np.empty(len(run.time))
-    for first, last in run.rows:
+    for first, last in run.innovation_segments:
         out[first:last] = lfilter(b, a, push[first:last])
     return out[run.settled]
 
@@ -116,7 +116,7 @@ def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
     undecided = tuple(mark_undecided(found.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
-        if not all(run.shown[:, i].all() for run in bank.runs):
+        if not all(run.innovation_mask[:, i].all() for run in bank.runs):
             continue
         filters = tuple(tuning.filters[i] for tuning in tunings)
         each = zip(white, filters, bank.runs, unknown, off, strict=True)

@@ -146,7 +146,7 @@ def _even(run: ObservedRun) -> Array:
 
 def _speed_squared(run: ObservedRun) -> Array:
     """Speed squared at the settled readings, of unit mean square."""
-    at = np.clip(run.index[run.settled], 0, len(run.motion.time) - 1)
+    at = np.clip(run.innovation_samples[run.settled], 0, len(run.motion.time) - 1)
     found = np.sum(np.nan_to_num(run.motion.state_nu[at, :3]) ** 2, axis=1)
     return found / np.sqrt(np.mean(found**2))
 

@@ -41,8 +41,8 @@ def is_half(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
 
 def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
     """Accelerations (k, n, 6) that each effect adds to a model where a run was measured."""
-    state = undo_mocap_view(model, run.motion).state[run.index]
+    state = undo_mocap_view(model, run.motion).state[run.innovation_samples]
     known = np.isfinite(state).all(axis=1)
-    index, states = run.index[known], state[None, known]
+    index, states = run.innovation_samples[known], state[None, known]
     there = [accelerate(model + effect, run, index, states)[0] for effect in effects]
     return np.stack(there) - accelerate(model, run, index, states)

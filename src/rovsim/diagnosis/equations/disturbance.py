@@ -81,7 +81,7 @@ def smooth(white: Array, f: AxisFilter, run: ObservedRun, level: float, memory: 
     """Acceleration (n,) at the readings of a run, of its settled whitened innovations (m,)."""
     e, out = np.zeros(len(run.time)), np.zeros(len(run.time))
     e[run.settled] = white
-    for first, last in run.rows:
+    for first, last in run.innovation_segments:
         out[first:last] = smooth_stretch(e[first:last], f, run.period, level, memory)
     return out
 
@@ -104,7 +104,7 @@ def _gather(
     whole = np.concatenate(forces)
     rms = np.sqrt(np.mean(whole**2, axis=0))
     index = [AXES.index(a) for a in axes]
-    places = [run.motion.state[run.index, :3] * run.motion.site.axes for run in runs]
+    places = [run.motion.state[run.innovation_samples, :3] * run.motion.site.axes for run in runs]
     strongest = max(index, key=lambda i: rms[i] / _usual(residuals[AXES[i]], runs))
     spectrum = find_spectrum(forces, runs[0].period)
     return ForceInTime(

@@ -276,7 +276,7 @@ def seek_law(selection: Selection) -> Judged | None:
 def is_seen(selection: Selection) -> bool:
     """Whether each axis in which the vehicle can move is read at every reading."""
     runs = selection.workspace.bank.runs
-    return all((run.shown | ~run.free.astype(bool)).all() for run in runs)
+    return all((run.innovation_mask | ~run.free_axes.astype(bool)).all() for run in runs)
 
 
 def weigh(

@@ -103,7 +103,7 @@ def push_thrust(
     terms: Sequence[ThrustTerm], run: ObservedRun, model: Model, middle: Array
 ) -> Array:
     """Wrench (c, n, 6) of terms with a coefficient of 1 at the readings of a run."""
-    step = np.minimum(run.at[run.index], len(run.grid) - 2)
+    step = np.minimum(run.at[run.innovation_samples], len(run.grid) - 2)
     force = run.replay_drives.of([model])[0].force[step]
     return push_at(terms, earlier_states(run)[:, 7:], force @ model.body.B.T)
 

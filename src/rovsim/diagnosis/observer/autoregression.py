@@ -38,10 +38,12 @@ class Stretches(NamedTuple):
         """The stretches of some runs."""
         first, shown, count = [np.empty(0, np.int64)], [np.empty((0, 6), bool)], 0
         for run in runs:
-            number = np.searchsorted(run.rows[:, 1], np.arange(len(run.time)), side="right")
+            number = np.searchsorted(
+                run.innovation_segments[:, 1], np.arange(len(run.time)), side="right"
+            )
             _, begins, own = np.unique(number[run.settled], return_index=True, return_inverse=True)
             first.append(count + begins[own])
-            shown.append(run.shown[run.settled])
+            shown.append(run.innovation_mask[run.settled])
             count += len(own)
         return Stretches(np.concatenate(first), np.concatenate(shown))
 

@@ -155,7 +155,7 @@ class MovingWater:
 
 def _places(runs: Sequence[ObservedRun]) -> list[Array]:
     """Place (3, n) in m at the readings of each run."""
-    return [np.nan_to_num(run.motion.eta[run.index, :3].T) for run in runs]
+    return [np.nan_to_num(run.motion.eta[run.innovation_samples, :3].T) for run in runs]
 
 
 def _lines(runs: Sequence[ObservedRun]) -> list[Array]:
@@ -194,19 +194,19 @@ def _accelerate(model: Model, run: ObservedRun, current: Array) -> Array:
     A vehicle in a uniform current moves as it would, relative to it, in still water (Fossen 2021,
     property 10.1): no effect need know of it.
     """
-    states = undo_mocap_view(model, run.motion).state[run.index]
+    states = undo_mocap_view(model, run.motion).state[run.innovation_samples]
     states = np.where(np.isfinite(states).all(axis=1)[:, None], states, _AT_REST)
     water = np.column_stack([current, np.zeros(len(current))])
     along = np.einsum("nij,ni->nj", rotations.matrix(states[:, 3:7]), water)
     states[:, 7:10] -= along
-    found = accelerate(model, run, run.index, states[None])[0]
+    found = accelerate(model, run, run.innovation_samples, states[None])[0]
     found[:, :3] += np.cross(along, states[:, 10:])  # the current as seen from a body that turns
     return found
 
 
 def _push_along_tank(model: Model, run: ObservedRun) -> Array:
     """Accelerations (2, n, 6) per newton to the north, and to the east."""
-    R = rotations.matrix(run.motion.state[run.index, 3:7])
+    R = rotations.matrix(run.motion.state[run.innovation_samples, 3:7])
     wrench = np.zeros((2, len(R), 6))
     wrench[:, :, :3] = R[:, :2].swapaxes(0, 1)
     return np.asarray(np.nan_to_num(wrench) @ model.body.M_inv.T)
@@ -216,7 +216,7 @@ def _push_along_body(axes: Sequence[int]) -> Push:
     """Accelerations (d, n, 6) of 1 m/s2 along some axes of the body."""
 
     def push(model: Model, run: ObservedRun) -> Array:
-        found = np.zeros((len(axes), len(run.index), 6))
+        found = np.zeros((len(axes), len(run.innovation_samples), 6))
         for row, axis in zip(found, axes, strict=True):
             row[:, axis] = 1.0
         return found

@@ -86,7 +86,7 @@ class FilterBank:
     @property
     def looks_for_drift(self) -> bool:
         """Whether a current that wanders is looked for: every axis has its own, steady filter."""
-        known = all(run.motion.measured is None and run.wanders for run in self.runs)
+        known = all(run.motion.measured is None and run.current_may_drift for run in self.runs)
         return known and not self.coupled
 
     def shows_drift(self, noise: Noise) -> bool:

@@ -34,10 +34,10 @@ def observe(
     time = run.since_start(run.edges)
     seen = Correction(
         readings,
-        run.seen.astype(float),
-        run.known,
+        run.reading_mask.astype(float),
+        run.pose_measured,
         time,
-        run.ends,
+        run.reading_steps,
         tuning.gains,
         tuning.decays,
         run.motion.binned,
@@ -90,7 +90,7 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
     for run in runs:
         states = undo_mocap_view(model, run.motion).state
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
-        states = _nudge(states[index], level=bool(run.known[4]))
+        states = _nudge(states[index], level=bool(run.pose_measured[4]))
         found = accelerate(model, run, index, states)
         slopes.append((found[0] - found[1:]) / NUDGE)
     slope = np.concatenate(slopes, axis=1)
@@ -131,12 +131,12 @@ def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts
     """What each model takes for true: readings (k, 13), shared where models see alike; starts."""
     views = [m.mocap_view.inverse for m in models]
     readings = {back.key: run.read(back) for back in {v.key: v for v in views}.values()}
-    first = np.array([a for a, _ in run.spans], np.int64)
-    steps = np.array([b - a for a, b in run.spans], np.int64)
+    first = np.array([a for a, _ in run.segments], np.int64)
+    steps = np.array([b - a for a, b in run.segments], np.int64)
     alike = {m.mocap_view.key: m for m in models}
-    true = {key: true_states(m, run.motion, run.sample[first]) for key, m in alike.items()}
+    true = {key: true_states(m, run.motion, run.reading_samples[first]) for key, m in alike.items()}
     states = np.stack([true[m.mocap_view.key] for m in models])
-    starts = Starts(states, first, steps, recall(models, run, run.edges, run.ends[first]))
+    starts = Starts(states, first, steps, recall(models, run, run.edges, run.reading_steps[first]))
     return [readings[back.key] for back in views], starts
 
 

@@ -156,7 +156,9 @@ def whiten_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Arr
     out = np.empty((*rows.shape[:-1], int(run.settled.sum())), e.dtype)
     scale = 1.0 / np.sqrt(wanted.variance)
     on_cores(
-        lambda k: filter_kept(b, a, rows[k], run.rows, run.settled, run.shown, scale, out[k]),
+        lambda k: filter_kept(
+            b, a, rows[k], run.innovation_segments, run.settled, run.innovation_mask, scale, out[k]
+        ),
         np.ones(len(rows)),
     )
     return out.reshape(*e.shape[:-1], out.shape[-1])

@@ -88,7 +88,7 @@ class _AxisInnovations:
     @property
     def counted(self) -> bool:
         """Whether any innovation counts."""
-        return any((run.settled & run.shown[:, self.axis]).any() for run in self.runs)
+        return any((run.settled & run.innovation_mask[:, self.axis]).any() for run in self.runs)
 
     @property
     def binned(self) -> bool:
@@ -131,7 +131,7 @@ class _AxisInnovations:
         i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])
         return (
             kind, h, self.motion.over(h, kind), old.denominator, old.noise_denominator,
-            e, run.rows, run.settled, run.shown[:, i],
+            e, run.innovation_segments, run.settled, run.innovation_mask[:, i],
         )  # fmt: skip
 
 

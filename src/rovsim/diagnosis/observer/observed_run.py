@@ -39,36 +39,36 @@ class Steps:
 
     Replays take steps between `grid` (k+1,) s; `at` (n,) those at which the samples or bins begin.
     `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
-    velocities were measured; `group` of them, an odd number, make a reading, which holds at step
-    `ends` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of `parts` (s,) of one
-    length, over each of which the thrust is steady.
+    velocities were measured; `group` of them, an odd number, make a reading, which holds at one
+    of the `reading_steps` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of
+    `substeps` (s,) of one length, over each of which the thrust is steady.
     """
 
     grid: Array
     at: Array
     frames: Array
     group: int
-    ends: Array
+    reading_steps: Array
     edges: Array
-    parts: Array
+    substeps: Array
 
 
 @dataclass(frozen=True, eq=False)
 class ObservedRun(Steps):
     """One run, ready to be observed.
 
-    It starts at the first reading of each of the `spans`, at the state of that sample, and reads up
-    to the last. `drives` are of models over the steps of the observer, `replay_drives` over those
-    of a replay; `wrenches` are those that the models of a diagnosis may have, `free` (6,) the axes
-    in which the vehicle can move at all, `wanders` whether the water may.
+    It starts at the first reading of each of the `segments`, at the state of that sample, and reads
+    up to the last. `drives` are of models over the steps of the observer, `replay_drives` over
+    those of a replay; `wrenches` are those that the models of a diagnosis may have, `free_axes`
+    (6,) those in which the vehicle can move at all.
     """
 
     motion: Motion
     drives: Drives
     replay_drives: Drives
     wrenches: tuple[type[Wrench], ...]
-    free: Array
-    wanders: bool = True
+    free_axes: Array
+    current_may_drift: bool = True
 
     def limited(self, kept: Array) -> "ObservedRun":
         """The same run of which only some samples or bins (n,) are usable."""
@@ -79,7 +79,7 @@ class ObservedRun(Steps):
         return self.motion.commands.since_start(edges)
 
     @cached_property
-    def spans(self) -> tuple[tuple[int, int], ...]:
+    def segments(self) -> tuple[tuple[int, int], ...]:
         """First and last reading of every usable stretch that is long enough."""
         return tuple(
             (-(-a // self.group), b // self.group - 1)
@@ -88,9 +88,9 @@ class ObservedRun(Steps):
         )
 
     @cached_property
-    def sample(self) -> Array:
+    def reading_samples(self) -> Array:
         """Sample or bin (k,) of the motion at which each reading holds."""
-        return np.arange(len(self.ends)) * self.group + self.group // 2
+        return np.arange(len(self.reading_steps)) * self.group + self.group // 2
 
     def read(self, view: MocapView) -> Array:
         """Readings (k, 13), one a group, as `view` turns them.
@@ -110,8 +110,8 @@ class ObservedRun(Steps):
         if self.group == 1:
             return view.states(np.hstack([sharp, self.frames[:, 7:]]))
         shown, smooth = view.poses(sharp), view.poses(view.sharpen(self.motion.eta, period))
-        mean = self._average(shown) + smooth[self.sample] - self._average(smooth)
-        mean = np.where(self._summed, shown[self.sample], mean)
+        mean = self._average(shown) + smooth[self.reading_samples] - self._average(smooth)
+        mean = np.where(self._summed, shown[self.reading_samples], mean)
         poses = np.hstack([mean[:, :3], normalized(mean[:, 3:])])
         return np.hstack([poses, np.zeros((len(poses), 6))])
 
@@ -122,7 +122,8 @@ class ObservedRun(Steps):
         return np.append(summed[:3], np.repeat(summed[3:].any(), 4))
 
     def _average(self, x: Array) -> Array:
-        groups = x[: len(self.ends) * self.group].reshape(len(self.ends), self.group, -1)
+        count = len(self.reading_steps)
+        groups = x[: count * self.group].reshape(count, self.group, -1)
         total = groups[:, 0].copy()
         for k in range(1, self.group):  # `mean` over so short an axis takes three times as long
             total += groups[:, k]
@@ -134,17 +135,17 @@ class ObservedRun(Steps):
         return np.diff(self.since_start(self.edges))
 
     @cached_property
-    def instants(self) -> Array:
+    def reading_times(self) -> Array:
         """When each reading (k,) holds, s since the first step."""
-        return self.edges[self.ends] - self.edges[0]
+        return self.edges[self.reading_steps] - self.edges[0]
 
     @cached_property
     def period(self) -> float:
         """Mean time between two readings, s."""
-        return float(np.mean(np.diff(self.instants)))
+        return float(np.mean(np.diff(self.reading_times)))
 
     @property
-    def known(self) -> Array:
+    def pose_measured(self) -> Array:
         """What was measured (5,), as the engine's `pose_error` asks for it."""
         measured = self.motion.measured
         if measured is None:
@@ -154,16 +155,16 @@ class ObservedRun(Steps):
     @property
     def axes(self) -> Array:
         """Axes (6,) that were measured, and in which the vehicle can move."""
-        return np.asarray(find_measured(self.motion.measured) & self.free)
+        return np.asarray(find_measured(self.motion.measured) & self.free_axes)
 
     @cached_property
-    def seen(self) -> Array:
+    def reading_mask(self) -> Array:
         """Which axes (k, 6) each reading shows."""
-        count, measured = len(self.ends), self.motion.measured
+        count, measured = len(self.reading_steps), self.motion.measured
         if measured is None:
-            return np.tile(self.free, (count, 1))
+            return np.tile(self.free_axes, (count, 1))
         frames = measured.when[: count * self.group]
-        return np.asarray(frames.reshape(count, self.group, 6).any(axis=1) & self.free)
+        return np.asarray(frames.reshape(count, self.group, 6).any(axis=1) & self.free_axes)
 
     @cached_property
     def reading_kinds(self) -> Array:
@@ -176,8 +177,8 @@ class ObservedRun(Steps):
     @cached_property
     def axis_periods(self) -> Array:
         """Mean time (6,) between two readings of each axis, s; the readings' own where none is."""
-        count = self.seen.sum(axis=0)
-        each = self.period * len(self.seen) / np.maximum(count, 1)
+        count = self.reading_mask.sum(axis=0)
+        each = self.period * len(self.reading_mask) / np.maximum(count, 1)
         return np.where(count > 0, each, self.period)
 
     @property
@@ -186,16 +187,16 @@ class ObservedRun(Steps):
         return self.period / self.group
 
     @cached_property
-    def rows(self) -> Array:
-        """First row and last + 1 (s, 2) of the innovations that belong to each span."""
-        length = np.array([b - a for a, b in self.spans], np.int64)
+    def innovation_segments(self) -> Array:
+        """First row and last + 1 (s, 2) of the innovations that belong to each segment."""
+        length = np.array([b - a for a, b in self.segments], np.int64)
         stops = np.cumsum(length)
         return np.column_stack([stops - length, stops])
 
     @cached_property
     def time(self) -> Array:
         """Instant of each innovation, s since the start of the run."""
-        parts = [self.instants[a + 1 : b + 1] for a, b in self.spans]
+        parts = [self.reading_times[a + 1 : b + 1] for a, b in self.segments]
         return np.concatenate([np.empty(0), *parts])
 
     def overlapping(self, begin: float, end: float) -> Array:
@@ -203,25 +204,24 @@ class ObservedRun(Steps):
         return np.asarray((self.time < end) & (self.time + self.period > begin))
 
     @cached_property
-    def shown(self) -> Array:
+    def innovation_mask(self) -> Array:
         """Which axes (n, 6) each innovation belongs to."""
-        return np.concatenate(
-            [np.empty((0, 6), bool), *(self.seen[a + 1 : b + 1] for a, b in self.spans)]
-        )
+        parts = [self.reading_mask[a + 1 : b + 1] for a, b in self.segments]
+        return np.concatenate([np.empty((0, 6), bool), *parts])
 
     @cached_property
-    def index(self) -> Array:
+    def innovation_samples(self) -> Array:
         """Sample or bin of the motion that each innovation belongs to."""
-        parts = [self.sample[a + 1 : b + 1] for a, b in self.spans]
+        parts = [self.reading_samples[a + 1 : b + 1] for a, b in self.segments]
         return np.concatenate([np.arange(0), *parts]) - (1 if self.motion.binned else 0)
 
     @cached_property
     def settled(self) -> Array:
         """Which innovations count: those after the observer has forgotten its start."""
         kept = np.zeros(len(self.time), bool)
-        settling = SETTLING if self.axes[self.free].all() else SETTLING_UNREAD
-        for (first, last), (a, _) in zip(self.rows, self.spans, strict=True):
-            kept[first:last] = self.time[first:last] > self.instants[a] + settling
+        settling = SETTLING if self.axes[self.free_axes].all() else SETTLING_UNREAD
+        for (first, last), (a, _) in zip(self.innovation_segments, self.segments, strict=True):
+            kept[first:last] = self.time[first:last] > self.reading_times[a] + settling
         return kept
 
 
@@ -229,7 +229,7 @@ def prepare_run(
     stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue, free: Array,
     kept: Recent | None = None,
 ) -> ObservedRun:  # fmt: skip
-    """A run as the observer sees it; without usable stretches it has no spans.
+    """A run as the observer sees it; without usable stretches it has no segments.
 
     Args:
         stage: its poses on a uniform clock, before the filter; binned recordings as they are.
@@ -240,15 +240,15 @@ def prepare_run(
         kept: where its drives are kept, perhaps with those of other runs.
     """
     grid = StepGrid.over(motion, settings.step)
-    found = (_step_bins if motion.binned else _step_samples)(stage, motion, grid)
-    fine = np.linspace(found.edges[0], found.edges[-1], int(found.parts.sum()) + 1)
-    drives = Drives(motion.commands, fine, settings.commands, found.parts, kept)
+    steps = (_step_bins if motion.binned else _step_samples)(stage, motion, grid)
+    fine = np.linspace(steps.edges[0], steps.edges[-1], int(steps.substeps.sum()) + 1)
+    drives = Drives(motion.commands, fine, settings.commands, steps.substeps, kept)
     replayed = drives
     if not motion.binned:
         replayed = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
     return ObservedRun(
-        **vars(found), motion=motion, drives=drives, replay_drives=replayed,
-        wrenches=catalogue.wrenches, free=free,
+        **vars(steps), motion=motion, drives=drives, replay_drives=replayed,
+        wrenches=catalogue.wrenches, free_axes=free,
     )  # fmt: skip
 
 

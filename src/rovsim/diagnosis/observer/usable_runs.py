@@ -42,14 +42,14 @@ class UsableRuns:
 
     def where_no_water_wanders(self) -> "UsableRuns":
         """The same runs, in which that is not looked for."""
-        return replace(self, runs=tuple(replace(run, wanders=False) for run in self.runs))
+        return replace(self, runs=tuple(replace(run, current_may_drift=False) for run in self.runs))
 
 
 def select_usable(
     train: Sequence[ObservedRun], lost: Mapping[str, float] | None = None
 ) -> UsableRuns:
     """The train runs that have a usable stretch; `lost` are s from which on one is not followed."""
-    runs = tuple(run for run in train if len(run.spans))
+    runs = tuple(run for run in train if len(run.segments))
     seconds = float(sum(run.settled.sum() * run.period for run in runs))
     free, measured, moved = _ask(runs)
     still, unmeasured, held = measured & free & ~moved, free & ~measured, ~free
@@ -64,7 +64,7 @@ def _ask(runs: Sequence[ObservedRun]) -> tuple[Array, Array, Array]:
     """Axes (6,) free to move, measured in some run, and moved in some."""
     free, measured, moved = (np.zeros(len(AXES), bool) for _ in range(3))
     for run in runs:
-        free |= run.free
+        free |= run.free_axes
         measured |= find_measured(run.motion.measured)
         moved |= np.std(run.motion.nu[run.motion.usable], axis=0) > EXCITED
     return free, measured, moved

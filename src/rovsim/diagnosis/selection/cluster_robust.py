@@ -27,7 +27,7 @@ def drop_unsure(selection: Selection) -> Selection:
     Asked only where the vehicle moves along axes that nobody measures.
     """
     workspace, found = selection.workspace, selection.found
-    if not any((run.free & ~run.axes).any() for run in workspace.bank.runs):
+    if not any((run.free_axes & ~run.axes).any() for run in workspace.bank.runs):
         return selection
     while unsure := list_unsure(found, workspace):
         found = workspace.fit(found.hypothesis.without(unsure[-1]))  # the one that came last

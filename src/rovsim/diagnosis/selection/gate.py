@@ -55,12 +55,12 @@ def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[Obs
 class Gate:
     """The stretches that were kept apart; the whole runs tell how much each axis varies.
 
-    `wanders`: the current does, so that what all windows of a run have in common is by chance.
+    Where the `current_drifts`, what all windows of a run have in common is by chance.
     """
 
     runs: Sequence[ObservedRun]
     whole: Sequence[ObservedRun]
-    wanders: bool = False
+    current_drifts: bool = False
 
     @cached_property
     def spread(self) -> Array:
@@ -174,7 +174,7 @@ class Gate:
             e = evaluate_possible(models, len(windows.number), partial(_compare_axes, windows))
             with np.errstate(over="ignore", invalid="ignore"):  # of a model that diverges
                 squares = np.mean((e / self.spread[:, None]) ** 2, axis=1)
-            number = 0 * windows.number if self.wanders else windows.number
+            number = 0 * windows.number if self.current_drifts else windows.number
             parts += [squares[:, number == k].mean(axis=1) for k in np.unique(number)]
         return np.stack(parts, axis=1)
 

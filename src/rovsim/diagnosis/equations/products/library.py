@@ -64,7 +64,7 @@ def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list
     """All candidate terms that these runs could show; at places that suit what is known of one."""
     moving = np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))
     found = [term for i in moving for term in list_body_terms(int(i), moving)]
-    if not all((run.axes | ~run.free.astype(bool)).all() for run in runs):
+    if not all((run.axes | ~run.free_axes.astype(bool)).all() for run in runs):
         return found
     n, e = known
     wanted = [(a if n is None else n, b if e is None else e) for a, b in list_places(runs)]
@@ -199,7 +199,7 @@ def respond_to(pushes: Array, model: Model, run: ObservedRun, tuning: Tuning) ->
         if not len(acts):
             continue
         b, a = tuning.filters[i].response
-        for first, last in run.rows:
+        for first, last in run.innovation_segments:
             whole[acts, first:last] = lfilter(b, a, own[acts, first:last], axis=1)
         out[i, acts] = whole[acts][:, run.settled]
     return out
