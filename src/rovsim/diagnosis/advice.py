@@ -49,7 +49,7 @@ LOOKS_AHEAD = (
 
 
 def advise(
-    found: TrainDiagnosis,
+    diagnosis: TrainDiagnosis,
     groups: Sequence[Sequence[str]],
     joint: Sequence[Sequence[str]],
     catalogue: Catalogue,
@@ -57,16 +57,16 @@ def advise(
     """A few sentences.
 
     Args:
-        found: the diagnosis.
+        diagnosis: of the train runs.
         groups: effects that cannot be told apart.
         joint: parameters, as `effect.parameter`, that are known only together.
         catalogue: what the effects are, and what reveals each.
     """
-    if not found.enough:
-        return _begin_again(found)
-    parts = _doubt_units(found)
-    smoothed = any(isinstance(one.term.effect, PoseFilter) for one in found.selected)
-    if smoothed and any(leads(one) for one in found.selected):
+    if not diagnosis.enough:
+        return _begin_again(diagnosis)
+    parts = _doubt_units(diagnosis)
+    smoothed = any(isinstance(one.term.effect, PoseFilter) for one in diagnosis.selected)
+    if smoothed and any(leads(one) for one in diagnosis.selected):
         parts.append(LOOKS_AHEAD)
     if groups:
         names = " and ".join(groups[0])
@@ -79,48 +79,48 @@ def advise(
             "in one place."
         )
     if joint:
-        parts.append(_apart(joint, catalogue, found.base.vehicle.thruster_names))
-    if found.scale:
+        parts.append(_apart(joint, catalogue, diagnosis.base.vehicle.thruster_names))
+    if diagnosis.scale:
         parts.append(FIX_SCALE)
-    parts += _show_more(found)
-    if found.structures:
-        first = found.structures[0]
+    parts += _show_more(diagnosis)
+    if diagnosis.structures:
+        first = diagnosis.structures[0]
         parts.append(
             f"Record some time without commands, then move slowly in {first.axis} alone. If the "
             f"remainder ({first.what}) is there without commands too, it comes from outside; if "
             "only with motion, from the vehicle."
         )
-    return " ".join(parts) or _confirm(found)
+    return " ".join(parts) or _confirm(diagnosis)
 
 
-def _begin_again(found: TrainDiagnosis) -> str:
+def _begin_again(diagnosis: TrainDiagnosis) -> str:
     """What is needed before anything can be judged."""
-    if found.usable.lost:
+    if diagnosis.usable.lost:
         return AWAY
-    if not found.usable.runs:
+    if not diagnosis.usable.runs:
         return NO_TRAIN
     return (
         "Record train runs of at least a minute in which the vehicle moves: "
-        f"only {found.usable.seconds:.0f} s could be used."
+        f"only {diagnosis.usable.seconds:.0f} s could be used."
     )
 
 
-def _doubt_units(found: TrainDiagnosis) -> list[str]:
+def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
     """What to check first where a value is absurd."""
-    absurd = list_absurd(found.base, [one.term for one in found.selected])
+    absurd = list_absurd(diagnosis.base, [one.term for one in diagnosis.selected])
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
-def _show_more(found: TrainDiagnosis) -> list[str]:
+def _show_more(diagnosis: TrainDiagnosis) -> list[str]:
     """What to move, to command and to measure that nobody did."""
     parts = []
-    if still := found.usable.still:
+    if still := diagnosis.usable.still:
         parts.append(
             f"Move {', '.join(still)} in a train run: nothing can be said about what acts there."
         )
-    if idle := found.not_commanded:
+    if idle := diagnosis.not_commanded:
         parts.append(f"Command {', '.join(idle)} in a train run, alone for some seconds each time.")
-    axes = found.usable.unmeasured
+    axes = diagnosis.usable.unmeasured
     return parts + [
         f"Record {channel}: without it nothing can be said about what acts in {', '.join(missing)}."
         for told, channel in CHANNELS
@@ -141,10 +141,10 @@ def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue, thrusters: Sequ
     return f"To know {names} one by one: {_how(catalogue[most], group)}"
 
 
-def _confirm(found: TrainDiagnosis) -> str:
-    if not found.selected:
+def _confirm(diagnosis: TrainDiagnosis) -> str:
+    if not diagnosis.selected:
         return "Nothing is needed: drive faster or in other places to look for rarer effects."
-    weakest = min(found.selected, key=lambda one: one.error_reduction)
+    weakest = min(diagnosis.selected, key=lambda one: one.error_reduction)
     asked = [f"{weakest.term.id}.{name}" for name in weakest.term.free]
     return f"To be surer of {weakest.term.id}: {_how(type(weakest.term.effect), asked)}"
 

@@ -57,23 +57,23 @@ class Answer:
     @cached_property
     def replayed(self) -> Model:
         """At the values that replay the stretches best that it was chosen by."""
-        found = self.selection.found
-        if len(found.hypothesis.x):
-            found = _refit_to_replays(found, self.selection.workspace.bank)
-        return found.hypothesis.model
+        fit = self.selection.found
+        if len(fit.hypothesis.x):
+            fit = _refit_to_replays(fit, self.selection.workspace.bank)
+        return fit.hypothesis.model
 
 
 def settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> Answer:
     """Names that a user would notice; where they leave something, the others too if they do not."""
     noticed = drop_idle(drop_unsure(selection))
-    found = settle(noticed, usable, gate)
-    if not found.lasting:
-        return found
+    answer = settle(noticed, usable, gate)
+    if not answer.lasting:
+        return answer
     every = drop_unsure(search_unnoticed(selection, seed))
     if every.found is noticed.found:
-        return found
+        return answer
     more = settle(every, usable, gate)
-    return more if more.complete else found
+    return more if more.complete else answer
 
 
 def settle(selection: Selection, usable: UsableRuns, gate: Gate) -> Answer:
@@ -88,15 +88,15 @@ def settle(selection: Selection, usable: UsableRuns, gate: Gate) -> Answer:
 
 def _settle_values(selection: Selection, usable: UsableRuns) -> Answer:
     """At its final values on all runs, without what these do not bear out."""
-    found, bank = polish_selection(selection, usable.runs)
-    borne_out = selection.prune(selection.workspace.look_at(bank, found.noise), found)
-    if borne_out is not found:
+    fit, bank = polish_selection(selection, usable.runs)
+    borne_out = selection.prune(selection.workspace.look_at(bank, fit.noise), fit)
+    if borne_out is not fit:
         fewer = selection.fit(borne_out.hypothesis)
         if fewer.held:
             return _settle_values(replace(selection, found=fewer), usable)
-    score, whole = selection.workspace.score(found), fit_whole_file(found, bank)
-    left = find_structure(found if whole is None else whole, bank) if found.held else []
-    return Answer(selection, found, bank, score, left, whole=whole)
+    score, whole = selection.workspace.score(fit), fit_whole_file(fit, bank)
+    left = find_structure(fit if whole is None else whole, bank) if fit.held else []
+    return Answer(selection, fit, bank, score, left, whole=whole)
 
 
 def choose(one: Answer, other: Answer, gate: Gate) -> Answer:
@@ -111,32 +111,32 @@ def choose(one: Answer, other: Answer, gate: Gate) -> Answer:
     return one if not other.complete and one.score >= other.score else other
 
 
-def finish(found: Answer, runs: Sequence[ObservedRun]) -> tuple[Answer, Fit, CommonScale | None]:
+def finish(answer: Answer, runs: Sequence[ObservedRun]) -> tuple[Answer, Fit, CommonScale | None]:
     """At its final values; the fit with intervals that hold all that is not known, and the scale.
 
     Args:
-        found: the answer.
+        answer: the answer.
         runs: all that it was fitted to.
     """
-    if found.lasting and len(found.fit.hypothesis.x):
-        found = replace(found, fit=_refit_to_replays(found.fit, found.bank))
-    if found.lasting or found.whole is None:
-        return found, *include_rest(found.fit, runs)
-    if is_right_elsewhere(found.whole, found.fit.hypothesis):
-        return found, *include_scale(found.fit, runs)
-    fit, scale = settle_whole_file(found.whole, found.fit.hypothesis, found.bank)
-    return replace(found, fit=fit), fit, scale
+    if answer.lasting and len(answer.fit.hypothesis.x):
+        answer = replace(answer, fit=_refit_to_replays(answer.fit, answer.bank))
+    if answer.lasting or answer.whole is None:
+        return answer, *include_rest(answer.fit, runs)
+    if is_right_elsewhere(answer.whole, answer.fit.hypothesis):
+        return answer, *include_scale(answer.fit, runs)
+    final, scale = settle_whole_file(answer.whole, answer.fit.hypothesis, answer.bank)
+    return replace(answer, fit=final), final, scale
 
 
-def _refit_to_replays(found: Fit, bank: FilterBank) -> Fit:
+def _refit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     """The values that replay best, without effects that these might as well lack."""
-    again = fit_to_replays(found, bank)
+    again = fit_to_replays(fit, bank)
     while len(again.hypothesis.terms) > 1:
         doubtful = find_doubtful(again)
         if doubtful is None:
             break
         fewer = bank.linearise(again.hypothesis.without(doubtful))
-        again = fit_to_replays(judge(fewer, bank, found.noise), bank)
+        again = fit_to_replays(judge(fewer, bank, fit.noise), bank)
     return again
 
 

@@ -83,27 +83,28 @@ def diagnose_campaign(
     train = prepare_train(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
-    found = diagnose_train_runs(
+    diagnosis = diagnose_train_runs(
         base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
     )
     stage("scoring")
     shares = [finding.share() for one in searched for finding in one.explanation.findings]
-    ladder, away = _climb(found, runs, settings, catalogue)
+    ladder, away = _climb(diagnosis, runs, settings, catalogue)
     told = report(
-        found, shares, ladder, describe_model(base), catalogue, train.looked_at, standstills, away
-    )
-    return Diagnosed(told, where, found.proposed.source if found.proposed else None)
+        diagnosis, shares, ladder, describe_model(base), catalogue, train.looked_at, standstills,
+        away,
+    )  # fmt: skip
+    return Diagnosed(told, where, diagnosis.proposed.source if diagnosis.proposed else None)
 
 
 def _climb(
-    found: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue
+    diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue
 ) -> tuple[Ladder, Sequence[str]]:
     """The base, the effects one after the other, and the noise floor, on the test runs.
 
     Where a law is proposed, it and what is beside it come last, before the noise floor. Also the
     test runs in which the base runs away.
     """
-    models, how = _list_models(found), settings.replay.only(WINDOW)
+    models, how = _list_models(diagnosis), settings.replay.only(WINDOW)
     scores = [StepScore(model.name) for model in models]
     for name in runs.of("test"):
         motion = runs.motions[name]
@@ -112,28 +113,28 @@ def _climb(
             replayed = replay(model, motion, settings.signals, how, open_loop=False)
             score.add(motion, subtract(motion, replayed.horizons[HORIZON]))
     steps = [score.step for score in scores]
-    floor = _floor(found, runs, settings, catalogue, steps[-1].windows_2s)
+    floor = _floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
     return Ladder(steps=(*steps, Step(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away
 
 
-def _list_models(found: TrainDiagnosis) -> list[Model]:
-    return [*found.models(), *([found.proposed.model] if found.proposed else [])]
+def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:
+    return [*diagnosis.models(), *([diagnosis.proposed.model] if diagnosis.proposed else [])]
 
 
 def _floor(
-    found: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue,
+    diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue,
     reached: float | None,
 ) -> float | None:  # fmt: skip
     """What a perfect model would score; None where that cannot be estimated.
 
     Part of what is taken for noise may be structure: a floor above what was reached is none.
     """
-    if found.fit is None or reached is None:
+    if diagnosis.fit is None or reached is None:
         return None
-    fit = found.proposed.fit if found.proposed else found.fit
-    test = prepare_test(runs, settings.replay, catalogue, found.base.body.free)
+    fit = diagnosis.proposed.fit if diagnosis.proposed else diagnosis.fit
+    test = prepare_test(runs, settings.replay, catalogue, diagnosis.base.body.free)
     floor = simulate_noise_floor(
-        _list_models(found)[-1], test, fit.noise, settings.signals, settings.seed
+        _list_models(diagnosis)[-1], test, fit.noise, settings.signals, settings.seed
     )
     if floor is None or floor.error is None:
         return None

@@ -112,49 +112,50 @@ def _diagnose(
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
     gate = Gate(apart, usable.runs, current_drifts=selection.found.noise.drift is not None)
-    found = _unmask(settle_noticed(selection, usable, gate, seed))
-    if smoothing and gate.refuses(found.fit.hypothesis.model, base):
+    answer = _unmask(settle_noticed(selection, usable, gate, seed))
+    if smoothing and gate.refuses(answer.fit.hypothesis.model, base):
         return _diagnose(base, usable, settings, catalogue, seed, stage, smooths=False)
     stage("checking")
-    if found.lasting:
+    if answer.lasting:
         seen = seen_through(base, smoothing)
         joint = settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
-        found = choose(found, _unmask(joint), gate)
-    if found.fit.noise.drift and found.bank.varies_with_place(found.fit.seen.e, found.fit.noise):
+        answer = choose(answer, _unmask(joint), gate)
+    noise, e = answer.fit.noise, answer.fit.seen.e
+    if noise.drift and answer.bank.varies_with_place(e, noise):
         calm = usable.where_no_water_wanders()
         return _diagnose(base, calm, settings, catalogue, seed, stage, smooths)
-    found, wider, scale = finish(found, usable.runs)
+    answer, wider, scale = finish(answer, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
-    law = _propose(found, base, gate, usable, camera) if found.lasting else None
-    rivals = found.selection.named_rivals
+    law = _propose(answer, base, gate, usable, camera) if answer.lasting else None
+    rivals = answer.selection.named_rivals
     terms = name_terms(wider, rivals)
     named = [*camera, *(doubt_lead(terms) if camera else terms)]
     stand_ins = find_stand_ins(named, law.beside) if law else set()
     named = doubt_names(named, stand_ins)
     proposed = law if law and law.whole else None
-    if found.fit.noise.drift:
-        drift = found.bank.measure_drift(found.fit.seen.e, found.fit.noise)
+    if answer.fit.noise.drift:
+        drift = answer.bank.measure_drift(answer.fit.seen.e, answer.fit.noise)
         if drift.sure:
-            named.append(name_drift(drift, found.lasting))
+            named.append(name_drift(drift, answer.lasting))
     return TrainDiagnosis(
-        base, usable, found.fit,
+        base, usable, answer.fit,
         _correlate(wider),
         rank_selected(base, named, usable.runs),
-        ranking=rank_alone(workspace, nothing, found.fit),
-        rivals=rivals, structures=found.structures,
-        refused=found.refused or not found.fit.held, scale=scale,
-        not_observable=list_not_observable(found.selection, catalogue, base.vehicle),
+        ranking=rank_alone(workspace, nothing, answer.fit),
+        rivals=rivals, structures=answer.structures,
+        refused=answer.refused or not answer.fit.held, scale=scale,
+        not_observable=list_not_observable(answer.selection, catalogue, base.vehicle),
         proposed=proposed, stand_ins=tuple(sorted(stand_ins)),
-        disturbance=None if proposed else _trace(found),
+        disturbance=None if proposed else _trace(answer),
     )  # fmt: skip
 
 
-def _unmask(found: Answer) -> Answer:
+def _unmask(answer: Answer) -> Answer:
     """An answer that seems to leave nothing, beside a law that its names may stand in for."""
-    if found.lasting or found.whole is not None:
-        return found
-    masked = find_masked_laws(found.selection)
-    return replace(found, structures=(*masked, *found.structures))
+    if answer.lasting or answer.whole is not None:
+        return answer
+    masked = find_masked_laws(answer.selection)
+    return replace(answer, structures=(*masked, *answer.structures))
 
 
 def _begin(
@@ -179,11 +180,11 @@ def _begin(
     return nothing, workspace, smoothing
 
 
-def _correlate(found: Fit) -> Correlation:
+def _correlate(fit: Fit) -> Correlation:
     """How values hang together; nothing is said where a fit does not know it."""
-    if not np.isfinite(found.covariance).all():
+    if not np.isfinite(fit.covariance).all():
         return Correlation()
-    return correlate(found.covariance, found.hypothesis.parameter_names)
+    return correlate(fit.covariance, fit.hypothesis.parameter_names)
 
 
 def _observe(
@@ -211,20 +212,20 @@ def _observe(
 
 
 def _propose(
-    found: Answer, base: Model, gate: Gate, usable: UsableRuns, camera: Sequence[Named]
+    answer: Answer, base: Model, gate: Gate, usable: UsableRuns, camera: Sequence[Named]
 ) -> ProposedLaw | None:
     """An equation for what is left, where one holds."""
 
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
-        return polish_selection(replace(found.selection, found=with_law), usable.runs)
+        return polish_selection(replace(answer.selection, found=with_law), usable.runs)
 
-    whole = found.fit.hypothesis.model
-    best = Catalogued(whole, found.replayed if gate.runs else whole)
-    return propose_law(found.selection, best, base, gate, usable.runs, polish, camera)
+    whole = answer.fit.hypothesis.model
+    best = Catalogued(whole, answer.replayed if gate.runs else whole)
+    return propose_law(answer.selection, best, base, gate, usable.runs, polish, camera)
 
 
-def _trace(found: Answer) -> ForceInTime | None:
+def _trace(answer: Answer) -> ForceInTime | None:
     """The force in time that is left; None where nothing is seen of it, or no filter holds."""
-    if not found.structures or not found.fit.held:
+    if not answer.structures or not answer.fit.held:
         return None
-    return trace_force(found.fit, found.bank, found.structures)
+    return trace_force(answer.fit, answer.bank, answer.structures)

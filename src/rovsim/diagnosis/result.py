@@ -44,7 +44,7 @@ LISTED = 10  # effects of the ranking
 
 
 def report(
-    found: TrainDiagnosis,
+    diagnosis: TrainDiagnosis,
     where: Sequence[ConditionShare],
     ladder: Ladder,
     base: Mapping[str, JsonValue],
@@ -56,7 +56,7 @@ def report(
     """What is written of a diagnosis.
 
     Args:
-        found: the diagnosis.
+        diagnosis: of the train runs.
         where: conditions in which the base fails.
         ladder: the base, the effects one after the other, and the noise floor, on the test runs.
         base: file of the model that was diagnosed, so that `rovsim add` needs nothing else.
@@ -65,48 +65,48 @@ def report(
         standstills: of train runs, where the model would move.
         away: test runs in which the base runs away.
     """
-    alike = group_indistinguishable(found.rivals)
-    joint = _list_joint(found)
+    alike = group_indistinguishable(diagnosis.rivals)
+    joint = _list_joint(diagnosis)
     return Diagnosis(
-        verdict=found.verdict,
-        selected=tuple(_fitted(one, one.std) for one in found.selected),
-        ranking=tuple(_fitted(one, {}) for one in _listed(found)),
+        verdict=diagnosis.verdict,
+        selected=tuple(_fitted(one, one.std) for one in diagnosis.selected),
+        ranking=tuple(_fitted(one, {}) for one in _listed(diagnosis)),
         indistinguishable=tuple(map(tuple, alike)),
         known_together=tuple(map(tuple, joint)),
-        common_scale=_say_scale(found.scale),
+        common_scale=_say_scale(diagnosis.scale),
         where=tuple(where),
-        unexplained=describe_structures(found),
-        next_experiment=advise(found, alike, joint, catalogue),
-        error=_errors(ladder, len(found.selected)),
-        not_excited=found.usable.still,
-        not_measured=found.usable.unmeasured,
-        not_commanded=found.not_commanded,
-        not_observable=tuple(found.not_observable),
+        unexplained=describe_structures(diagnosis),
+        next_experiment=advise(diagnosis, alike, joint, catalogue),
+        error=_errors(ladder, len(diagnosis.selected)),
+        not_excited=diagnosis.usable.still,
+        not_measured=diagnosis.usable.unmeasured,
+        not_commanded=diagnosis.not_commanded,
+        not_observable=tuple(diagnosis.not_observable),
         rivals=tuple(
             RivalEffect(
                 effect=r.effect, instead_of=r.instead_of, deficit=rounded(r.deviance_difference)
             )
-            for r in found.rivals
+            for r in diagnosis.rivals
             if np.isfinite(r.deviance_difference)
         ),
-        noise=_noise(found),
-        posterior=_describe_posterior(found),
+        noise=_noise(diagnosis),
+        posterior=_describe_posterior(diagnosis),
         looked_at=looked_at,
-        not_followed_from_s={run: round(at, 1) for run, at in found.usable.lost.items()},
+        not_followed_from_s={run: round(at, 1) for run, at in diagnosis.usable.lost.items()},
         runs_away_in=tuple(away),
         standstills=tuple(standstills),
-        thrusters=found.base.vehicle.thruster_names,
+        thrusters=diagnosis.base.vehicle.thruster_names,
         base=dict(base),
         ladder=ladder,
     )
 
 
-def _list_joint(found: TrainDiagnosis) -> list[list[str]]:
+def _list_joint(diagnosis: TrainDiagnosis) -> list[list[str]]:
     """Parameters known only together, but for those that the common scale holds together."""
-    if found.fit is None:
+    if diagnosis.fit is None:
         return []
-    scaled = set(found.scale.parameters) if found.scale else set()
-    return [g for g in group_joint_parameters(found.fit) if len(set(g) - scaled) > 1]
+    scaled = set(diagnosis.scale.parameters) if diagnosis.scale else set()
+    return [g for g in group_joint_parameters(diagnosis.fit) if len(set(g) - scaled) > 1]
 
 
 def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
@@ -132,10 +132,10 @@ def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
     )
 
 
-def _listed(found: TrainDiagnosis) -> list[Ranked]:
+def _listed(diagnosis: TrainDiagnosis) -> list[Ranked]:
     """The first effects of the ranking, and those selected."""
-    named = {one.term.id for one in found.selected}
-    return [r for k, r in enumerate(found.ranking) if k < LISTED or r.term.id in named]
+    named = {one.term.id for one in diagnosis.selected}
+    return [r for k, r in enumerate(diagnosis.ranking) if k < LISTED or r.term.id in named]
 
 
 def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
@@ -150,19 +150,19 @@ def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
     return sorted(groups)
 
 
-def describe_structures(found: TrainDiagnosis) -> Unexplained:
+def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
     """What no effect of the catalogue explains."""
-    if not found.enough:
+    if not diagnosis.enough:
         return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE)
-    if found.verdict != "unexplained":
+    if diagnosis.verdict != "unexplained":
         return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
-    share = found.structures[0].share if found.structures else None
+    share = diagnosis.structures[0].share if diagnosis.structures else None
     return Unexplained(
         fraction=rounded(share), significant=True,
-        hint=_hint(found.structures) if found.structures else REFUSED,
-        proposal=describe_law(found.proposed) if found.proposed else None,
-        stand_ins=found.stand_ins,
-        disturbance=describe_force(found.disturbance) if found.disturbance else None,
+        hint=_hint(diagnosis.structures) if diagnosis.structures else REFUSED,
+        proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
+        stand_ins=diagnosis.stand_ins,
+        disturbance=describe_force(diagnosis.disturbance) if diagnosis.disturbance else None,
     )  # fmt: skip
 
 
@@ -175,14 +175,16 @@ def _hint(structures: Sequence[Structure]) -> str:
     return hint
 
 
-def _describe_posterior(found: TrainDiagnosis) -> Posterior | None:
+def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
     """How the values hang together, and what else may act, by the odds of each name."""
-    if found.fit is None:
+    if diagnosis.fit is None:
         return None
-    near = [(r, r.fit) for r in found.rivals if r.deviance_difference < SURE and r.fit is not None]
+    near = [
+        (r, r.fit) for r in diagnosis.rivals if r.deviance_difference < SURE and r.fit is not None
+    ]
     odds = [float(np.exp(-0.5 * max(r.deviance_difference, 0.0))) for r, _ in near]
     return Posterior(
-        correlation=found.correlation or Correlation(),
+        correlation=diagnosis.correlation or Correlation(),
         instead=tuple(
             Possibility(
                 probability=float(f"{own / (1.0 + sum(odds)):.6g}"),
@@ -204,16 +206,16 @@ def _list_effects(fit: Fit) -> tuple[FittedEffect, ...]:
     )
 
 
-def _noise(found: TrainDiagnosis) -> FittedNoise:
-    if found.fit is None:
+def _noise(diagnosis: TrainDiagnosis) -> FittedNoise:
+    if diagnosis.fit is None:
         return FittedNoise()
-    noise = found.fit.noise
+    noise = diagnosis.fit.noise
     slow = noise.colour.any()
     return FittedNoise(
         disturbance=tuple(map(rounded, noise.level)),
         memory_s=tuple(map(rounded, noise.memory)),
         reading=tuple(map(rounded, noise.reading)),
-        period_s=rounded(found.usable.runs[0].period),
+        period_s=rounded(diagnosis.usable.runs[0].period),
         colour=tuple(map(rounded, noise.colour)) if slow else (),
         colour_memory_s=tuple(map(rounded, noise.colour_memory)) if slow else (),
     )

@@ -38,43 +38,43 @@ class CommonScale:
     parameters: tuple[str, ...]
 
 
-def include_scale(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
+def include_scale(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
     """A fit whose intervals hold the common scale as well, and the scale where it is unknown.
 
     Args:
-        found: the final fit.
+        fit: the final fit.
         runs: those it was fitted to.
     """
-    if not _may_share(found.hypothesis, runs):
-        return found, None
-    if GAIN_NAME in found.hypothesis.parameter_names:
-        return found, describe_fitted_scale(found)
-    variance, along = _free_gain(found, runs)
-    both = found.covariance + variance * np.outer(along, along)
-    found = replace(found, covariance=both)
-    return found, describe_scale(found, variance, along)
+    if not _may_share(fit.hypothesis, runs):
+        return fit, None
+    if GAIN_NAME in fit.hypothesis.parameter_names:
+        return fit, describe_fitted_scale(fit)
+    variance, along = _free_gain(fit, runs)
+    both = fit.covariance + variance * np.outer(along, along)
+    fit = replace(fit, covariance=both)
+    return fit, describe_scale(fit, variance, along)
 
 
-def describe_fitted_scale(found: Fit) -> CommonScale | None:
+def describe_fitted_scale(fit: Fit) -> CommonScale | None:
     """The scale of a fit in which the gain of all thrusters is free; None where it is known."""
-    gain = found.hypothesis.parameter_names.index(GAIN_NAME)
-    variance = float(found.covariance[gain, gain])
-    return describe_scale(found, variance, found.covariance[gain] / variance)
+    gain = fit.hypothesis.parameter_names.index(GAIN_NAME)
+    variance = float(fit.covariance[gain, gain])
+    return describe_scale(fit, variance, fit.covariance[gain] / variance)
 
 
-def _free_gain(found: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
+def _free_gain(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
     """Variance of the gain once it is free, and how the parameters (k,) follow it, all scaled."""
-    opened = leave_open(found, found.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
+    opened = leave_open(fit, fit.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
     if opened is None:
-        return 0.0, np.zeros(len(found.std))
+        return 0.0, np.zeros(len(fit.std))
     told = max(float(opened.told[0, 0]), 0.0)
     return 1.0 / (told + (GAIN_SCALE / GAIN) ** 2), opened.along[:, 0]
 
 
-def describe_scale(found: Fit, variance: float, along: Array) -> CommonScale | None:
+def describe_scale(fit: Fit, variance: float, along: Array) -> CommonScale | None:
     """The scale where it is unknown: `variance` of the gain, and how parameters (k,) follow it."""
-    names, std = found.hypothesis.parameter_names, GAIN_SCALE * np.sqrt(variance)
-    share = variance * along**2 / np.maximum(np.diag(found.covariance), 1e-300)
+    names, std = fit.hypothesis.parameter_names, GAIN_SCALE * np.sqrt(variance)
+    share = variance * along**2 / np.maximum(np.diag(fit.covariance), 1e-300)
     moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
     return CommonScale(float(std), tuple(moved)) if std > UNKNOWN and moved else None
 

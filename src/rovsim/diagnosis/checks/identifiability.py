@@ -11,28 +11,28 @@ UNSURE = 2.0  # standard deviations: the value could as well be that of absence
 DOUBT = 0.01  # chance of values as far from absence
 
 
-def group_joint_parameters(found: Fit) -> list[list[str]]:
+def group_joint_parameters(fit: Fit) -> list[list[str]]:
     """Groups of parameters, as `effect.parameter`, the largest group first."""
-    h, std = found.hypothesis, np.maximum(found.std, 1e-12)
+    h, std = fit.hypothesis, np.maximum(fit.std, 1e-12)
     names = h.parameter_names
     unsure = np.flatnonzero(np.abs(h.x - h.absence) < UNSURE * std)
-    correlation = found.covariance / np.outer(std, std)
+    correlation = fit.covariance / np.outer(std, std)
     alike = np.abs(correlation[np.ix_(unsure, unsure)]) > ALIKE
     _, label = connected_components(alike, directed=False)
     groups = [[names[k] for k in unsure[label == g]] for g in range(label.max(initial=-1) + 1)]
     return sorted((g for g in groups if len(g) > 1), key=lambda g: (-len(g), g))
 
 
-def find_doubtful(found: Fit) -> int | None:
+def find_doubtful(fit: Fit) -> int | None:
     """The term whose values are the likeliest to be those of its absence; None if none may be.
 
     What is known only together with others is not doubtful: without it they would seem sure.
     """
-    h = found.hypothesis
-    together = {name.split(".")[0] for group in group_joint_parameters(found) for name in group}
+    h = fit.hypothesis
+    together = {name.split(".")[0] for group in group_joint_parameters(fit) for name in group}
     chances = np.zeros(len(h.terms))
     for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
         if own and term.id not in together:
-            chances[i] = chi2.sf(found.distance(own), len(own))
+            chances[i] = chi2.sf(fit.distance(own), len(own))
     likeliest = int(np.argmax(chances))
     return likeliest if chances[likeliest] > DOUBT else None

@@ -30,16 +30,16 @@ class LeftOpen:
     drawn: Array
 
 
-def leave_open(found: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> LeftOpen | None:
+def leave_open(fit: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> LeftOpen | None:
     """What is open with more parameters free; None where the observer cannot hold such a model."""
-    bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
+    bank = FilterBank.design(runs, fit.hypothesis.model, fit.noise)
     seen = bank.linearise(freed)
     if not seen.finite:
         return None
-    names, fitted = freed.parameter_names, found.hypothesis.parameter_names
+    names, fitted = freed.parameter_names, fit.hypothesis.parameter_names
     s = [names.index(name) for name in fitted]
     n = [k for k, name in enumerate(names) if name not in fitted]
-    J, e = bank.whiten(seen.J, found.noise), bank.whiten(seen.e, found.noise)
+    J, e = bank.whiten(seen.J, fit.noise), bank.whiten(seen.e, fit.noise)
     rows = as_rows(J)
     H, slope = inner_products(rows), rows @ e.ravel()
     along = -solve(H[np.ix_(s, s)], H[np.ix_(s, n)])

@@ -34,40 +34,40 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
     state = earlier_states(run)
     nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
     t = 2.0 * run.time / max(run.time[-1], 1e-9) - 1.0 if len(run.time) else run.time
-    found = {"nothing (a constant)": np.ones(len(t)), "time": t, "time squared": t**2}
-    found |= _of_velocities(nu, run)
+    table = {"nothing (a constant)": np.ones(len(t)), "time": t, "time squared": t**2}
+    table |= _of_velocities(nu, run)
     for name, x in zip(("north", "east", "down"), place.T, strict=True):
-        found[f"place along {name}"] = x
-        found[f"place along {name}, squared"] = x**2
+        table[f"place along {name}"] = x
+        table[f"place along {name}, squared"] = x**2
     for name, x in zip(("pitch", "roll", "upright"), R[:, 2].T, strict=True):
-        found[f"attitude ({name})"] = x - np.mean(x)
+        table[f"attitude ({name})"] = x - np.mean(x)
     for name, x in zip(("north", "east", "down"), np.swapaxes(R, 1, 2)[:, :, 0].T, strict=True):
-        found[f"heading ({name})"] = x
+        table[f"heading ({name})"] = x
     # water that streams otherwise in another place, or a force there, seen from a body that turns
     for heading, side in product(("north", "east"), repeat=2):
-        along = found[f"place along {side}"] * found[f"heading ({heading})"]
-        found[f"place along {side} times heading ({heading})"] = along
-    return found
+        along = table[f"place along {side}"] * table[f"heading ({heading})"]
+        table[f"place along {side} times heading ({heading})"] = along
+    return table
 
 
 def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
     """Functions (n,) of the velocities (n, 6) alone."""
-    found = {}
+    table = {}
     for i, axis in enumerate(AXES):
         v = nu[:, i]
-        found[f"{axis} velocity"] = v
-        found[f"{axis} speed"] = np.abs(v)
-        found[f"{axis} velocity, squared"] = np.abs(v) * v
-        found[f"{axis} velocity, cubed"] = v**3
-        found[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
+        table[f"{axis} velocity"] = v
+        table[f"{axis} speed"] = np.abs(v)
+        table[f"{axis} velocity, squared"] = np.abs(v) * v
+        table[f"{axis} velocity, cubed"] = v**3
+        table[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
         for memory in MEMORIES:
-            found[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
+            table[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
     for i, j in combinations(range(6), 2):
-        found[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
+        table[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
     for i, j in permutations(range(6), 2):  # drags and moments that a cross-flow changes
-        found[f"{AXES[i]} velocity times {AXES[j]} speed"] = nu[:, i] * np.abs(nu[:, j])
-        found[f"{AXES[i]} velocity times {AXES[j]} speed squared"] = nu[:, i] * nu[:, j] ** 2
-    return found
+        table[f"{AXES[i]} velocity times {AXES[j]} speed"] = nu[:, i] * np.abs(nu[:, j])
+        table[f"{AXES[i]} velocity times {AXES[j]} speed squared"] = nu[:, i] * nu[:, j] ** 2
+    return table
 
 
 @dataclass(frozen=True)

@@ -102,18 +102,18 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
     return out[run.settled]
 
 
-def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
+def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     """What a fit leaves, axis by axis, without what a gap in the command log may have done.
 
     Axes that not every reading shows are left out: their filters have another clock.
     """
-    J = bank.whiten(found.seen.J, found.noise)
-    white = _split_by_run(bank.whiten(found.seen.e, found.noise), bank.runs)
-    tunings = bank.tune(found.noise)
-    model = found.hypothesis.model
+    J = bank.whiten(fit.seen.J, fit.noise)
+    white = _split_by_run(bank.whiten(fit.seen.e, fit.noise), bank.runs)
+    tunings = bank.tune(fit.noise)
+    model = fit.hypothesis.model
     unknown = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
     off = [find_jumps(run, model, lost) for run, lost in zip(bank.runs, unknown, strict=True)]
-    undecided = tuple(mark_undecided(found.hypothesis, run)[run.settled] for run in bank.runs)
+    undecided = tuple(mark_undecided(fit.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
         if not all(run.innovation_mask[:, i].all() for run in bank.runs):
@@ -121,7 +121,7 @@ def split_by_axis(found: Fit, bank: FilterBank) -> list[AxisResidual]:
         filters = tuple(tuning.filters[i] for tuning in tunings)
         each = zip(white, filters, bank.runs, unknown, off, strict=True)
         cleared = tuple(_clear(own[i], f, run, lost, by[:, i]) for own, f, run, lost, by in each)
-        level = float(found.noise.level[i])
+        level = float(fit.noise.level[i])
         residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, level, undecided))
     return residuals
 

@@ -14,11 +14,11 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.selection.gauss_newton import Fit
 
 
-def find_structure(found: Fit, bank: FilterBank) -> list[Structure]:
+def find_structure(fit: Fit, bank: FilterBank) -> list[Structure]:
     """Structures in the innovations of the final model beyond chance, most surprising first."""
     tables = [tabulate(run) for run in bank.runs]
     structures: list[Structure] = []
-    for residual in split_by_axis(found, bank):
+    for residual in split_by_axis(fit, bank):
         structures += find_dependence(residual, tables)
         structures += find_lines(residual)
         structures += find_sudden(residual)

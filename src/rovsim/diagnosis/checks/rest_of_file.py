@@ -37,31 +37,31 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 
-def include_rest(found: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
+def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
     """A fit whose intervals hold what the rest of the vehicle file may be off by, and the scale.
 
     Where less than several of its effects were selected, they hold the common scale alone.
 
     Args:
-        found: the final fit.
+        fit: the final fit.
         runs: those it was fitted to.
     """
-    h = found.hypothesis
+    h = fit.hypothesis
     freed = free_rest(h)
     further = [name for name in freed.parameter_names if name not in h.parameter_names]
-    opened = leave_open(found, freed, runs) if is_off(h) and further else None
+    opened = leave_open(fit, freed, runs) if is_off(h) and further else None
     if opened is None:
-        return include_scale(found, runs)
+        return include_scale(fit, runs)
     spread = list_spreads(h, freed)
     rest = solve(opened.told + np.diag(spread**-2.0), np.eye(len(spread)))
     drawn = rest @ opened.drawn
     wider = opened.along @ (rest + np.outer(drawn, drawn)) @ opened.along.T
-    found = replace(found, covariance=found.covariance + wider)
+    fit = replace(fit, covariance=fit.covariance + wider)
     if GAIN_NAME not in further:
-        return found, describe_fitted_scale(found)
+        return fit, describe_fitted_scale(fit)
     gain = further.index(GAIN_NAME)
     variance = float(rest[gain, gain])
-    return found, describe_scale(found, variance, opened.along @ rest[:, gain] / variance)
+    return fit, describe_scale(fit, variance, opened.along @ rest[:, gain] / variance)
 
 
 def free_rest(h: Hypothesis) -> Hypothesis:

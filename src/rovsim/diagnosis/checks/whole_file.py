@@ -49,14 +49,14 @@ TOLD = 0.7  # of what was known before: runs that leave more of it have told not
 MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
 
 
-def fit_whole_file(found: Fit, bank: FilterBank) -> Fit | None:
+def fit_whole_file(fit: Fit, bank: FilterBank) -> Fit | None:
     """All that the file states, fitted; None where it is not off, or such a model diverges."""
-    if not is_off(found.hypothesis):
+    if not is_off(fit.hypothesis):
         return None
-    freed = free_rest(found.hypothesis)
-    prior = _know(found.hypothesis, freed)
-    seen = levenberg_marquardt(freed, bank, found.noise, prior)
-    return judge(seen, bank, found.noise, prior) if seen.finite else None
+    freed = free_rest(fit.hypothesis)
+    prior = _know(fit.hypothesis, freed)
+    seen = levenberg_marquardt(freed, bank, fit.noise, prior)
+    return judge(seen, bank, fit.noise, prior) if seen.finite else None
 
 
 def _know(selected: Hypothesis, freed: Hypothesis) -> Prior:

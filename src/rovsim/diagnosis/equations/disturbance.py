@@ -56,16 +56,14 @@ class ForceInTime:
     pushes: tuple[Push, ...]
 
 
-def trace_force(
-    found: Fit, bank: FilterBank, structures: Sequence[Structure]
-) -> ForceInTime | None:
+def trace_force(fit: Fit, bank: FilterBank, structures: Sequence[Structure]) -> ForceInTime | None:
     """The smooth force that is left; None where its axes were not read throughout."""
-    residuals = {one.axis: one for one in split_by_axis(found, bank)}
+    residuals = {one.axis: one for one in split_by_axis(fit, bank)}
     named = {one.axis for one in structures}
     axes = tuple(a for a in AXES if a in residuals and a in named)
     if not axes:
         return None
-    M, memory = found.hypothesis.model.M, found.noise.memory
+    M, memory = fit.hypothesis.model.M, fit.noise.memory
     forces = []
     for k, run in enumerate(bank.runs):
         a = np.zeros((len(run.time), 6))
@@ -131,15 +129,15 @@ def _find_pushes(
     index: Sequence[int], rms: Array,
 ) -> list[Push]:  # fmt: skip
     """The strongest, in units of the RMS of their axis."""
-    found: list[tuple[float, Push]] = []
+    ranked: list[tuple[float, Push]] = []
     for run, force, place in zip(runs, forces, places, strict=True):
         for i in index:
             size = np.abs(force[:, i]) / max(rms[i], 1e-12)
             peaks, _ = find_peaks(size, height=STRONG, distance=max(1, round(APART / run.period)))
-            found += [
+            ranked += [
                 (float(size[k]), Push(run.motion.run.id, float(_tell_time(run)[k]), AXES[i],
                                       float(force[k, i]), place[k]))
                 for k in peaks
             ]  # fmt: skip
-    found.sort(key=lambda one: -one[0])
-    return [push for _, push in found[:LISTED]]
+    ranked.sort(key=lambda one: -one[0])
+    return [push for _, push in ranked[:LISTED]]

@@ -31,18 +31,18 @@ def find_masked_laws(selection: Selection) -> list[Structure]:
     suspect = _find_suspect(selection) if names and is_seen(selection) else None
     if suspect is None:
         return []
-    workspace, found = selection.workspace, selection.found
+    workspace, fit = selection.workspace, selection.found
     runs = workspace.bank.runs
     terms, middle = list_terms(runs), middle_of(runs)
     search = LawSearch(selection, len(terms))
-    columns = weigh(workspace, found, terms, middle)
+    columns = weigh(workspace, fit, terms, middle)
     order = np.argsort(-find_alone(columns.products), kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
-    around, h = Surroundings.of(runs), found.hypothesis
+    around, h = Surroundings.of(runs), fit.hypothesis
     laws = {k: (Products((k,)), add_term(h, (), k, columns, middle, around)) for k in kinds}
-    score = workspace.score(found)
-    for judged in search.race(laws, found).values():
-        if search.is_worth(judged, found, score):
+    score = workspace.score(fit)
+    for judged in search.race(laws, fit).values():
+        if search.is_worth(judged, fit, score):
             return [replace(suspect, surprise=(judged.score - score) / max(search.chance, 1.0))]
     return []
 

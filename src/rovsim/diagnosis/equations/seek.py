@@ -109,12 +109,12 @@ class LawSearch:
 
     def race(self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit) -> dict[Key, Judged]:
         """Laws beside what is there, the likeliest first; none that surely falls far behind."""
-        found: dict[Key, Judged] = {}
+        fitted: dict[Key, Judged] = {}
         for key, (form, h) in laws.items():
-            best = max((one.score for one in found.values()), default=-np.inf)
+            best = max((one.score for one in fitted.values()), default=-np.inf)
             judged = self.challenge(form, h, current, best)
-            found |= {key: judged} if judged else {}
-        return dict(sorted(found.items(), key=lambda one: -one[1].score))
+            fitted |= {key: judged} if judged else {}
+        return dict(sorted(fitted.items(), key=lambda one: -one[1].score))
 
     def _judge(self, form: Form, fitted: Fit) -> Judged:
         return Judged(form, fitted, self.workspace.score(fitted) - self._ask(fitted.hypothesis))
@@ -158,7 +158,7 @@ class LawSearch:
 
     def remember(self, start: Hypothesis) -> list[Judged]:
         """Of each form with a memory the likeliest, if it is worth anything."""
-        runs, found = self.workspace.bank.runs, []
+        runs, worthy = self.workspace.bank.runs, []
         axes = np.logical_and.reduce([run.axes for run in runs])
         moving, means = (
             [AXES[i] for i in np.flatnonzero(axes)],
@@ -172,8 +172,8 @@ class LawSearch:
             laws = [(form, bare.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
             best = next(iter(self.race(dict(enumerate(laws)), bare).values()))
             if self.is_worth(best, bare, self.workspace.score(bare)):
-                found.append(best)
-        return found
+                worthy.append(best)
+        return worthy
 
     def keep_close(self, grown: Sequence[Judged]) -> list[Judged]:
         """Laws that may be the likeliest once they are finished."""
@@ -220,12 +220,12 @@ class LawSearch:
             # rivals of a term that went are rivals of nothing
             current = replace(best, rivals=current.rivals if best.form is form else ())
 
-    def _list_idle(self, found: Fit) -> list[int]:
+    def _list_idle(self, fit: Fit) -> list[int]:
         """Effects of the catalogue that to first order are not needed: others surely stay."""
-        h, idle = found.hypothesis, []
+        h, idle = fit.hypothesis, []
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
             most = HOPELESS + 2.0 * self.workspace.penalty * len(own)
-            stays = own and term.vanishes and found.distance(own) > most
+            stays = own and term.vanishes and fit.distance(own) > most
             if term.effect.listed and not stays:
                 idle.append(i)
         return idle
@@ -240,10 +240,10 @@ def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, Know
 
 def choose_kinds(terms: Sequence[LawTerm]) -> list[LawTerm]:
     """The first of each kind: a fit moves it from where it begins to where it acts."""
-    found: dict[tuple, LawTerm] = {}
+    kinds: dict[tuple, LawTerm] = {}
     for term in terms:
-        found.setdefault(term.kind, term)
-    return list(found.values())
+        kinds.setdefault(term.kind, term)
+    return list(kinds.values())
 
 
 def seek_law(selection: Selection) -> Judged | None:
@@ -252,15 +252,15 @@ def seek_law(selection: Selection) -> Judged | None:
     None either where an axis in which the vehicle can move is read now and then, or never: filters
     have another clock there.
     """
-    runs, found = selection.workspace.bank.runs, selection.found
+    runs, fit = selection.workspace.bank.runs, selection.found
     terms = list_terms(runs)
     if not terms or not is_seen(selection):
         return None
-    thrusts = list_thrust_terms(runs, found.hypothesis.model)
+    thrusts = list_thrust_terms(runs, fit.hypothesis.model)
     search = LawSearch(selection, len(terms) + len(thrusts))
-    starts = [found.hypothesis]
-    if found.hypothesis.terms:
-        starts.append(replace(found.hypothesis, terms=()))
+    starts = [fit.hypothesis]
+    if fit.hypothesis.terms:
+        starts.append(replace(fit.hypothesis, terms=()))
     each = [(start, search.grow(start)) for start in starts]
     grown = [one for _, one in each if one is not None]
     grown += [one for start, own in each for one in search.pull(start, own)]
@@ -268,7 +268,7 @@ def seek_law(selection: Selection) -> Judged | None:
     if all(search.is_surely_half(one) for one in search.keep_close(grown)):
         return None  # which effects it can spare need not be known
     finished = sorted((search.finish(one) for one in grown), key=lambda one: -one.score)
-    if not finished or finished[0].score <= selection.workspace.score(found):
+    if not finished or finished[0].score <= selection.workspace.score(fit):
         return None
     return finished[0].beats(finished[1:])
 

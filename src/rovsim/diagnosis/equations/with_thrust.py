@@ -110,9 +110,9 @@ def push_thrust(
 
 def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
     """Wrench (c, n, 6) of terms at velocities (n, 6) and thrust (n, 6) N, N m."""
-    found = np.zeros((len(terms), len(nu), 6))
+    wrenches = np.zeros((len(terms), len(nu), 6))
     table = np.hstack([nu, np.abs(nu)])
-    for out, term in zip(found, terms, strict=True):
+    for out, term in zip(wrenches, terms, strict=True):
         value = thrust[:, term.thrust]
         value = np.abs(value) if term.unsigned else value
         if term.factor == OTHER:
@@ -120,7 +120,7 @@ def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
         elif term.factor >= 0:
             value = value * table[:, term.factor]
         out[:, term.on] = value
-    return found
+    return wrenches
 
 
 def begin(columns: Columns, k: int, h: Hypothesis) -> Hypothesis:

@@ -79,12 +79,12 @@ class MovingWater:
         """
         if not self.paths:
             return [np.zeros((len(run.time), 6)) for run in self.runs]
-        found = []
+        accelerations = []
         for run, current, linear in zip(self.runs, self._currents, self._pushes, strict=True):
             still = _accelerate(self.model, run, np.zeros_like(current))
             bent = _accelerate(self.model, run, current) - still
-            found.append(bent - np.einsum("dni,nd->ni", linear, current))
-        return found
+            accelerations.append(bent - np.einsum("dni,nd->ni", linear, current))
+        return accelerations
 
     @property
     def _currents(self) -> list[Array]:
@@ -100,22 +100,22 @@ class MovingWater:
             z: innovations (6, m) of each run, whitened axis by axis.
             tunings: the filters that made them so.
         """
-        found = self.walk.fit_rate(z, tunings)
-        if found.lr_statistic < LIKELY:
-            return DriftFit(found, found.lr_statistic)
+        rate = self.walk.fit_rate(z, tunings)
+        if rate.lr_statistic < LIKELY:
+            return DriftFit(rate, rate.lr_statistic)
         forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
         others = [self._walk(pushes).fit_rate(z, tunings).lr_statistic for pushes in forces]
         by_place = self._lr_by_place(z, tunings, _lines(self.runs))
         if not self.paths:  # about its own path what wanders is always likelier than a steady flow
             flow = self._lr_by_place(z, tunings, _eddies(self.runs))
-            if flow - found.lr_statistic > SURE:
-                return DriftFit(found, found.lr_statistic - flow)
-        return DriftFit(found, found.lr_statistic - max(0.0, by_place, *others))
+            if flow - rate.lr_statistic > SURE:
+                return DriftFit(rate, rate.lr_statistic - flow)
+        return DriftFit(rate, rate.lr_statistic - max(0.0, by_place, *others))
 
     def varies_with_place(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> bool:
         """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
-        found = self.walk.fit_rate(z, tunings)
-        return found.lr_statistic - self._lr_by_place(z, tunings, _eddies(self.runs)) < SURE
+        rate = self.walk.fit_rate(z, tunings)
+        return rate.lr_statistic - self._lr_by_place(z, tunings, _eddies(self.runs)) < SURE
 
     def _lr_by_place(
         self, z: Sequence[Array], tunings: Sequence[Tuning], fields: Sequence[Array]
@@ -181,11 +181,11 @@ def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
 
 def push_by_current(model: Model, run: ObservedRun, current: Array) -> Array:
     """Accelerations (2, n, 6) per m/s by which the water moves faster north, and east."""
-    found = []
+    pushes = []
     for step in NUDGE * np.eye(2):
         there, back = (_accelerate(model, run, current + way * step) for way in (1.0, -1.0))
-        found.append((there - back) / (2.0 * NUDGE))
-    return np.stack(found)
+        pushes.append((there - back) / (2.0 * NUDGE))
+    return np.stack(pushes)
 
 
 def _accelerate(model: Model, run: ObservedRun, current: Array) -> Array:
@@ -199,9 +199,10 @@ def _accelerate(model: Model, run: ObservedRun, current: Array) -> Array:
     water = np.column_stack([current, np.zeros(len(current))])
     along = np.einsum("nij,ni->nj", rotations.matrix(states[:, 3:7]), water)
     states[:, 7:10] -= along
-    found = accelerate(model, run, run.innovation_samples, states[None])[0]
-    found[:, :3] += np.cross(along, states[:, 10:])  # the current as seen from a body that turns
-    return found
+    accelerations = accelerate(model, run, run.innovation_samples, states[None])[0]
+    # the current as seen from a body that turns
+    accelerations[:, :3] += np.cross(along, states[:, 10:])
+    return accelerations
 
 
 def _push_along_tank(model: Model, run: ObservedRun) -> Array:

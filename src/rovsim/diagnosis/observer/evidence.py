@@ -58,13 +58,13 @@ def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -
     taken = {} if known is None else _take(at, known)
     new = [i for i in range(count) if i not in taken]
     sizes = at.steps[new][:, None, None]
-    found = errors([at.model, *(at.beside[i].model for i in new)])
-    J = [np.empty((count, *f.shape[1:])) for f in found]
-    for k, f in enumerate(found):
-        J[k][new] = (f[1:] - f[0]) / sizes
+    every = errors([at.model, *(at.beside[i].model for i in new)])
+    J = [np.empty((count, *e.shape[1:])) for e in every]
+    for k, e in enumerate(every):
+        J[k][new] = (e[1:] - e[0]) / sizes
         for i, of_runs in taken.items():
             J[k][i] = of_runs[k]
-    return Linearised(at, [f[0] for f in found], J)
+    return Linearised(at, [e[0] for e in every], J)
 
 
 def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:

@@ -52,9 +52,9 @@ class FilterBank:
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
         errors = estimate_errors(base, runs)
-        found = tuple(tune(noise.white, errors.motions, w) for w in runs)
+        tunings = tuple(tune(noise.white, errors.motions, w) for w in runs)
         coupled, paths = errors.coupling > COUPLED, noise.drift.paths if noise.drift else ()
-        return FilterBank(tuple(runs), errors.motions, found, base, coupled, paths)
+        return FilterBank(tuple(runs), errors.motions, tunings, base, coupled, paths)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""
@@ -114,12 +114,12 @@ class FilterBank:
 
         `thorough`: whether to look for slow errors of the readings and for a current that wanders.
         """
-        found = self.fit_axes(e, start, thorough)
+        fit = self.fit_axes(e, start, thorough)
         if not self.coupled:
-            return self._fit_drift(e, found) if thorough and self.looks_for_drift else found
-        white = [self.whiten(own, found.noise) for own in self._draws(e)]
+            return self._fit_drift(e, fit) if thorough and self.looks_for_drift else fit
+        white = [self.whiten(own, fit.noise) for own in self._draws(e)]
         past, more = fit_autoregression(white, self._stretches)
-        return NoiseFit(replace(found.noise, autoregression=past), found.two_log_likelihood + more)
+        return NoiseFit(replace(fit.noise, autoregression=past), fit.two_log_likelihood + more)
 
     def fit_axes(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
         """The same, each axis by itself, also where they are coupled; beside a drift as it is."""
@@ -128,14 +128,14 @@ class FilterBank:
             return self._fit_calm(draws, start, thorough)
         each = [self._take_out(own, start, start.drift.rate) for own in draws]
         rests, walks = [rest for rest, _ in each], each[0][1]
-        found = self._fit_calm(rests, start, thorough)
+        fit = self._fit_calm(rests, start, thorough)
         paths = (Path(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
-        noise = replace(found.noise, drift=start.drift._replace(paths=tuple(paths)))
+        noise = replace(fit.noise, drift=start.drift._replace(paths=tuple(paths)))
         lr_statistics = [
             self._lr_of_drift(own, rest, noise, start.drift.rate)
             for own, rest in zip(draws, rests, strict=True)
         ]
-        return NoiseFit(noise, found.two_log_likelihood + float(np.mean(lr_statistics)))
+        return NoiseFit(noise, fit.two_log_likelihood + float(np.mean(lr_statistics)))
 
     def _fit_calm(self, draws: Sequence[Sequence[Array]], start: Noise, colour: bool) -> NoiseFit:
         count = len(draws)
@@ -149,17 +149,17 @@ class FilterBank:
         count = len(self.runs)
         return [e[first : first + count] for first in range(0, len(e), count)]
 
-    def _fit_drift(self, e: Sequence[Array], found: NoiseFit) -> NoiseFit:
+    def _fit_drift(self, e: Sequence[Array], fit: NoiseFit) -> NoiseFit:
         """The noise with a current that wanders, if it does."""
         for _ in range(ROUNDS):
-            drift, known = self.measure_drift(self._draws(e)[0], found.noise), found.noise.drift
+            drift, known = self.measure_drift(self._draws(e)[0], fit.noise), fit.noise.drift
             now = DriftingCurrent(drift.rate.value) if drift.sure else None
             if now is None and known is None:
                 break
             if now and known and abs(now.rate - known.rate) < CLOSE * known.rate:
                 break
-            found = self.fit_axes(e, replace(found.noise, drift=now), thorough=True)
-        return found
+            fit = self.fit_axes(e, replace(fit.noise, drift=now), thorough=True)
+        return fit
 
     def measure_drift(self, e: Sequence[Array], noise: Noise) -> DriftFit:
         """How the current most likely wanders, from innovations (6, n) of each run."""

@@ -91,8 +91,8 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
         states = undo_mocap_view(model, run.motion).state
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
         states = _nudge(states[index], level=bool(run.pose_measured[4]))
-        found = accelerate(model, run, index, states)
-        slopes.append((found[0] - found[1:]) / NUDGE)
+        accelerations = accelerate(model, run, index, states)
+        slopes.append((accelerations[0] - accelerations[1:]) / NUDGE)
     slope = np.concatenate(slopes, axis=1)
     mean, largest = np.mean(slope, axis=1), np.sqrt(np.mean(slope[:6] ** 2, axis=1))
     return ErrorDynamics(mean[:6].T, largest.T, mean[6:].T)
@@ -100,16 +100,16 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
 
 def _nudge(states: Array, level: bool) -> Array:
     """States (13, k, 13): as they are, then faster on each axis, then displaced along each."""
-    found = np.tile(states, (13, 1, 1))
+    nudged = np.tile(states, (13, 1, 1))
     q = states[:, 3:7]
     zero = np.zeros(len(q))
     axes = rotations.from_euler(zero, zero, rotations.to_euler(q)[:, 2]) if level else q
     for i, unit in enumerate(np.eye(3)):
-        found[1 + i, :, 7 + i] += NUDGE
-        found[4 + i, :, 10 + i] += NUDGE
-        found[7 + i, :, :3] += rotations.rotate(axes, NUDGE * np.tile(unit, (len(q), 1)))
-        found[10 + i, :, 3:7] = rotations.multiply(q, rotations.exp(NUDGE * unit))
-    return found
+        nudged[1 + i, :, 7 + i] += NUDGE
+        nudged[4 + i, :, 10 + i] += NUDGE
+        nudged[7 + i, :, :3] += rotations.rotate(axes, NUDGE * np.tile(unit, (len(q), 1)))
+        nudged[10 + i, :, 3:7] = rotations.multiply(q, rotations.exp(NUDGE * unit))
+    return nudged
 
 
 def accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:

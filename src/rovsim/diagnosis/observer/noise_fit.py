@@ -144,8 +144,8 @@ def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, floa
         level, memory, reading = np.exp(x)
         return start._replace(level=level, memory=memory, reading=reading)
 
-    x, found = _descend(lambda x: _cost(axis, at(x)), np.log(start[:3]))
-    return at(x), found
+    x, least = _descend(lambda x: _cost(axis, at(x)), np.log(start[:3]))
+    return at(x), least
 
 
 def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
@@ -158,8 +158,8 @@ def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, flo
         return scaled, _memory_prior(memory) + cost
 
     first = np.log([start.memory, start.level / start.reading])
-    x, found = _descend(lambda x: at(x)[1], first)
-    return at(x)[0], found
+    x, least = _descend(lambda x: at(x)[1], first)
+    return at(x)[0], least
 
 
 def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
@@ -169,12 +169,12 @@ def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple
         return _cost(axis, AxisNoise(*np.exp(x)))
 
     first = white if white.colour else white._replace(colour=white.reading, colour_memory=0.5)
-    x, found = _descend(cost, np.log(first))
+    x, least = _descend(cost, np.log(first))
     if white.colour:
         white, known = _fit_axis(axis, white._replace(colour=0.0))
-    if 2.0 * (known - found) < COLOURED:
+    if 2.0 * (known - least) < COLOURED:
         return white, known
-    return AxisNoise(*np.exp(x)), found
+    return AxisNoise(*np.exp(x)), least
 
 
 def _cost(axis: _AxisInnovations, noise: AxisNoise) -> float:

@@ -40,7 +40,7 @@ def list_candidates(
 ) -> list[Candidate]:
     """All candidates that these runs of that vehicle could show."""
     site, means = runs[0].motion.site, list_means(runs, vehicle)
-    found = []
+    candidates = []
     for cls in catalogue.on(vehicle).values():
         if issubclass(cls, MeasurementFilter | StochasticCurrent):
             continue  # told by camera.py and drifting_current.py
@@ -49,8 +49,8 @@ def list_candidates(
         for values in cls.starts_at(site):
             start = cls(**values)
             if _can_act(start, runs):
-                found.append(Candidate(cls, start, cls.free_at(values)))
-    return found
+                candidates.append(Candidate(cls, start, cls.free_at(values)))
+    return candidates
 
 
 def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Requirement]:

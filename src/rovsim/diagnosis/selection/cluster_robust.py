@@ -26,20 +26,20 @@ def drop_unsure(selection: Selection) -> Selection:
 
     Asked only where the vehicle moves along axes that nobody measures.
     """
-    workspace, found = selection.workspace, selection.found
+    workspace, fit = selection.workspace, selection.found
     if not any((run.free_axes & ~run.axes).any() for run in workspace.bank.runs):
         return selection
-    while unsure := list_unsure(found, workspace):
-        found = workspace.fit(found.hypothesis.without(unsure[-1]))  # the one that came last
-    return replace(selection, found=found)
+    while unsure := list_unsure(fit, workspace):
+        fit = workspace.fit(fit.hypothesis.without(unsure[-1]))  # the one that came last
+    return replace(selection, found=fit)
 
 
-def list_unsure(found: Fit, workspace: SearchWorkspace) -> list[int]:
+def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:
     """Terms whose distance from their absence is less than their penalty, as blocks see it."""
-    h, unsure = found.hypothesis, set()
+    h, unsure = fit.hypothesis, set()
     for seconds in LASTING:
         blocks = number_blocks(workspace.bank.runs, seconds)
-        as_blocks_see = replace(found, covariance=estimate_spread(found, workspace.bank, blocks))
+        as_blocks_see = replace(fit, covariance=estimate_spread(fit, workspace.bank, blocks))
         most = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
             judged = term.vanishes and 0 < len(own) <= most
@@ -48,12 +48,12 @@ def list_unsure(found: Fit, workspace: SearchWorkspace) -> list[int]:
     return sorted(unsure)
 
 
-def estimate_spread(found: Fit, bank: FilterBank, blocks: Array) -> Array:
+def estimate_spread(fit: Fit, bank: FilterBank, blocks: Array) -> Array:
     """Covariance (k, k) of the scaled parameters, by how much `blocks` (n,) differ.
 
     That of Liang & Zeger (1986), which does not take readings of one block for independent.
     """
-    rows = bank.whiten(found.seen.rows, found.noise)
+    rows = bank.whiten(fit.seen.rows, fit.noise)
     each = rows[1:] * rows[:1]
     scores = np.array([each[..., blocks == b].sum(axis=(1, 2)) for b in np.unique(blocks)])
     scores = scores - scores.mean(axis=0)

@@ -18,30 +18,30 @@ FOLDS = 6
 
 def drop_idle(selection: Selection) -> Selection:
     """Without effects that do not help on held-out blocks, or that no user would see."""
-    workspace, found = selection.workspace, selection.found
-    while found.hypothesis.terms:
-        fewer = [found.hypothesis.without(i) for i in range(len(found.hypothesis.terms))]
+    workspace, fit = selection.workspace, selection.found
+    while fit.hypothesis.terms:
+        fewer = [fit.hypothesis.without(i) for i in range(len(fit.hypothesis.terms))]
         smaller = [workspace.fit(one) for one in fewer]
-        noticed = find_relevant(workspace, found, [one.model for one in fewer])
+        noticed = find_relevant(workspace, fit, [one.model for one in fewer])
         idle = [
             one
             for one, seen, rest in zip(fewer, noticed, smaller, strict=True)
-            if not seen or cross_validate(found, rest, workspace.bank) <= 0.0
+            if not seen or cross_validate(fit, rest, workspace.bank) <= 0.0
         ]
         if not idle:
             break
-        found = workspace.fit(idle[-1])  # without the one that came last
-    return replace(selection, found=found)
+        fit = workspace.fit(idle[-1])  # without the one that came last
+    return replace(selection, found=fit)
 
 
-def cross_validate(found: Fit, smaller: Fit, bank: FilterBank) -> float:
-    """Decrease of the squared innovations on held-out blocks by what `found` has more.
+def cross_validate(fit: Fit, smaller: Fit, bank: FilterBank) -> float:
+    """Decrease of the squared innovations on held-out blocks by what `fit` has more.
 
     Both are fitted to all blocks; each fold's parameters are theirs, less what that fold made of
     them, to first order.
     """
     fold = number_blocks(bank.runs) % FOLDS
-    costs = [_sum_held_out(one, bank, found.noise, fold) for one in (smaller, found)]
+    costs = [_sum_held_out(one, bank, fit.noise, fold) for one in (smaller, fit)]
     return costs[0] - costs[1]
 
 

@@ -38,15 +38,15 @@ def absorb_delay(
 
     Whatever was named only because the cutoff was not quite right goes.
     """
-    found, workspace = selection.found, selection.workspace
-    unlagged = _without_short_lag(found.hypothesis, smoothing)
+    fit, workspace = selection.found, selection.workspace
+    unlagged = _without_short_lag(fit.hypothesis, smoothing)
     if unlagged:
         again, finer = _absorb(selection, _with_delay(selection, unlagged), base, smoothing)
-        if again and workspace.score(again) > workspace.score(found) - HOPELESS:
+        if again and workspace.score(again) > workspace.score(fit) - HOPELESS:
             return replace(selection, found=prune(workspace, again)), finer
-    if DELAY not in (term.id for term in found.hypothesis.terms):
-        found = _with_delay(selection, found.hypothesis)
-    again, finer = _absorb(selection, found, base, smoothing)
+    if DELAY not in (term.id for term in fit.hypothesis.terms):
+        fit = _with_delay(selection, fit.hypothesis)
+    again, finer = _absorb(selection, fit, base, smoothing)
     return (replace(selection, found=prune(workspace, again)) if again else selection), finer
 
 

@@ -74,9 +74,9 @@ def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: f
     return more is not less and workspace.score(more) - workspace.score(less) >= threshold
 
 
-def find_relevant(workspace: SearchWorkspace, found: Fit, without: Sequence[Model]) -> Array:
+def find_relevant(workspace: SearchWorkspace, fit: Fit, without: Sequence[Model]) -> Array:
     """Whether some axis' error in 2 s windows is noticeably larger with each other model (m,)."""
-    rmse = score_windows([found.hypothesis.model, *without], workspace.bank.runs).rmse
+    rmse = score_windows([fit.hypothesis.model, *without], workspace.bank.runs).rmse
     measured = rmse[0] > 0.0
     # a model that cannot exist is infinitely worse
     ratio = np.nan_to_num(rmse[1:, measured] / rmse[0, measured], nan=np.inf)
@@ -97,10 +97,8 @@ def contest(
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_challengers(workspace, term, rest, trials):
-            trial, worse = (
-                None,
-                rest.ss_increase - workspace.penalty * term.choices - p.net_decrease,
-            )
+            trial = None
+            worse = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
             if worse < 0.0 or _explains(workspace, p) > PROMISING * rest.ss_increase:
                 start, worse = rest.hypothesis.with_term(p.term), HOPELESS
                 trial = workspace.challenge(start, current, workspace.score(current))
@@ -174,12 +172,12 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
 def _grow(workspace: SearchWorkspace, current: Fit, seed: int) -> tuple[SearchWorkspace, Fit]:
     """Add and swap until nothing more beats chance."""
     while len(current.hypothesis.terms) < workspace.settings.most_effects:
-        found = add_best(workspace, current, workspace.chance_limit(current, seed))
-        if found is None:
+        more = add_best(workspace, current, workspace.chance_limit(current, seed))
+        if more is None:
             break
-        gained = workspace.score(found) - workspace.score(current)
-        workspace = workspace.renew(found)
-        workspace, again = prefer_steady(workspace, workspace.fit(found.hypothesis))
+        gained = workspace.score(more) - workspace.score(current)
+        workspace = workspace.renew(more)
+        workspace, again = prefer_steady(workspace, workspace.fit(more.hypothesis))
         swap = max(SWAP, SLIGHT * gained)
         current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
     return workspace, current

@@ -69,17 +69,17 @@ class Gate:
 
     def judge(self, selection: Selection) -> tuple[Selection, bool]:
         """What passes, and whether that is all that was selected."""
-        found = selection.found
-        while self.runs and found.hypothesis.terms:
-            weakest = self._find_harmful(selection, found)
+        fit = selection.found
+        while self.runs and fit.hypothesis.terms:
+            weakest = self._find_harmful(selection, fit)
             fewer = selection.fit(weakest) if weakest else None
             if fewer is None or not fewer.held:
                 break
-            found = fewer
-        if self.refuses(found.hypothesis.model, found.hypothesis.base):
-            base = replace(found.hypothesis, terms=())
-            found = selection.fit(base)
-        return replace(selection, found=found), found is selection.found
+            fit = fewer
+        if self.refuses(fit.hypothesis.model, fit.hypothesis.base):
+            base = replace(fit.hypothesis, terms=())
+            fit = selection.fit(base)
+        return replace(selection, found=fit), fit is selection.found
 
     def refuses(self, model: Model, before: Model) -> bool:
         """Whether a model replays these stretches surely worse than the one before."""
@@ -125,9 +125,9 @@ class Gate:
 
     def _drop_idle(self, selection: Selection, split: Split, least: float) -> Selection:
         """Without groups of terms whose absence does not surely cost that share of the error."""
-        found = selection.found
-        while self.runs and (groups := split(found.hypothesis)):
-            fewer, errors = self._do_without(selection, found, groups)
+        kept = selection.found
+        while self.runs and (groups := split(kept.hypothesis)):
+            fewer, errors = self._do_without(selection, kept, groups)
             idle = [k for k, e in enumerate(errors[1:]) if not surely_costs(e, errors[0], least)]
             if not idle:
                 break
@@ -136,25 +136,25 @@ class Gate:
             without = next((fit for fit in left if fit.held), None)
             if without is None:
                 break
-            found = without
-        return replace(selection, found=found)
+            kept = without
+        return replace(selection, found=kept)
 
-    def _find_harmful(self, selection: Selection, found: Fit) -> Hypothesis | None:
+    def _find_harmful(self, selection: Selection, fit: Fit) -> Hypothesis | None:
         """Without the effect whose absence helps most; None where each of them earns its place."""
-        fewer, errors = self._do_without(selection, found, [(t,) for t in found.hypothesis.terms])
+        fewer, errors = self._do_without(selection, fit, [(t,) for t in fit.hypothesis.terms])
         tried = len(errors) - 1
         improvements = [find_sure_improvement(errors[0], one, tried) for one in errors[1:]]
         best = int(np.argmax(improvements))
         return fewer[best] if improvements[best] > 0.0 else None
 
     def _do_without(
-        self, selection: Selection, found: Fit, groups: Sequence[Sequence[Term]]
+        self, selection: Selection, fit: Fit, groups: Sequence[Sequence[Term]]
     ) -> tuple[list[Hypothesis], Array]:
         """Hypotheses without each group of terms, and errors (1 + g, w), those with all first.
 
         Refitted to first order, and in full where that comes close.
         """
-        h, fewer = found.hypothesis, selection.workspace.drop(found, groups)
+        h, fewer = fit.hypothesis, selection.workspace.drop(fit, groups)
         errors = self._errors([h.model, *(one.model for one in fewer)])
         for k, one in enumerate(fewer):
             if _ratio(errors[1 + k], errors[0]) < 1.0 + CLOSE:

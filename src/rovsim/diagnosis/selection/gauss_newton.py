@@ -103,18 +103,18 @@ def fit_or_give_up(
 
 
 def polish(
-    found: Fit, runs: Sequence[ObservedRun], reach: float = np.inf
+    start: Fit, runs: Sequence[ObservedRun], reach: float = np.inf
 ) -> tuple[Fit, FilterBank]:
     """Fitted once more to these runs under its own noise, with filters that suit it.
 
     As far as filters under that noise hold the model.
     """
 
-    def again(found: Fit) -> tuple[Fit, FilterBank]:
-        bank = FilterBank.design(runs, found.hypothesis.model, found.noise)
-        return fit(found.hypothesis, bank, found.noise, reach), bank
+    def again(start: Fit) -> tuple[Fit, FilterBank]:
+        bank = FilterBank.design(runs, start.hypothesis.model, start.noise)
+        return fit(start.hypothesis, bank, start.noise, reach), bank
 
-    polished = again(found)
+    polished = again(start)
     for _ in range(1, POLISHING_ROUNDS):
         finer = again(polished[0])
         if not finer[0].held:

@@ -38,66 +38,66 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
     kind = workspace.bank.runs[0].motion.commands.kind
     tried = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
     tried.sort(key=lambda one: one[0].score(one[1]), reverse=True)
-    best, found = tried[0]
-    found = prune_together(best, found)
-    named = {term.id for term in found.hypothesis.terms}
+    best, best_fit = tried[0]
+    best_fit = prune_together(best, best_fit)
+    named = {term.id for term in best_fit.hypothesis.terms}
     rivals = tuple(
-        Rival(term.id, own.id, best.score(found) - other.score(fit), fit)
+        Rival(term.id, own.id, best.score(best_fit) - other.score(fit), fit)
         for other, fit in tried[1:]
-        for own in found.hypothesis.terms
+        for own in best_fit.hypothesis.terms
         for term in fit.hypothesis.terms
         if own.id in ACTUATION and term.id in ACTUATION and term.id not in named
     )
-    return Selection(best, found, rivals, REACH)
+    return Selection(best, best_fit, rivals, REACH)
 
 
 def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
     common = free_terms(base, moved, ALWAYS)
-    found = [(*common, *free_terms(base, moved, ACTUATION[:1]))]
+    starts = [(*common, *free_terms(base, moved, ACTUATION[:1]))]
     if kind == "demand":
         loops = Term(OnboardControl(**EVERY_AXIS), OnboardControl.free_at(EVERY_AXIS))
-        found.append((*common, loops))
-    return [Hypothesis(base, terms) for terms in found]
+        starts.append((*common, loops))
+    return [Hypothesis(base, terms) for terms in starts]
 
 
 def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspace, Fit]:
     """Fitted, with filters and noise that follow."""
-    found = workspace.fit(start, REACH)
+    fit = workspace.fit(start, REACH)
     for _ in range(ROUNDS):
-        workspace = workspace.renew(found)
-        found = workspace.fit(found.hypothesis, REACH)
-    return workspace, found
+        workspace = workspace.renew(fit)
+        fit = workspace.fit(fit.hypothesis, REACH)
+    return workspace, fit
 
 
-def prune_together(workspace: SearchWorkspace, found: Fit) -> Fit:
+def prune_together(workspace: SearchWorkspace, fit: Fit) -> Fit:
     """Without all parameters that are not worth their penalty, until all are.
 
     Where thrust, inertia and drag are known to one factor only, none of them is sure and all are
     needed: then the file's gain is taken, and the others tell what they differ by.
     """
     while True:
-        weak = _find_weak(found, workspace.penalty)
-        for fewer in (weak, weak & mark_gain(found.hypothesis)):
-            smaller = _do_without(workspace, found, fewer)
+        weak = _find_weak(fit, workspace.penalty)
+        for fewer in (weak, weak & mark_gain(fit.hypothesis)):
+            smaller = _do_without(workspace, fit, fewer)
             if smaller is not None:
                 break
         else:
-            return found
-        found = smaller
+            return fit
+        fit = smaller
 
 
-def _do_without(workspace: SearchWorkspace, found: Fit, weak: Array) -> Fit | None:
+def _do_without(workspace: SearchWorkspace, fit: Fit, weak: Array) -> Fit | None:
     """The fit without some free parameters (k,); None where they are needed."""
     if not weak.any():
         return None
-    smaller = workspace.fit(drop_parameters(found.hypothesis, weak), REACH)
-    return smaller if workspace.score(smaller) >= workspace.score(found) else None
+    smaller = workspace.fit(drop_parameters(fit.hypothesis, weak), REACH)
+    return smaller if workspace.score(smaller) >= workspace.score(fit) else None
 
 
-def _find_weak(found: Fit, penalty: float) -> Array:
+def _find_weak(fit: Fit, penalty: float) -> Array:
     """Which free parameters (k,) are not worth their penalty; those of a loop only together."""
-    h = found.hypothesis
-    weak = ((h.x - h.absence) / np.maximum(found.std, 1e-12)) ** 2 < penalty
+    h = fit.hypothesis
+    weak = ((h.x - h.absence) / np.maximum(fit.std, 1e-12)) ** 2 < penalty
     for term, own in zip(h.terms, h.columns, strict=True):
         if not term.vanishes:
             weak[own] = weak[own].all()

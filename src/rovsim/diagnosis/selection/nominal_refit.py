@@ -33,8 +33,8 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
         return base.called("refitted")
     here, noise = _start(base, usable.moved), FIRST_NOISE
     for _ in range(ROUNDS):
-        found = fit(here, FilterBank.design(usable.runs, base, noise), noise)
-        here, noise = _hold(found.hypothesis), found.noise
+        fitted = fit(here, FilterBank.design(usable.runs, base, noise), noise)
+        here, noise = _hold(fitted.hypothesis), fitted.noise
     return here.model.called("refitted")
 
 
@@ -45,11 +45,11 @@ def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     return Hypothesis(base, (*terms, gain))
 
 
-def _hold(found: Hypothesis) -> Hypothesis:
+def _hold(fitted: Hypothesis) -> Hypothesis:
     """With what came to rest at a bound held there."""
 
     def inside(term: Term) -> tuple[str, ...]:
         known = zip(term.parameters, (term.effect[name] for name in term.free), strict=True)
         return tuple(p.name for p, value in known if p.low < value < p.high)
 
-    return replace(found, terms=tuple(replace(t, free=inside(t)) for t in found.terms))
+    return replace(fitted, terms=tuple(replace(t, free=inside(t)) for t in fitted.terms))

@@ -50,25 +50,25 @@ def rank_selected(
     base: Model, named: Sequence[Named], runs: Sequence[ObservedRun]
 ) -> list[Selected]:
     """Effects that were found, the one that removes most error first, then the next beside it."""
-    left, found, model = list(named), [], base
+    left, selected, model = list(named), [], base
     start = now = _score([base], runs)[0]
     while left:
         tried = [model + one.term.effect for one in left]
         after = _score(tried, runs)
         best = int(np.argmin(np.nan_to_num(after, nan=np.inf)))
         own = left.pop(best)
-        found.append(
+        selected.append(
             Selected(own.term, own.std, own.probability, float((now - after[best]) / start))
         )
         model, now = tried[best], after[best]
-    return found
+    return selected
 
 
-def name_terms(found: Fit, rivals: Sequence[Rival]) -> list[Named]:
+def name_terms(fit: Fit, rivals: Sequence[Rival]) -> list[Named]:
     """The effects of a fit."""
     return [
-        Named(term, find_std(found, i), _share_of_odds(found, i, rivals))
-        for i, term in enumerate(found.hypothesis.terms)
+        Named(term, find_std(fit, i), _share_of_odds(fit, i, rivals))
+        for i, term in enumerate(fit.hypothesis.terms)
     ]
 
 
@@ -136,29 +136,29 @@ def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
     return np.array([np.nan if e is None else e for e in errors])
 
 
-def find_std(found: Fit, i: int) -> dict[str, float]:
+def find_std(fit: Fit, i: int) -> dict[str, float]:
     """Standard deviations by name; within its grain a value could be anywhere (uniform: / √12)."""
-    term, columns = found.hypothesis.terms[i], found.hypothesis.columns[i]
+    term, columns = fit.hypothesis.terms[i], fit.hypothesis.columns[i]
     return {
-        p.name: float(np.hypot(found.std[k] * p.scale, p.resolution / np.sqrt(12.0)))
+        p.name: float(np.hypot(fit.std[k] * p.scale, p.resolution / np.sqrt(12.0)))
         for p, k in zip(term.parameters, columns, strict=True)
     }
 
 
-def _share_of_odds(found: Fit, i: int, rivals: Sequence[Rival]) -> float | None:
+def _share_of_odds(fit: Fit, i: int, rivals: Sequence[Rival]) -> float | None:
     """Of this name among all that were tried in its place, from their likelihoods; None: none."""
-    name = found.hypothesis.terms[i].id
+    name = fit.hypothesis.terms[i].id
     tried = [r.deviance_difference for r in rivals if r.instead_of == name]
     odds = sum(np.exp(-0.5 * min(deviance_difference, 700.0)) for deviance_difference in tried)
     return float(1.0 / (1.0 + odds)) if tried else None
 
 
-def rank_alone(workspace: SearchWorkspace, nothing: Fit, found: Fit) -> list[Ranked]:
+def rank_alone(workspace: SearchWorkspace, nothing: Fit, fit: Fit) -> list[Ranked]:
     """Every effect by itself: those refitted first, by their likelihood, then the others' promise.
 
     The probability is that of the name if one effect alone is missing, or none.
     """
-    named, alone = {term.id for term in found.hypothesis.terms}, workspace.propose(nothing)
+    named, alone = {term.id for term in fit.hypothesis.terms}, workspace.propose(nothing)
     starts = [(p, nothing.hypothesis.with_term(p.term)) for p in alone]
     fits = [workspace.fit(h) for p, h in starts if p.term.id in named or workspace.has_fitted(h)]
     fits.sort(key=workspace.score, reverse=True)

@@ -44,11 +44,10 @@ def fit_remaining_noise(
         noise = bank.fit_axes(draw_remainder(bank, e, columns, known), known).noise
         if np.max(np.abs(np.log(noise.level / known.level))) < CLOSE:
             break
-    found = bank.fit_noise(draw_remainder(bank, e, columns, noise), noise, thorough=True)
-    own = _fit_own_noise(bank, at.model, found.noise)
-    return (
-        own if own.two_log_likelihood > found.two_log_likelihood + sensitivities.count else found
-    ).noise
+    fit = bank.fit_noise(draw_remainder(bank, e, columns, noise), noise, thorough=True)
+    own = _fit_own_noise(bank, at.model, fit.noise)
+    likelier = own.two_log_likelihood > fit.two_log_likelihood + sensitivities.count
+    return (own if likelier else fit).noise
 
 
 def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
@@ -59,14 +58,14 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
     first = replace(
         FIRST_NOISE, colour=noise.colour, colour_memory=noise.colour_memory, drift=noise.drift
     )
-    found = NoiseFit(noise, -np.inf)
+    fit = NoiseFit(noise, -np.inf)
     for _ in range(ROUNDS):
-        bank = bank.redesign(model, found.noise)
+        bank = bank.redesign(model, fit.noise)
         again = bank.fit_noise(bank.innovations(model), first)
-        if not again.two_log_likelihood > found.two_log_likelihood + SETTLED:
+        if not again.two_log_likelihood > fit.two_log_likelihood + SETTLED:
             break
-        found = again
-    return found
+        fit = again
+    return fit
 
 
 def _join(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:

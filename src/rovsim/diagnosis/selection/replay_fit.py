@@ -92,18 +92,18 @@ def soften(x: Array) -> Array:
     return np.sign(x) * np.sqrt(2.0 * (np.sqrt(1.0 + x**2) - 1.0))
 
 
-def fit_to_replays(found: Fit, bank: FilterBank) -> Fit:
+def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
     evidence = Replays(bank.runs)
     seen = levenberg_marquardt(
-        found.hypothesis, evidence, found.noise, Prior.around(found.hypothesis.x, REACH)
+        fit.hypothesis, evidence, fit.noise, Prior.around(fit.hypothesis.x, REACH)
     )
     covariance = _sandwich(
-        evidence.whiten(seen.e, found.noise), evidence.whiten(seen.J, found.noise),
+        evidence.whiten(seen.e, fit.noise), evidence.whiten(seen.J, fit.noise),
         evidence.number(),
     )  # fmt: skip
-    fresh = bank.redesign(seen.at.model, found.noise)
-    again = judge(fresh.linearise(seen.at), fresh, found.noise)
+    fresh = bank.redesign(seen.at.model, fit.noise)
+    again = judge(fresh.linearise(seen.at), fresh, fit.noise)
     return replace(again, covariance=covariance)
 
 

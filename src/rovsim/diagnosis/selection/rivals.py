@@ -51,12 +51,12 @@ class Selection:
         """
         return self.workspace.challenge(start, current, score, self.reach)
 
-    def prune(self, workspace: SearchWorkspace, found: Fit) -> Fit:
+    def prune(self, workspace: SearchWorkspace, fit: Fit) -> Fit:
         """Without what is not worth its penalty to a fit of the selection.
 
         What was fitted at once stays: none of it is sure by itself, and all is needed.
         """
-        return prune(workspace, found) if np.isinf(self.reach) else found
+        return prune(workspace, fit) if np.isinf(self.reach) else fit
 
     @property
     def named_rivals(self) -> list[Rival]:

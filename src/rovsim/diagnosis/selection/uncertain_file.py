@@ -40,7 +40,7 @@ class FileNumber(NamedTuple):
 
 def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:
     """All that the vehicle file can be wrong about."""
-    base, found = workspace.sensitivities.base_model, []
+    base, numbers = workspace.sensitivities.base_model, []
     for block in workspace.sensitivities.blocks:
         effect = block.candidate.effect
         if not block.candidate.absent or effect.id not in STATED:
@@ -49,8 +49,8 @@ def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:
         for column, parameter in each:
             if effect is not ThrusterGain or parameter.name in ONE_GAIN:  # one thruster's: a fault
                 spread = spread_of_file(base, effect, parameter)
-                found.append(FileNumber(block.candidate, parameter.name, 1 + column, spread))
-    return found
+                numbers.append(FileNumber(block.candidate, parameter.name, 1 + column, spread))
+    return numbers
 
 
 def cost_beside(numbers: list[FileNumber], products: Array) -> float:
@@ -71,27 +71,27 @@ def _take(numbers: list[FileNumber], products: Array) -> tuple[Array, Array, Arr
     return products[np.ix_(own, own)], products[own, 0], spread
 
 
-def measure_cost(workspace: SearchWorkspace, found: Fit) -> float:
+def measure_cost(workspace: SearchWorkspace, fit: Fit) -> float:
     """The same of a fit."""
-    return cost_beside(list_numbers(workspace), workspace.columns.products(found.seen))
+    return cost_beside(list_numbers(workspace), workspace.columns.products(fit.seen))
 
 
-def measure_doubt(workspace: SearchWorkspace, found: Fit) -> float:
+def measure_doubt(workspace: SearchWorkspace, fit: Fit) -> float:
     """How much likelier a file is that is off everywhere than one that is right beside a fit.
 
     In twice a log likelihood: Bayes' factor, to first order, of all numbers of the file as free as
     such files are off. Each number that nothing asks for counts against it.
     """
-    numbers, products = list_numbers(workspace), workspace.columns.products(found.seen)
+    numbers, products = list_numbers(workspace), workspace.columns.products(fit.seen)
     H, _, spread = _take(numbers, products)
     needless = float(np.linalg.slogdet(np.eye(len(H)) + spread[:, None] * H * spread)[1])
     return float(products[0, 0]) - cost_beside(numbers, products) - needless
 
 
-def measure_loss(workspace: SearchWorkspace, found: Fit, term: Term) -> float:
+def measure_loss(workspace: SearchWorkspace, fit: Fit, term: Term) -> float:
     """How much more is left beside a loose file without one term of a fit."""
-    numbers, rest = list_numbers(workspace), workspace.products_without(found, term)
-    return cost_beside(numbers, rest) - cost_beside(numbers, workspace.columns.products(found.seen))
+    numbers, rest = list_numbers(workspace), workspace.products_without(fit, term)
+    return cost_beside(numbers, rest) - cost_beside(numbers, workspace.columns.products(fit.seen))
 
 
 def find_limit(workspace: SearchWorkspace, term: Term) -> float:
@@ -99,12 +99,12 @@ def find_limit(workspace: SearchWorkspace, term: Term) -> float:
     return 0.0 if term.id in STATED else workspace.penalty * term.choices + FILE_ODDS
 
 
-def explains(workspace: SearchWorkspace, found: Fit, name: str) -> bool:
+def explains(workspace: SearchWorkspace, fit: Fit, name: str) -> bool:
     """Whether all of the file together explains what a special effect of a fit does."""
     if name in STATED:
         return False
-    term = next(one for one in found.hypothesis.terms if one.id == name)
-    return measure_loss(workspace, found, term) <= find_limit(workspace, term)
+    term = next(one for one in fit.hypothesis.terms if one.id == name)
+    return measure_loss(workspace, fit, term) <= find_limit(workspace, term)
 
 
 def weigh(
@@ -134,8 +134,8 @@ def propose_file(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     numbers = [n for n in list_numbers(workspace) if n.candidate.effect is not ThrusterGain]
     own, M = [number.row for number in numbers], workspace.columns.products(current.seen)
     reduction = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.penalty)
-    found = current.hypothesis
+    h = current.hypothesis
     for j, x in zip(reduction.chosen, reduction.x, strict=True):
         term = numbers[j].candidate.term([numbers[j].parameter])
-        found = found.with_term(term.at(term.x + x))
-    return found if reduction.chosen else None
+        h = h.with_term(term.at(term.x + x))
+    return h if reduction.chosen else None

@@ -52,11 +52,11 @@ def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     return loose if is_off(loose.hypothesis) and kept else current
 
 
-def _find_explained(workspace: SearchWorkspace, found: Fit) -> Term | None:
+def _find_explained(workspace: SearchWorkspace, fit: Fit) -> Term | None:
     """The special effect that a loose file needs least, if it explains one."""
-    special = [term for term in found.hypothesis.terms if term.id not in STATED]
+    special = [term for term in fit.hypothesis.terms if term.id not in STATED]
     beyond = [
-        uncertain_file.measure_loss(workspace, found, term)
+        uncertain_file.measure_loss(workspace, fit, term)
         - uncertain_file.find_limit(workspace, term)
         for term in special
     ]

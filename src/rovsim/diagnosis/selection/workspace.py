@@ -126,20 +126,20 @@ class SearchWorkspace:
         key, least = (start.key, reach), score - HOPELESS + self._ask(start)
         if key not in self._fitted and least < self._given_up.get(key, np.inf):
             first = self.bank.linearise(start, current.seen)
-            found = fit_or_give_up(first, self.bank, self.noise, least, reach)
-            if found is None:
+            fitted = fit_or_give_up(first, self.bank, self.noise, least, reach)
+            if fitted is None:
                 self._given_up[key] = least
             else:
-                self._fitted[key] = found
+                self._fitted[key] = fitted
         return self._fitted.get(key)
 
     def has_fitted(self, start: Hypothesis) -> bool:
         """Whether that start was fitted already, without a `reach`."""
         return (start.key, np.inf) in self._fitted
 
-    def score(self, found: Fit) -> float:
+    def score(self, fit: Fit) -> float:
         """Twice the log likelihood, less the penalty of the free parameters, and an odd gain."""
-        return found.two_log_likelihood - self._ask(found.hypothesis)
+        return fit.two_log_likelihood - self._ask(fit.hypothesis)
 
     def _ask(self, at: Hypothesis) -> float:
         """What a hypothesis costs."""
@@ -156,11 +156,11 @@ class SearchWorkspace:
         return self._removed[key]
 
     def _remove_each(self, current: Fit) -> list[Removed]:
-        found, left = [], float(self.columns.products(current.seen)[0, 0])
+        removed, left = [], float(self.columns.products(current.seen)[0, 0])
         for seen in self._without(current, [(term,) for term in current.hypothesis.terms]):
             M = self.columns.products(seen)
-            found.append(Removed(seen.at, M, float(M[0, 0]) - left, self._rank(M)))
-        return found
+            removed.append(Removed(seen.at, M, float(M[0, 0]) - left, self._rank(M)))
+        return removed
 
     def products_without(self, current: Fit, term: Term) -> Array:
         """The `products` of the current hypothesis without one of its terms."""
@@ -187,13 +187,13 @@ class SearchWorkspace:
         h, J = current.hypothesis, current.seen.J
         rests = [replace(h, terms=tuple(t for t in h.terms if t not in own)) for own in groups]
         e = self.bank.evaluate([one.model for one in rests])
-        found = []
+        linearised = []
         for k, (rest, own) in enumerate(zip(rests, groups, strict=True)):
             each = zip(h.terms, h.columns, strict=True)
             gone = [j for term, columns in each if term in own for j in columns]
             left = [np.delete(of_run, gone, axis=0) for of_run in J]
-            found.append(Linearised(rest, [of_run[k] for of_run in e], left))
-        return found
+            linearised.append(Linearised(rest, [of_run[k] for of_run in e], left))
+        return linearised
 
     def _rank(self, products: Array) -> list[Proposal]:
         """All candidates, best first; none where the observer cannot hold the model."""

@@ -63,13 +63,13 @@ Known = tuple[float | None, float | None]  # m north and east of a law's place, 
 def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list[LawTerm]:
     """All candidate terms that these runs could show; at places that suit what is known of one."""
     moving = np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))
-    found = [term for i in moving for term in list_body_terms(int(i), moving)]
+    terms = [term for i in moving for term in list_body_terms(int(i), moving)]
     if not all((run.axes | ~run.free_axes.astype(bool)).all() for run in runs):
-        return found
+        return terms
     n, e = known
     wanted = [(a if n is None else n, b if e is None else e) for a, b in list_places(runs)]
     places = list(dict.fromkeys(wanted))
-    return [*found, *_along_world(), *(t for one in places for t in _at(one))]
+    return [*terms, *_along_world(), *(t for one in places for t in _at(one))]
 
 
 def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
@@ -167,8 +167,8 @@ def push_at(terms: Sequence[LawTerm], state: Array, model: Model, middle: Array)
     linear, quadratic = drag_of(model)
     gain = linear + 2.0 * quadratic * np.abs(nu)  # d drag / d velocity of the water
     tables = {}
-    found = np.zeros((len(terms), len(state), 6))
-    for out, term in zip(found, terms, strict=True):
+    wrenches = np.zeros((len(terms), len(state), 6))
+    for out, term in zip(wrenches, terms, strict=True):
         if term.place not in tables:
             place = middle.copy()
             if term.place is not None:
@@ -185,7 +185,7 @@ def push_at(terms: Sequence[LawTerm], state: Array, model: Model, middle: Array)
         else:
             turning = -table[EAST, :, None] * R[:, 0, :] + table[NORTH, :, None] * R[:, 1, :]
             out[:, :3] = gain * value[:, None] * turning
-    return found
+    return wrenches
 
 
 def respond_to(pushes: Array, model: Model, run: ObservedRun, tuning: Tuning) -> Array:
@@ -236,7 +236,7 @@ def project(
     acts = np.flatnonzero(size > 0.0)
     kept = tuple(terms[int(k)] for k in acts)
     rows = 1 + len(acts) + len(fitted)
-    found = {int(k): np.zeros((rows, rows)) for k in np.unique(block)}
+    parts = {int(k): np.zeros((rows, rows)) for k in np.unique(block)}
     first = 0
     for run, tuning in zip(bank.runs, tunings, strict=True):  # columns of one run at a time
         pushes = push(kept, run, model, middle) / size[acts, None, None]
@@ -246,9 +246,9 @@ def project(
         whole = np.concatenate(every, axis=1, dtype=np.float32)
         for k in np.unique(block[at]):
             own = whole[:, :, block[at] == k]
-            found[int(k)] += sum(axis @ axis.T for axis in own)
+            parts[int(k)] += sum(axis @ axis.T for axis in own)
         first = at.stop
-    return Columns(kept, size[acts], tuple(_without(list(found.values()), 1 + len(acts))))
+    return Columns(kept, size[acts], tuple(_without(list(parts.values()), 1 + len(acts))))
 
 
 def _measure_size(

@@ -55,20 +55,20 @@ class Products(Form):
 
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
         """Coefficients with the units of their terms, then the place they speak of."""
-        found = []
+        numbers = []
         each = zip(name_terms(self.terms), self.terms, strict=True)
         for k, (name, term) in enumerate(each, start=1):
             size = law.effect[f"size{k}"]
             value = law.effect[f"c{k}"] * size
             scale = float(f"{max(abs(value), 1e-6):.1g}")
             unit, symbol = unit_of(term.on, term.factors), f"c_{k}" if len(self.terms) > 1 else "c"
-            found.append(Number(name, unit, symbol, value, std[f"c{k}"] * size, scale))
+            numbers.append(Number(name, unit, symbol, value, std[f"c{k}"] * size, scale))
         known = {p.name: p for p in law.parameters}
         for name in list_moved(self.terms):
             unit, symbol, scale = PLACES[name]
             value, low, high = law.effect[name], stated(known[name].low), stated(known[name].high)
-            found.append(Number(name, unit, symbol, value, std[name], scale, low, high, value))
-        return found
+            numbers.append(Number(name, unit, symbol, value, std[name], scale, low, high, value))
+        return numbers
 
     def divide(self, law: Term) -> list[Effect]:
         """Each term by itself: the others' coefficients are zero."""
