@@ -31,7 +31,7 @@ def test_the_torque_of_propellers_is_foreseen_beside_a_loop_about_yaw(tmp_path):
     known = linearise_candidates(bank, Hypothesis(base), torque)
     first = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     loop = Hypothesis(base, (Term(OnboardControl(**LOOP), ()),))
-    workspace = first.redesign(loop, FIRST_NOISE)
+    workspace = first.with_noise(loop, FIRST_NOISE)
     (proposal,) = workspace.propose(workspace.fit(loop))
     assert proposal.term.effect["ratio"] == pytest.approx(RATIO, rel=0.1)
     assert proposal.net_decrease > 0.0

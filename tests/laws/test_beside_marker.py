@@ -42,7 +42,7 @@ def proposed(workspace, found):
 
 def test_drag_is_foreseen_beside_a_marker_that_is_not_at_co(searching):
     workspace, found = searching
-    again = workspace.look_again(found)
+    again = workspace.relinearise_if_changed(found)
     assert again.sensitivities.beside == (MarkerOffset.id,)
     before, after = (abs(proposed(w, found) / DRAG["heave"] - 1.0) for w in (workspace, again))
     assert after < 0.25
@@ -51,18 +51,18 @@ def test_drag_is_foreseen_beside_a_marker_that_is_not_at_co(searching):
 
 def test_nothing_is_looked_at_again_beside_the_same(searching):
     workspace, found = searching
-    again = workspace.look_again(found)
-    assert again.look_again(found) is again
+    again = workspace.relinearise_if_changed(found)
+    assert again.relinearise_if_changed(found) is again
 
 
 def test_columns_that_have_not_changed_are_kept(searching):
     workspace, found = searching
     drag = Hypothesis(found.hypothesis.base, (Term(QuadraticDamping(), ("surge",)),))
-    assert workspace.look_again(workspace.fit(drag)) is workspace
+    assert workspace.relinearise_if_changed(workspace.fit(drag)) is workspace
 
 
 def test_an_effect_that_is_tried_and_not_fitted_changes_no_columns(searching):
     """Thrusters in another order: it has no number that could be fitted."""
     workspace, found = searching
     order = Hypothesis(found.hypothesis.base, (Term(ThrusterOrder(), ()),))
-    assert workspace.look_again(workspace.fit(order)) is workspace
+    assert workspace.relinearise_if_changed(workspace.fit(order)) is workspace

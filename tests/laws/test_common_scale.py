@@ -7,13 +7,13 @@ from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.advice import FIX_SCALE, advise
 from rovsim.diagnosis.checks.common_scale import include_scale
-from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.reporting.words.verdict import explain

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.observer.evidence import linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.observer.residual_source import linearise
 from rovsim.diagnosis.selection.gauss_newton import levenberg_marquardt
 from rovsim.dynamics.catalogue import built_in
 from worlds import model
@@ -15,7 +15,7 @@ WIDTH, GRAIN = 0.06, 0.005  # of the dead band
 
 
 class Errors:
-    """Evidence of errors that are a formula."""
+    """A source of errors that are a formula."""
 
     def evaluate(self, models):
         return [np.stack([self._errors(one) for one in models])]

@@ -9,12 +9,11 @@ import pytest
 from rovsim import AXES
 from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
 from rovsim.diagnosis.checks.identifiability import find_doubtful, group_joint_parameters
-from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.drifting_current import DriftFit
-from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.random_walk import Rate
+from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
@@ -26,6 +25,7 @@ from rovsim.diagnosis.selection.ranking import (
     find_stand_ins,
     name_drift,
 )
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.clocks import InputDelay

@@ -6,13 +6,13 @@ import pytest
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law
+from rovsim.diagnosis.equations.law_search import choose_kinds, stay
 from rovsim.diagnosis.equations.products.as_effect import list_moved
 from rovsim.diagnosis.equations.products.library import Columns, LawTerm, list_body_terms, push_at
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate, unit_of
 from rovsim.diagnosis.equations.products.wording import write_equation
-from rovsim.diagnosis.equations.seek import choose_kinds, stay
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.engine.types import EXAMPLE

@@ -8,7 +8,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates, measure_columns
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -39,7 +39,7 @@ def test_behind_loops_about_all_angles_the_torque_of_propellers_cannot_be_seen(t
     loops = Term(OnboardControl(**LOOPS), tuple(LOOPS))
     with_loops, without = (
         list_not_observable(
-            Selection(workspace, workspace.fit(h), (), True), built_in(), base.vehicle
+            SearchResult(workspace, workspace.fit(h), (), True), built_in(), base.vehicle
         )
         for h in (Hypothesis(base, (loops,)), Hypothesis(base))
     )

@@ -14,7 +14,7 @@ from rovsim.core.rotations import exp, log, multiply, normalized
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.filter_delay import absorb_delay, seen_through
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.sensing import MarkerOffset, WorldTilt
@@ -210,9 +210,9 @@ def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood
     found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
     rest = SimpleNamespace(held=np.isfinite(likelihood), hypothesis=SimpleNamespace(x=np.empty(0)))
     workspace = SimpleNamespace(fit=lambda start: rest)
-    selection = Selection(workspace, found, ())
+    selection = SearchResult(workspace, found, ())
     again, finer = absorb_delay(selection, base, smoothing)
-    assert (again.found is rest) is absorbed
+    assert (again.best is rest) is absorbed
     assert (finer != smoothing) is absorbed
     late = finer.effect.effective_time(0.0) + 1.0 / (np.pi * finer.cutoff)
     assert late == pytest.approx(1.0 / (6.0 * np.pi) + absorbed * delay)
@@ -245,6 +245,6 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
         seen_through(base, smoothing), (Term(ThrusterLag(time_constant=lag), ("time_constant",)),)
     )
     workspace = SimpleNamespace(fit=fit, score=lambda one: one.score, penalty=0.0)
-    again, finer = absorb_delay(Selection(workspace, found(h), ()), base, smoothing)
-    assert (again.found.hypothesis.terms == ()) is absorbed
+    again, finer = absorb_delay(SearchResult(workspace, found(h), ()), base, smoothing)
+    assert (again.best.hypothesis.terms == ()) is absorbed
     assert finer.latency == pytest.approx(lag if absorbed else 0.0)

@@ -14,7 +14,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.gate import Gate
+from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.joint_fit import fit_jointly, prune_together
 from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
@@ -74,7 +74,7 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     known = linearise_candidates(bank, Hypothesis(base), some)
     workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     selection = fit_jointly(workspace, base, AXES)
-    found, bank = selection.found, selection.workspace.bank
+    found, bank = selection.best, selection.workspace.bank
     terms = {t.id: t.effect for t in found.hypothesis.terms}
     assert "thruster_gain" not in terms
     assert all(r.deviance_difference > 0.0 for r in selection.rivals)
@@ -87,7 +87,7 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
         decay = loops[f"bandwidth_{axis}"] + body.linear[i] / body.M[i, i]
         true = WIDTH[axis] + base.body.linear[i] / base.body.M[i, i]
         assert decay == pytest.approx(true, rel=0.35), axis
-    settled = settle(selection, select_usable(runs), Gate((), runs))
+    settled = settle(selection, select_usable(runs), HoldoutValidation((), runs))
     left = {t.id: t.free for t in settled.fit.hypothesis.terms}
     assert left == {t.id: t.free for t in found.hypothesis.terms}  # all of it, though none is sure
     again = fit_to_replays(found, bank)

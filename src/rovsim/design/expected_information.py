@@ -22,13 +22,13 @@ from rovsim.core.run import Commands
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.record import record
 from rovsim.design.recording_setup import RecordingSetup
-from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.innovations import estimate_errors
 from rovsim.diagnosis.observer.kalman import AxisMotion
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import tune
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.gauss_newton import REACH
 
 NEGLIGIBLE = 1e-3  # of what the train runs hold: less is not worth a comparison

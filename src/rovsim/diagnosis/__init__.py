@@ -1,15 +1,15 @@
 """Which physical effects a model lacks, how sure that is, and what is left unexplained.
 
-observer      the model runs along the train runs, corrected by a filter: what it could not foresee
-selection     which effects explain that: candidates, search, fits, what else they could be
-checks        what is asked of the answer: structure left, what is known, noise floor
-equations     a law for what is left, where one holds
-answer        what was selected, past the gate, at its final values, and what that leaves
-procedure     these, in order
-found         what comes of it
-advice        what to record next
-result        what is written of it
-of_campaign   a campaign in, all that is reported out; test runs are opened here, once
-settings      how thorough
-apply         a model with the effects that were found
+observer         the model runs along the train runs, filtered: what it could not foresee
+selection        which effects explain that: candidates, search, fits, what else they could be
+checks           what is asked of the answer: structure left, what is known, noise floor
+equations        a law for what is left, where one holds
+answer           what was selected, validated, at its final values, and what that leaves
+procedure        these, in order
+train_diagnosis  what comes of it
+advice           what to record next
+result           what is written of it
+of_campaign      a campaign in, all that is reported out; test runs are opened here, once
+settings         how thorough
+apply            a model with the effects that were found
 """

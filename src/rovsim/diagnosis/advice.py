@@ -3,8 +3,8 @@
 from typing import Sequence
 
 from rovsim.diagnosis.checks.wrong_units import list_absurd
-from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.selection.ranking import leads
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.pose_filter import PoseFilter

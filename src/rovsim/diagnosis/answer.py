@@ -1,4 +1,4 @@
-"""An answer: what the search selected, past the gate, at its final values, and what it leaves."""
+"""An answer: what the search selected, validated, at its final values, and what it leaves."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,10 +20,10 @@ from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
 from rovsim.diagnosis.selection.cross_validation import drop_idle
 from rovsim.diagnosis.selection.forward_selection import search_unnoticed
-from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
+from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model
 
 
@@ -31,11 +31,11 @@ from rovsim.dynamics.model import Model
 class Answer:
     """An answer: its final values, how likely it is, and all that it leaves unexplained.
 
-    `refused`: the gate refused effects, and nothing but these explains what they explained.
+    `refused`: hold-out validation refused effects, and nothing else explains what these did.
     `whole`: the same with all of a vehicle file that is off, by which what is left is judged.
     """
 
-    selection: Selection
+    selection: SearchResult
     fit: Fit
     bank: FilterBank
     score: float
@@ -57,55 +57,57 @@ class Answer:
     @cached_property
     def replayed(self) -> Model:
         """At the values that replay the stretches best that it was chosen by."""
-        fit = self.selection.found
+        fit = self.selection.best
         if len(fit.hypothesis.x):
             fit = _refit_to_replays(fit, self.selection.workspace.bank)
         return fit.hypothesis.model
 
 
-def settle_noticed(selection: Selection, usable: UsableRuns, gate: Gate, seed: int) -> Answer:
+def settle_noticed(
+    selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation, seed: int
+) -> Answer:
     """Names that a user would notice; where they leave something, the others too if they do not."""
     noticed = drop_idle(drop_unsure(selection))
-    answer = settle(noticed, usable, gate)
+    answer = settle(noticed, usable, holdout)
     if not answer.lasting:
         return answer
     every = drop_unsure(search_unnoticed(selection, seed))
-    if every.found is noticed.found:
+    if every.best is noticed.best:
         return answer
-    more = settle(every, usable, gate)
+    more = settle(every, usable, holdout)
     return more if more.complete else answer
 
 
-def settle(selection: Selection, usable: UsableRuns, gate: Gate) -> Answer:
-    """What passes the gate, at its final values on all runs, and all that it leaves unexplained."""
-    selection, whole = gate.judge(selection)
+def settle(selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation) -> Answer:
+    """What hold-out validation passes, at its final values on all runs, and what it leaves."""
+    selection, whole = holdout.judge(selection)
     settled = _settle_values(selection, usable)
-    fewer = gate.keep_earning(selection) if settled.lasting else selection
-    if fewer.found is not selection.found:
+    fewer = holdout.keep_earning(selection) if settled.lasting else selection
+    if fewer.best is not selection.best:
         settled = _settle_values(fewer, usable)
     return replace(settled, refused=not whole and settled.complete)
 
 
-def _settle_values(selection: Selection, usable: UsableRuns) -> Answer:
+def _settle_values(selection: SearchResult, usable: UsableRuns) -> Answer:
     """At its final values on all runs, without what these do not bear out."""
     fit, bank = polish_selection(selection, usable.runs)
-    borne_out = selection.prune(selection.workspace.look_at(bank, fit.noise), fit)
+    borne_out = selection.prune(selection.workspace.on_runs(bank, fit.noise), fit)
     if borne_out is not fit:
         fewer = selection.fit(borne_out.hypothesis)
         if fewer.held:
-            return _settle_values(replace(selection, found=fewer), usable)
+            return _settle_values(replace(selection, best=fewer), usable)
     score, whole = selection.workspace.score(fit), fit_whole_file(fit, bank)
     left = find_structure(fit if whole is None else whole, bank) if fit.held else []
     return Answer(selection, fit, bank, score, left, whole=whole)
 
 
-def choose(one: Answer, other: Answer, gate: Gate) -> Answer:
+def choose(one: Answer, other: Answer, holdout: HoldoutValidation) -> Answer:
     """Of two answers the one that surely replays better; else what is complete, or the likelier.
 
     Where an answer is not complete, what its likelihood takes for noise is physics. So each replays
     stretches that took no part, at the values that replay the others best, as it would end.
     """
-    better = gate.prefers(one.replayed, other.replayed) if gate.runs else None
+    better = holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
     if better is not None:
         return one if better else other
     return one if not other.complete and one.score >= other.score else other
@@ -140,6 +142,8 @@ def _refit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     return again
 
 
-def polish_selection(selection: Selection, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
+def polish_selection(
+    selection: SearchResult, runs: Sequence[ObservedRun]
+) -> tuple[Fit, FilterBank]:
     """Fitted once more to all runs under its own noise, with filters that suit it."""
-    return polish(selection.found, runs, selection.reach)
+    return polish(selection.best, runs, selection.reach)

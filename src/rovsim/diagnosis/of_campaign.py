@@ -11,11 +11,11 @@ from rovsim.core.horizons import HORIZON, WINDOW
 from rovsim.core.progress import step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
-from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
 from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model

@@ -6,7 +6,7 @@ sensitivities   how each candidate would change what the filter could not forese
 search          add, refit, swap, prune; against what chance gives to the best of all candidates
 held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows;
                 where a velocity is not measured, few blocks must not make it sure
-gate            it must replay stretches well that took no part in choosing
+validation      it must replay stretches well that took no part in choosing
 structure       what is left, and no candidate explains; then those too that nobody would notice
 masked laws     where nothing is: do names stand in for a law that they resemble?
 joint fit       where there is some: all that could be wrong together, pruned; it competes
@@ -36,7 +36,6 @@ from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
-from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
 from rovsim.diagnosis.observer.divergence import ModelLost, require_held
 from rovsim.diagnosis.observer.filter_bank import FilterBank
@@ -47,8 +46,8 @@ from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.filter_delay import absorb_delay, seen_through
 from rovsim.diagnosis.selection.forward_selection import search
-from rovsim.diagnosis.selection.gate import Gate, keep_apart
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, keep_apart
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (
     Named,
@@ -62,11 +61,12 @@ from rovsim.diagnosis.selection.ranking import (
     rank_selected,
 )
 from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.uncertainty import correlate
@@ -111,22 +111,23 @@ def _diagnose(
     selection = search(workspace, nothing, seed)
     if smoothing:
         selection, smoothing = absorb_delay(selection, base, smoothing)
-    gate = Gate(apart, usable.runs, current_drifts=selection.found.noise.drift is not None)
-    answer = _unmask(settle_noticed(selection, usable, gate, seed))
-    if smoothing and gate.refuses(answer.fit.hypothesis.model, base):
+    drifts = selection.best.noise.drift is not None
+    holdout = HoldoutValidation(apart, usable.runs, drifts)
+    answer = _unmask(settle_noticed(selection, usable, holdout, seed))
+    if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
         return _diagnose(base, usable, settings, catalogue, seed, stage, smooths=False)
     stage("checking")
     if answer.lasting:
         seen = seen_through(base, smoothing)
-        joint = settle(fit_jointly(workspace, seen, usable.moved), usable, gate)
-        answer = choose(answer, _unmask(joint), gate)
+        joint = settle(fit_jointly(workspace, seen, usable.moved), usable, holdout)
+        answer = choose(answer, _unmask(joint), holdout)
     noise, e = answer.fit.noise, answer.fit.seen.e
     if noise.drift and answer.bank.varies_with_place(e, noise):
         calm = usable.where_no_water_wanders()
         return _diagnose(base, calm, settings, catalogue, seed, stage, smooths)
     answer, wider, scale = finish(answer, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
-    law = _propose(answer, base, gate, usable, camera) if answer.lasting else None
+    law = _propose(answer, base, holdout, usable, camera) if answer.lasting else None
     rivals = answer.selection.named_rivals
     terms = name_terms(wider, rivals)
     named = [*camera, *(doubt_lead(terms) if camera else terms)]
@@ -174,7 +175,7 @@ def _begin(
 
     nothing, workspace = look(smoothing)
     if smoothing:
-        _, finer = absorb_delay(Selection(workspace, nothing, ()), base, smoothing)
+        _, finer = absorb_delay(SearchResult(workspace, nothing, ()), base, smoothing)
         if finer is not smoothing:
             return *look(finer), finer
     return nothing, workspace, smoothing
@@ -208,20 +209,21 @@ def _observe(
             break
         close = close.redesign(base, noise)  # forces differ where the water moves
     workspace = SearchWorkspace(WhiteColumns(close, sensitivities, noise), settings)
-    return workspace.redesign(Hypothesis(base), noise)
+    return workspace.with_noise(Hypothesis(base), noise)
 
 
 def _propose(
-    answer: Answer, base: Model, gate: Gate, usable: UsableRuns, camera: Sequence[Named]
-) -> ProposedLaw | None:
+    answer: Answer, base: Model, holdout: HoldoutValidation, usable: UsableRuns,
+    camera: Sequence[Named],
+) -> ProposedLaw | None:  # fmt: skip
     """An equation for what is left, where one holds."""
 
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
-        return polish_selection(replace(answer.selection, found=with_law), usable.runs)
+        return polish_selection(replace(answer.selection, best=with_law), usable.runs)
 
     whole = answer.fit.hypothesis.model
-    best = Catalogued(whole, answer.replayed if gate.runs else whole)
-    return propose_law(answer.selection, best, base, gate, usable.runs, polish, camera)
+    best = Catalogued(whole, answer.replayed if holdout.runs else whole)
+    return propose_law(answer.selection, best, base, holdout, usable.runs, polish, camera)
 
 
 def _trace(answer: Answer) -> ForceInTime | None:

@@ -16,11 +16,11 @@ from rovsim.diagnosis.equations.describe import (
     describe_values,
     rounded,
 )
-from rovsim.diagnosis.found import TrainDiagnosis
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
-from rovsim.diagnosis.selection.rivals import SURE, Rival
+from rovsim.diagnosis.selection.search_result import SURE, Rival
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.uncertainty import correlate
 from rovsim.results.diagnosis import (

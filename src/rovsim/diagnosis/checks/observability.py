@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.candidates import list_means
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Requirement, StochasticCurrent
@@ -29,7 +29,7 @@ LOGGED: tuple[Requirement, ...] = ("commands", "demands")  # without a log of th
 
 
 def list_not_observable(
-    selection: Selection, catalogue: Catalogue, vehicle: Vehicle
+    selection: SearchResult, catalogue: Catalogue, vehicle: Vehicle
 ) -> tuple[str, ...]:
     """Ids of the tried effects that the runs cannot show, in the order of the catalogue.
 
@@ -40,9 +40,9 @@ def list_not_observable(
     blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
     larger = max(1.0, vehicle.rigid_body.mass / SCALED_FOR)
     shown = find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, larger)
-    if selection.found.hypothesis.model.thrust_path.autopilots:
+    if selection.best.hypothesis.model.thrust_path.autopilots:
         driven = [block for block in blocks if block.candidate.effect.requires == "thrusters"]
-        sizes = workspace.columns.sizes(selection.found.hypothesis)
+        sizes = workspace.columns.sizes(selection.best.hypothesis)
         shown |= find_shown(sizes, driven, workspace.penalty, larger)
     silent = {name for name, yes in shown.items() if not yes}
     silent |= _find_unlogged(runs, catalogue, vehicle)
@@ -50,7 +50,7 @@ def list_not_observable(
         silent |= {
             name for name, effect in catalogue.items() if issubclass(effect, StochasticCurrent)
         }
-    silent -= {term.id for term in selection.found.hypothesis.terms}
+    silent -= {term.id for term in selection.best.hypothesis.terms}
     silent -= {rival.effect for rival in selection.named_rivals}  # tried in the place of a name
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
 

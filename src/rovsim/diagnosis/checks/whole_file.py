@@ -42,7 +42,7 @@ from rovsim.diagnosis.selection.nominal_terms import (
 )
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.diagnosis.selection.pruning import drop_parameters
-from rovsim.diagnosis.selection.rivals import SURE
+from rovsim.diagnosis.selection.search_result import SURE
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing

@@ -12,12 +12,12 @@ import numpy as np
 
 from rovsim.diagnosis.checks.regressors import list_dependences, tabulate
 from rovsim.diagnosis.checks.residual import Structure, split_by_axis
+from rovsim.diagnosis.equations.law_search import LawSearch, choose_kinds, is_seen, project_terms
 from rovsim.diagnosis.equations.products.as_effect import Surroundings, add_term
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import find_alone
-from rovsim.diagnosis.equations.seek import LawSearch, choose_kinds, is_seen, weigh
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 
 # In twice the log likelihood. Of all functions of an axis one reaches 15 by chance in one campaign
 # of fifteen, 8 in most; of those that names could have taken half of there are few.
@@ -25,29 +25,29 @@ SUSPECT, RESEMBLES, FAINT = 15.0, 0.5, 8.0
 TRIED = 3  # laws that are fitted
 
 
-def find_masked_laws(selection: Selection) -> list[Structure]:
+def find_masked_laws(selection: SearchResult) -> list[Structure]:
     """The law that stands out once it has a noise of its own; none where there is no name."""
-    names = [term for term in selection.found.hypothesis.terms if term.effect.listed]
+    names = [term for term in selection.best.hypothesis.terms if term.effect.listed]
     suspect = _find_suspect(selection) if names and is_seen(selection) else None
     if suspect is None:
         return []
-    workspace, fit = selection.workspace, selection.found
+    workspace, fit = selection.workspace, selection.best
     runs = workspace.bank.runs
     terms, middle = list_terms(runs), middle_of(runs)
     search = LawSearch(selection, len(terms))
-    columns = weigh(workspace, fit, terms, middle)
+    columns = project_terms(workspace, fit, terms, middle)
     order = np.argsort(-find_alone(columns.products), kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
     around, h = Surroundings.of(runs), fit.hypothesis
     laws = {k: (Products((k,)), add_term(h, (), k, columns, middle, around)) for k in kinds}
     score = workspace.score(fit)
-    for judged in search.race(laws, fit).values():
+    for judged in search.fit_each(laws, fit).values():
         if search.is_worth(judged, fit, score):
             return [replace(suspect, surprise=(judged.score - score) / max(search.chance, 1.0))]
     return []
 
 
-def _find_suspect(selection: Selection) -> Structure | None:
+def _find_suspect(selection: SearchResult) -> Structure | None:
     """What comes nearest to standing out, of what names could have taken most of, or of all."""
     bank = selection.workspace.bank
     tables = [tabulate(run) for run in bank.runs]
@@ -55,7 +55,7 @@ def _find_suspect(selection: Selection) -> Structure | None:
         Structure(
             residual.axis, one.name, min(1.0, (one.size / residual.level) ** 2), one.statistic
         )
-        for residual in split_by_axis(selection.found, bank)
+        for residual in split_by_axis(selection.best, bank)
         for one in list_dependences(residual, tables)
         if one.statistic > (FAINT if one.taken > RESEMBLES else SUSPECT)
     ]

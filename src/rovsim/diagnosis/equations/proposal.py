@@ -7,16 +7,16 @@ from typing import Callable, NamedTuple, Sequence
 from rovsim.core.extras import installed
 from rovsim.diagnosis.equations.action import find_action, is_half
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
-from rovsim.diagnosis.equations.seek import Judged, seek_law
+from rovsim.diagnosis.equations.law_search import FittedLaw, search_laws
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.cross_validation import cross_validate
-from rovsim.diagnosis.selection.gate import Gate
 from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import PROPOSED
@@ -78,7 +78,7 @@ class ProposedLaw:
 
 
 def propose_law(
-    selection: Selection, best: Catalogued, base: Model, gate: Gate,
+    selection: SearchResult, best: Catalogued, base: Model, holdout: HoldoutValidation,
     runs: Sequence[ObservedRun], polish: Polish, camera: Sequence[Named],
 ) -> ProposedLaw | None:  # fmt: skip
     """An equation for what is left; None where none holds.
@@ -92,15 +92,15 @@ def propose_law(
         selection: what the search selected.
         best: models of catalogued effects that a law must better.
         base: the model that is diagnosed.
-        gate: stretches that were kept apart.
+        holdout: stretches that were kept apart.
         runs: all train runs.
         polish: fits once more to all runs.
         camera: what the camera does, as an effect, where it does something.
     """
     if not installed("equations"):
         return None
-    judged = seek_law(selection)
-    if judged is None or not _holds(judged, selection, best, gate):
+    judged = search_laws(selection)
+    if judged is None or not _holds(judged, selection, best, holdout):
         return None
     fit, bank = polish(judged.fit)
     if not fit.held:
@@ -117,9 +117,11 @@ def propose_law(
     )
 
 
-def _holds(judged: Judged, selection: Selection, best: Catalogued, gate: Gate) -> bool:
+def _holds(
+    judged: FittedLaw, selection: SearchResult, best: Catalogued, holdout: HoldoutValidation
+) -> bool:
     rest: Hypothesis = split_law(judged.fit.hypothesis)[0]
     if cross_validate(judged.fit, selection.fit(rest), selection.workspace.bank) <= 0.0:
         return False
     law = judged.fit.hypothesis.model
-    return gate.improves(law, best.whole, ENOUGH) and gate.keeps(law, best.chosen)
+    return holdout.improves(law, best.whole, ENOUGH) and holdout.keeps(law, best.chosen)

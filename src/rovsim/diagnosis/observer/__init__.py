@@ -17,7 +17,7 @@ kalman            the steady filters that suit it, axis by axis
 innovations       many models on one run, in one compiled call
 filter_bank       all runs, each with its filters: innovations, whitened
 hypothesis        a base model and terms, whose parameters may be free
-evidence          errors of a hypothesis, and how they change with its parameters
+residual_source   errors of a hypothesis, and how they change with its parameters
 least_squares     any of many columns, from their inner products
 windows           errors in windows of 2 s: what users see of a model
 

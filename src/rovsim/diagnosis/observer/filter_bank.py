@@ -10,7 +10,6 @@ from numpy import ndarray as Array
 from rovsim.core.progress import step
 from rovsim.diagnosis.observer.autoregression import COUPLED, Stretches, fit_autoregression
 from rovsim.diagnosis.observer.drifting_current import DriftFit, MovingWater
-from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.innovations import estimate_errors, observe
 from rovsim.diagnosis.observer.kalman import AxisMotion
@@ -26,6 +25,7 @@ from rovsim.diagnosis.observer.noise import (
 )
 from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # at most: what wanders and what pushes for a second are told apart by then

@@ -63,7 +63,7 @@ class ErrorDynamics(NamedTuple):
     """How small errors go on: -d nu_dot / d nu, and / d pose (6, 6), mean over measured states.
 
     `largest` (6, 6): root mean square of `damping`, what it would be if it never changed its sign.
-    Errors of the position stand along the body's axes, or level ones (`ObservedRun.known`).
+    Errors of the position stand along the body's axes, or level ones (`ObservedRun.pose_measured`).
     """
 
     damping: Array

@@ -25,7 +25,7 @@ from rovsim.results.diagnosis import LookedAt
 from rovsim.simulation.settings import ReplaySettings
 
 DRIVES = 1 << 29  # bytes of drives of all runs together: fifty of each in four minutes of runs
-PART = 60.0  # s: a fifth of it is kept apart by the gate, which takes windows of 2 s
+PART = 60.0  # s: a fifth of it is kept apart for validation, which takes windows of 2 s
 LEAD = 5.0  # s of commands before a part: propellers remember half a second
 SAMPLED = 0.2  # s between the samples that parts are compared by: half a period of 2.5 Hz
 LEAST = 1e-6  # of what all parts tell: a direction that hardly any of them shows

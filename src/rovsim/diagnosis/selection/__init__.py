@@ -13,9 +13,9 @@ forward_selection   add, refit, swap, prune
 vehicle_file_steps  what the vehicle file explains as well as something rarer
 uncertain_file      a special effect beside a vehicle file that may be off everywhere
 steady_current      or one that wanders?
-rivals              where that ended, and what else the effects could be
+search_result       where that ended, and what else the effects could be
 filter_delay        beside what the camera does
-gate                stretches that took no part must be replayed no worse
+holdout_validation  stretches that took no part must be replayed no worse
 cross_validation    what does not help where it was not fitted goes
 cluster_robust      nor what few stretches of time make sure, where a velocity is not measured
 joint_fit           much is missing at once: all that could be wrong, then pruned

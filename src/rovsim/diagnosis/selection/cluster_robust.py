@@ -14,24 +14,24 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.observed_run import BLOCK, number_blocks
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 LASTING = (BLOCK, 3.0 * BLOCK)  # s: what drags on, and what drifts
 BLOCKS_EACH = 3  # of every number of an effect: fewer do not tell how much blocks differ
 
 
-def drop_unsure(selection: Selection) -> Selection:
+def drop_unsure(selection: SearchResult) -> SearchResult:
     """Without effects that are not worth their penalty by how much blocks of time differ.
 
     Asked only where the vehicle moves along axes that nobody measures.
     """
-    workspace, fit = selection.workspace, selection.found
+    workspace, fit = selection.workspace, selection.best
     if not any((run.free_axes & ~run.axes).any() for run in workspace.bank.runs):
         return selection
     while unsure := list_unsure(fit, workspace):
         fit = workspace.fit(fit.hypothesis.without(unsure[-1]))  # the one that came last
-    return replace(selection, found=fit)
+    return replace(selection, best=fit)
 
 
 def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:

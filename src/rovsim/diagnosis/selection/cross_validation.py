@@ -11,14 +11,14 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 
 FOLDS = 6
 
 
-def drop_idle(selection: Selection) -> Selection:
+def drop_idle(selection: SearchResult) -> SearchResult:
     """Without effects that do not help on held-out blocks, or that no user would see."""
-    workspace, fit = selection.workspace, selection.found
+    workspace, fit = selection.workspace, selection.best
     while fit.hypothesis.terms:
         fewer = [fit.hypothesis.without(i) for i in range(len(fit.hypothesis.terms))]
         smaller = [workspace.fit(one) for one in fewer]
@@ -31,7 +31,7 @@ def drop_idle(selection: Selection) -> Selection:
         if not idle:
             break
         fit = workspace.fit(idle[-1])  # without the one that came last
-    return replace(selection, found=fit)
+    return replace(selection, best=fit)
 
 
 def cross_validate(fit: Fit, smaller: Fit, bank: FilterBank) -> float:

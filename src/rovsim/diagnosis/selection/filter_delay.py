@@ -14,7 +14,7 @@ from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.pruning import prune
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.thrusters import ThrusterLag
@@ -32,25 +32,25 @@ def seen_through(base: Model, smoothing: Smoothing | None) -> Model:
 
 
 def absorb_delay(
-    selection: Selection, base: Model, smoothing: Smoothing
-) -> tuple[Selection, Smoothing]:
+    selection: SearchResult, base: Model, smoothing: Smoothing
+) -> tuple[SearchResult, Smoothing]:
     """The selection without a delay that the filter explains, and the filter that explains it.
 
     Whatever was named only because the cutoff was not quite right goes.
     """
-    fit, workspace = selection.found, selection.workspace
+    fit, workspace = selection.best, selection.workspace
     unlagged = _without_short_lag(fit.hypothesis, smoothing)
     if unlagged:
         again, finer = _absorb(selection, _with_delay(selection, unlagged), base, smoothing)
         if again and workspace.score(again) > workspace.score(fit) - HOPELESS:
-            return replace(selection, found=prune(workspace, again)), finer
+            return replace(selection, best=prune(workspace, again)), finer
     if DELAY not in (term.id for term in fit.hypothesis.terms):
         fit = _with_delay(selection, fit.hypothesis)
     again, finer = _absorb(selection, fit, base, smoothing)
-    return (replace(selection, found=prune(workspace, again)) if again else selection), finer
+    return (replace(selection, best=prune(workspace, again)) if again else selection), finer
 
 
-def _with_delay(selection: Selection, h: Hypothesis) -> Fit:
+def _with_delay(selection: SearchResult, h: Hypothesis) -> Fit:
     """A hypothesis with a delay, fitted."""
     others = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY))
     return selection.fit(others.with_term(Term(InputDelay(), ("delay",))))
@@ -68,7 +68,7 @@ def _without_short_lag(h: Hypothesis, smoothing: Smoothing) -> Hypothesis | None
 
 
 def _absorb(
-    selection: Selection, at: Fit, base: Model, smoothing: Smoothing
+    selection: SearchResult, at: Fit, base: Model, smoothing: Smoothing
 ) -> tuple[Fit | None, Smoothing]:
     """A hypothesis without its delay, beside the filter that explains it; None if there is none."""
     h = at.hypothesis

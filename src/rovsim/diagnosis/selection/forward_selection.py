@@ -13,7 +13,7 @@ from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune
-from rovsim.diagnosis.selection.rivals import Rival, Selection
+from rovsim.diagnosis.selection.search_result import Rival, SearchResult
 from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.vehicle_file_steps import (
     add_file,
@@ -83,7 +83,7 @@ def find_relevant(workspace: SearchWorkspace, fit: Fit, without: Sequence[Model]
     return np.max(ratio, axis=1, initial=0.0) - 1.0 > workspace.settings.relevant
 
 
-def contest(
+def try_swaps(
     workspace: SearchWorkspace, current: Fit, trials: int, swap: float = SWAP
 ) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close.
@@ -96,25 +96,25 @@ def contest(
     rivals, off = [], is_off(current.hypothesis)
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
-        for p in find_challengers(workspace, term, rest, trials):
+        for p in find_swaps(workspace, term, rest, trials):
             trial = None
             worse = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
             if worse < 0.0 or _explains(workspace, p) > PROMISING * rest.ss_increase:
                 start, worse = rest.hypothesis.with_term(p.term), HOPELESS
-                trial = workspace.challenge(start, current, workspace.score(current))
+                trial = workspace.fit_unless_worse(start, current, workspace.score(current))
             if trial is not None:
                 worse = workspace.score(current) - workspace.score(trial)
                 if worse < -swap and not (
                     off and uncertain_file.explains(workspace, trial, p.term.id)
                 ):
-                    return contest(workspace, prune(workspace, trial), trials, swap)
+                    return try_swaps(workspace, prune(workspace, trial), trials, swap)
                 weight = uncertain_file.weigh(workspace, (current, term), (trial, p.term), worse)
                 worse = max(0.0, weight)  # likelier only beside a loose file: not told apart
             rivals.append(Rival(p.term.id, term.id, worse, trial))
     return current, rivals
 
 
-def find_challengers(
+def find_swaps(
     workspace: SearchWorkspace, term: Term, rest: Removed, trials: int
 ) -> list[Proposal]:
     """The first other effects that may explain what a removed term did, best first.
@@ -152,39 +152,41 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
     return current
 
 
-def search(workspace: SearchWorkspace, base: Fit, seed: int) -> Selection:
+def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     """From the base to the model to which nothing can be added, swapped or taken away.
 
     The workspace's noise and filters follow what is found.
     """
-    workspace, current = _grow(*prefer_steady(workspace, base), seed)
+    workspace, current = _add_and_swap(*prefer_steady(workspace, base), seed)
     loose = suspect_file(workspace, current)
     if loose is not current:
-        workspace, current = _grow(workspace, loose, seed)
-    workspace = workspace.look_again(current)
-    current, _ = contest(workspace, current, 1)
+        workspace, current = _add_and_swap(workspace, loose, seed)
+    workspace = workspace.relinearise_if_changed(current)
+    current, _ = try_swaps(workspace, current, 1)
     current = change_mode(workspace, current)
     current = hold_gain(workspace, prefer_file(workspace, current))
-    current, rivals = contest(workspace, current, workspace.settings.trials)
-    return Selection(workspace, current, tuple(rivals))
+    current, rivals = try_swaps(workspace, current, workspace.settings.trials)
+    return SearchResult(workspace, current, tuple(rivals))
 
 
-def _grow(workspace: SearchWorkspace, current: Fit, seed: int) -> tuple[SearchWorkspace, Fit]:
+def _add_and_swap(
+    workspace: SearchWorkspace, current: Fit, seed: int
+) -> tuple[SearchWorkspace, Fit]:
     """Add and swap until nothing more beats chance."""
     while len(current.hypothesis.terms) < workspace.settings.most_effects:
         more = add_best(workspace, current, workspace.chance_limit(current, seed))
         if more is None:
             break
         gained = workspace.score(more) - workspace.score(current)
-        workspace = workspace.renew(more)
+        workspace = workspace.update_after(more)
         workspace, again = prefer_steady(workspace, workspace.fit(more.hypothesis))
         swap = max(SWAP, SLIGHT * gained)
-        current, _ = contest(workspace, again, 1, swap)  # the likeliest other name
+        current, _ = try_swaps(workspace, again, 1, swap)  # the likeliest other name
     return workspace, current
 
 
-def search_unnoticed(selection: Selection, seed: int) -> Selection:
+def search_unnoticed(selection: SearchResult, seed: int) -> SearchResult:
     """From where a search ended on, by effects too that hardly change the error in 2 s windows."""
     workspace = selection.workspace
     settings = workspace.settings.model_copy(update={"relevant": 0.0})
-    return search(replace(workspace, settings=settings), selection.found, seed)
+    return search(replace(workspace, settings=settings), selection.best, seed)

@@ -6,12 +6,12 @@ from typing import Callable, Iterator, NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.evidence import Evidence, Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.residual_source import Linearised, ResidualSource
 from rovsim.diagnosis.selection.prior import Prior
 
 MOST_ITERATIONS = 12
@@ -136,7 +136,7 @@ def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None 
 
 
 def levenberg_marquardt(
-    start: Hypothesis, evidence: Evidence, noise: Noise, prior: Prior | None = None,
+    start: Hypothesis, source: ResidualSource, noise: Noise, prior: Prior | None = None,
     first: Linearised | None = None, monitor: Monitor = lambda seen, predicted_reduction: None,
 ) -> Linearised:  # fmt: skip
     """Damped least squares from a hypothesis, beside what is known before: where they lead.
@@ -145,15 +145,15 @@ def levenberg_marquardt(
 
     Args:
         start: where it begins.
-        evidence: what it is fitted to.
+        source: of the errors that it is fitted to.
         noise: of that.
         prior: what is known before.
         first: the start, and derivatives that are roughly right there; it does not end with these.
         monitor: told, each time derivatives were found anew, where the fit is and by how much they
             predict that the sum of squares is lowered yet.
     """
-    problem = _LeastSquares(evidence, noise, prior or Prior.around(start.x, np.inf))
-    seen, damping, rough = first or evidence.linearise(start), INITIAL_DAMPING, first is not None
+    problem = _LeastSquares(source, noise, prior or Prior.around(start.x, np.inf))
+    seen, damping, rough = first or source.linearise(start), INITIAL_DAMPING, first is not None
     if not len(start.x) or not seen.finite:
         return seen
     quadratic = problem.expand(seen)
@@ -167,12 +167,12 @@ def levenberg_marquardt(
             quadratic = problem.shift(quadratic, step)
             if step.gain_ratio_near_one and not ended:
                 continue
-        seen, ended, rough = evidence.linearise(quadratic.at), ended and not rough, False
+        seen, ended, rough = source.linearise(quadratic.at), ended and not rough, False
         if ended or not seen.finite:
             return seen
         quadratic = problem.expand(seen)
         monitor(seen, quadratic.predicted_reduction)
-    return evidence.linearise(quadratic.at)
+    return source.linearise(quadratic.at)
 
 
 class QuadraticModel(NamedTuple):
@@ -214,16 +214,16 @@ class TrialStep(NamedTuple):
 class _LeastSquares:
     """Whitened errors, and a prior."""
 
-    evidence: Evidence
+    source: ResidualSource
     noise: Noise
     prior: Prior
 
     def errors(self, wanted: Hypothesis) -> Array:
         """Whitened errors (size,); infinite where the model diverges."""
-        e = [one[0] for one in self.evidence.evaluate([wanted.model])]
+        e = [one[0] for one in self.source.evaluate([wanted.model])]
         if not all(np.isfinite(one).all() for one in e):
             return np.array([np.inf])
-        return self.evidence.whiten(e, self.noise).ravel()
+        return self.source.whiten(e, self.noise).ravel()
 
     def cost(self, wanted: Hypothesis, residuals: Array) -> float:
         """Sum of squares of errors, and what the prior says of the hypothesis."""
@@ -231,8 +231,8 @@ class _LeastSquares:
 
     def expand(self, seen: Linearised) -> QuadraticModel:
         """The sum of squares to second order about a hypothesis."""
-        rows = as_rows(self.evidence.whiten(seen.J, self.noise))
-        residuals = self.evidence.whiten(seen.e, self.noise).ravel()
+        rows = as_rows(self.source.whiten(seen.J, self.noise))
+        residuals = self.source.whiten(seen.e, self.noise).ravel()
         H = inner_products(rows) + np.diag(self.prior.weights(seen.at.x))
         g = rows @ residuals + self._prior_slope(seen.at.x)
         return QuadraticModel(seen.at, H, g, self.cost(seen.at, residuals), len(residuals), rows)

@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, free_terms, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters
-from rovsim.diagnosis.selection.rivals import Rival, Selection
+from rovsim.diagnosis.selection.search_result import Rival, SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
 from rovsim.dynamics.model import Model
@@ -27,7 +27,7 @@ ALWAYS = (
 )  # fmt: skip
 
 
-def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> Selection:
+def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> SearchResult:
     """The likeliest of all joint fits, pruned; the other ways to act are its rivals.
 
     Args:
@@ -48,7 +48,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
         for term in fit.hypothesis.terms
         if own.id in ACTUATION and term.id in ACTUATION and term.id not in named
     )
-    return Selection(best, best_fit, rivals, REACH)
+    return SearchResult(best, best_fit, rivals, REACH)
 
 
 def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
@@ -64,7 +64,7 @@ def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Searc
     """Fitted, with filters and noise that follow."""
     fit = workspace.fit(start, REACH)
     for _ in range(ROUNDS):
-        workspace = workspace.renew(fit)
+        workspace = workspace.update_after(fit)
         fit = workspace.fit(fit.hypothesis, REACH)
     return workspace, fit
 

@@ -14,12 +14,12 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.evidence import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, levenberg_marquardt
 from rovsim.diagnosis.selection.prior import Prior
@@ -94,13 +94,13 @@ def soften(x: Array) -> Array:
 
 def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
-    evidence = Replays(bank.runs)
+    source = Replays(bank.runs)
     seen = levenberg_marquardt(
-        fit.hypothesis, evidence, fit.noise, Prior.around(fit.hypothesis.x, REACH)
+        fit.hypothesis, source, fit.noise, Prior.around(fit.hypothesis.x, REACH)
     )
     covariance = _sandwich(
-        evidence.whiten(seen.e, fit.noise), evidence.whiten(seen.J, fit.noise),
-        evidence.number(),
+        source.whiten(seen.e, fit.noise), source.whiten(seen.J, fit.noise),
+        source.number(),
     )  # fmt: skip
     fresh = bank.redesign(seen.at.model, fit.noise)
     again = judge(fresh.linearise(seen.at), fresh, fit.noise)

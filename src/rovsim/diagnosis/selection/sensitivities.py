@@ -11,9 +11,9 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.evidence import Linearised, step_back
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.residual_source import Linearised, step_back
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
 

@@ -18,7 +18,7 @@ def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorks
     h = current.hypothesis
     if not workspace.noise.drift or Current.id in (term.id for term in h.terms):
         return workspace, current
-    calm = workspace.redesign(h, replace(workspace.noise, drift=None))
+    calm = workspace.with_noise(h, replace(workspace.noise, drift=None))
     steady = calm.fit(h.with_term(Term(Current(), Current.telling)))
     if not calm.score(steady) > workspace.score(current):
         return workspace, current

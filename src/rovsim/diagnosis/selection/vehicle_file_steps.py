@@ -5,7 +5,7 @@ from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
-from rovsim.diagnosis.selection.rivals import SURE
+from rovsim.diagnosis.selection.search_result import SURE
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import inner_products, project_out
 from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_beside
 from rovsim.dynamics.model import Model
 
@@ -56,7 +56,7 @@ class WhiteColumns:
             self._beside[loops] = self._made_beside(at)
         return self._beside[loops]
 
-    def anew(self, at: Hypothesis) -> "WhiteColumns":
+    def relinearised(self, at: Hypothesis) -> "WhiteColumns":
         """The columns beside all that a hypothesis has."""
         loops, fresh = _list_loops(at.model), self._made_beside(at)
         if loops == _list_loops(self.sensitivities.base_model):

@@ -12,11 +12,11 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.evidence import Linearised
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.gauss_newton import Fit, fit, fit_or_give_up
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_decreases, rank_proposals
@@ -68,25 +68,25 @@ class SearchWorkspace:
         """What each candidate would change."""
         return self.columns.sensitivities
 
-    def renew(self, current: Fit) -> "SearchWorkspace":
+    def update_after(self, current: Fit) -> "SearchWorkspace":
         """The workspace whose filters, columns and noise suit what is now known to act.
 
         Columns take longest: they are made anew each time that twice as much was found.
         """
         at, beside = current.hypothesis, self.columns.beside(current.hypothesis).beside
-        fresh = self.look_again(current) if len(at.terms) >= 2 * len(beside) else self
+        fresh = self.relinearise_if_changed(current) if len(at.terms) >= 2 * len(beside) else self
         noise = fit_remaining_noise(fresh.columns.beside(at), at, self.noise, rounds=1)
-        return fresh.redesign(at, noise)
+        return fresh.with_noise(at, noise)
 
-    def look_again(self, current: Fit) -> "SearchWorkspace":
+    def relinearise_if_changed(self, current: Fit) -> "SearchWorkspace":
         """The workspace with columns beside all that was found, where that has changed them."""
         at, names = current.hypothesis, {term.id for term in current.hypothesis.terms}
         known = names == set(self.columns.beside(at).beside)
         if known or not self.columns.have_changed(current.seen):
             return self
-        return replace(self, columns=self.columns.anew(at), _proposed={}, _removed={})
+        return replace(self, columns=self.columns.relinearised(at), _proposed={}, _removed={})
 
-    def redesign(self, at: Hypothesis, noise: Noise) -> "SearchWorkspace":
+    def with_noise(self, at: Hypothesis, noise: Noise) -> "SearchWorkspace":
         """The workspace whose filters suit a hypothesis and a noise.
 
         Where axes drive each other, columns of another noise do not do: they are made anew, and the
@@ -100,7 +100,7 @@ class SearchWorkspace:
         noise = fit_remaining_noise(fresh, at, noise, rounds=1)
         return SearchWorkspace(WhiteColumns(bank, fresh, noise), self.settings)
 
-    def look_at(self, bank: FilterBank, noise: Noise) -> "SearchWorkspace":
+    def on_runs(self, bank: FilterBank, noise: Noise) -> "SearchWorkspace":
         """The same penalties, for fits to other runs; candidates are still judged by its own."""
         return SearchWorkspace(WhiteColumns(bank, self.sensitivities, noise), self.settings)
 
@@ -116,14 +116,14 @@ class SearchWorkspace:
             self._fitted[key] = fit(start, self.bank, self.noise, reach)
         return self._fitted[key]
 
-    def challenge(
+    def fit_unless_worse(
         self, start: Hypothesis, current: Fit, score: float, reach: float = np.inf
     ) -> Fit | None:
         """The same, but None as soon as it surely scores `HOPELESS` less than that.
 
         `current`: a fit whose derivatives it may begin with.
         """
-        key, least = (start.key, reach), score - HOPELESS + self._ask(start)
+        key, least = (start.key, reach), score - HOPELESS + self._penalty_of(start)
         if key not in self._fitted and least < self._given_up.get(key, np.inf):
             first = self.bank.linearise(start, current.seen)
             fitted = fit_or_give_up(first, self.bank, self.noise, least, reach)
@@ -139,16 +139,16 @@ class SearchWorkspace:
 
     def score(self, fit: Fit) -> float:
         """Twice the log likelihood, less the penalty of the free parameters, and an odd gain."""
-        return fit.two_log_likelihood - self._ask(fit.hypothesis)
+        return fit.two_log_likelihood - self._penalty_of(fit.hypothesis)
 
-    def _ask(self, at: Hypothesis) -> float:
+    def _penalty_of(self, at: Hypothesis) -> float:
         """What a hypothesis costs."""
         return self.penalty * sum(t.choices for t in at.terms) + doubt_gain(at)
 
     def remove_each(self, current: Fit) -> list[Removed]:
         """The current hypothesis without each of its terms, the others refitted to first order.
 
-        Made once, as one contest follows the other.
+        Made once, as swaps are tried one after the other.
         """
         key = current.hypothesis.key
         if key not in self._removed:

@@ -1,4 +1,4 @@
-"""The gate: stretches kept apart are apart, and only what is sure counts."""
+"""Hold-out validation: stretches kept apart are apart, and only what is sure counts."""
 
 from dataclasses import replace
 
@@ -8,8 +8,13 @@ import pytest
 from flown import observed
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.gate import Gate, find_sure_improvement, keep_apart, surely_costs
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.holdout_validation import (
+    HoldoutValidation,
+    find_sure_improvement,
+    keep_apart,
+    surely_costs,
+)
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 
@@ -46,17 +51,17 @@ def test_only_what_is_sure_and_matters_is_less():
 
 def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
     base, runs = observed(tmp_path, duration=60.0)
-    gate = Gate(keep_apart(runs)[1], runs)
+    holdout = HoldoutValidation(keep_apart(runs)[1], runs)
     nowhere = Hypothesis(base, (Term(AddedMass(surge=-100.0), ("surge",)),))
     possible, impossible = (
-        Selection(Workspace(), Found(h), (), True) for h in (Hypothesis(base), nowhere)
+        SearchResult(Workspace(), Found(h), (), True) for h in (Hypothesis(base), nowhere)
     )
-    models = [one.found.hypothesis.model for one in (possible, impossible)]
-    assert gate.prefers(*models) is True
-    assert gate.prefers(*reversed(models)) is False
-    assert gate.prefers(models[0], models[0]) is None
-    passed, whole = gate.judge(impossible)
-    assert passed.found.hypothesis.terms == ()
+    models = [one.best.hypothesis.model for one in (possible, impossible)]
+    assert holdout.prefers(*models) is True
+    assert holdout.prefers(*reversed(models)) is False
+    assert holdout.prefers(models[0], models[0]) is None
+    passed, whole = holdout.judge(impossible)
+    assert passed.best.hypothesis.terms == ()
     assert not whole
 
 
@@ -64,10 +69,10 @@ def test_where_a_current_wanders_the_windows_of_one_run_are_one_sample(tmp_path)
     base, runs = observed(tmp_path, duration=60.0)
     _, held = keep_apart(runs)
     slower = base + LinearDamping(surge=60.0, sway=60.0)
-    assert Gate(held, runs).refuses(slower, base)
-    assert not Gate(held, runs, current_drifts=True).refuses(slower, base)
-    assert not Gate([*held, *held], runs, current_drifts=True).refuses(base, slower)
-    assert Gate([*held, *held], runs, current_drifts=True).refuses(slower, base)
+    assert HoldoutValidation(held, runs).refuses(slower, base)
+    assert not HoldoutValidation(held, runs, current_drifts=True).refuses(slower, base)
+    assert not HoldoutValidation([*held, *held], runs, current_drifts=True).refuses(base, slower)
+    assert HoldoutValidation([*held, *held], runs, current_drifts=True).refuses(slower, base)
 
 
 def test_where_physics_is_left_a_name_must_be_surely_worth_it():
@@ -106,15 +111,15 @@ def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
     _, held = keep_apart(runs)
     right = Term(QuadraticDamping(surge=120.0), ("surge",))
     wrong = Term(LinearDamping(sway=150.0), ("sway",))
-    selection = Selection(Workspace(), Found(Hypothesis(base, (right, wrong))), (), True)
-    passed, whole = Gate(held, runs).judge(selection)
-    assert [t.id for t in passed.found.hypothesis.terms] == ["quadratic_damping"]
+    selection = SearchResult(Workspace(), Found(Hypothesis(base, (right, wrong))), (), True)
+    passed, whole = HoldoutValidation(held, runs).judge(selection)
+    assert [t.id for t in passed.best.hypothesis.terms] == ["quadratic_damping"]
     assert not whole
     lost = replace(selection, workspace=Workspace(held=False))
-    assert Gate(held, runs).keep_earning(lost).found is lost.found
-    assert Gate(held, runs).keep_earning(selection).found is not selection.found
-    alone = Selection(Workspace(), Found(Hypothesis(base, (wrong,))), (), True)
-    passed, whole = Gate(held, runs).judge(alone)
-    assert passed.found.hypothesis.terms == ()
+    assert HoldoutValidation(held, runs).keep_earning(lost).best is lost.best
+    assert HoldoutValidation(held, runs).keep_earning(selection).best is not selection.best
+    alone = SearchResult(Workspace(), Found(Hypothesis(base, (wrong,))), (), True)
+    passed, whole = HoldoutValidation(held, runs).judge(alone)
+    assert passed.best.hypothesis.terms == ()
     assert not whole
     assert Windows(held[0]).spans

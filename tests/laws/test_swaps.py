@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.forward_selection import find_challengers
+from rovsim.diagnosis.selection.forward_selection import find_swaps
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 
@@ -14,7 +14,7 @@ from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 def test_all_that_promise_nearly_what_a_term_explains_challenge_it(loss, tried):
     term = Term(ConstantWrench(surge=1.0), ("surge",))
     others = [Proposal(SimpleNamespace(id=str(size)), size) for size in (95.0, 90.0, 80.0, 30.0)]
-    found = find_challengers(
+    found = find_swaps(
         SimpleNamespace(penalty=0.0),
         term,
         SimpleNamespace(ss_increase=loss, others=others),

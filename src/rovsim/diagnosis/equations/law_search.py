@@ -36,20 +36,21 @@ from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.gauss_newton import Fit
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS, SearchWorkspace
 from rovsim.dynamics.effects.law import TERMS
 
 TRIED = 5  # terms that are fitted before one is added
 BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
 SURELY = 2.0  # times what chance allows: no fit to all runs brings so much below it
-PULLED, NEAR = 4, 0.5  # so many laws of the thrust are fitted, if they may gain half of products'
+THRUST_LAWS_TRIED = 4
+NEAR = 0.5  # of what products explain: laws of the thrust that may reach so much are fitted
 
 Key = TypeVar("Key")
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class FittedLaw:
     """A law on top of a hypothesis, fitted; `score` with the penalty of each of its numbers.
 
     `rivals`: equations of laws that were tried in its place, and by how much less likely each is.
@@ -65,12 +66,12 @@ class Judged:
         """The law with its fitted values."""
         return get_law(self.fit.hypothesis)
 
-    def beats(self, others: Iterable["Judged"]) -> "Judged":
+    def beats(self, others: Iterable["FittedLaw"]) -> "FittedLaw":
         """The same, with others as its rivals."""
         ranked = sorted(others, key=lambda one: one.score)  # of the same equation the likeliest
-        deficits = {one.form.equation: self.score - one.score for one in ranked}
-        deficits.pop(self.form.equation, None)  # from another place it came here
-        return replace(self, rivals=(*self.rivals, *deficits.items()))
+        differences = {one.form.equation: self.score - one.score for one in ranked}
+        differences.pop(self.form.equation, None)  # from another place it came here
+        return replace(self, rivals=(*self.rivals, *differences.items()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +81,7 @@ class LawSearch:
     `candidates`: so many terms there are to choose from, which sets the penalty of a number.
     """
 
-    selection: Selection
+    selection: SearchResult
     candidates: int
 
     @property
@@ -90,47 +91,52 @@ class LawSearch:
 
     @property
     def penalty(self) -> float:
-        """What a number of a law costs, in twice the log likelihood."""
+        """What a number of a law costs."""
         return 2.0 * float(np.log(self.candidates))
 
     @property
     def chance(self) -> float:
-        """What the best of all terms gains by chance, with its penalty (Bonferroni's bound)."""
+        """What the best of all terms explains by chance, with its penalty (Bonferroni's bound)."""
         return max(0.0, float(chi2.isf(FALSE_ALARM / self.candidates, 1)) - self.penalty)
 
-    def challenge(self, form: Form, h: Hypothesis, current: Fit, score: float) -> Judged | None:
+    def fit_unless_worse(
+        self, form: Form, h: Hypothesis, current: Fit, score: float
+    ) -> FittedLaw | None:
         """A law, fitted with all else; None as soon as it surely does not come near a score.
 
         `current`: a fit whose derivatives it may begin with.
         """
         start = form.follow(h)
-        fitted = self.selection.challenge(start, current, score + self._ask(start))
-        return None if fitted is None else self._judge(form, fitted)
+        fitted = self.selection.fit_unless_worse(start, current, score + self._extra_penalty(start))
+        return None if fitted is None else self._score_law(form, fitted)
 
-    def race(self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit) -> dict[Key, Judged]:
+    def fit_each(
+        self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit
+    ) -> dict[Key, FittedLaw]:
         """Laws beside what is there, the likeliest first; none that surely falls far behind."""
-        fitted: dict[Key, Judged] = {}
+        fitted: dict[Key, FittedLaw] = {}
         for key, (form, h) in laws.items():
             best = max((one.score for one in fitted.values()), default=-np.inf)
-            judged = self.challenge(form, h, current, best)
+            judged = self.fit_unless_worse(form, h, current, best)
             fitted |= {key: judged} if judged else {}
         return dict(sorted(fitted.items(), key=lambda one: -one[1].score))
 
-    def _judge(self, form: Form, fitted: Fit) -> Judged:
-        return Judged(form, fitted, self.workspace.score(fitted) - self._ask(fitted.hypothesis))
+    def _score_law(self, form: Form, fitted: Fit) -> FittedLaw:
+        score = self.workspace.score(fitted) - self._extra_penalty(fitted.hypothesis)
+        return FittedLaw(form, fitted, score)
 
-    def _ask(self, h: Hypothesis) -> float:
+    def _extra_penalty(self, h: Hypothesis) -> float:
         """What the numbers of a law cost more than those of the catalogue."""
         return (self.penalty - self.workspace.penalty) * get_law(h).choices
 
-    def is_worth(self, more: Judged, less: Fit, score: float) -> bool:
-        """Whether it gains more than chance would, and users would see it in some axis' windows."""
+    def is_worth(self, more: FittedLaw, less: Fit, score: float) -> bool:
+        """Whether it explains more than chance, and users would see it in some axis' windows."""
         if more.score - score < self.chance:
             return False
         return bool(find_relevant(self.workspace, more.fit, [less.hypothesis.model])[0])
 
-    def grow(self, start: Hypothesis) -> Judged | None:
-        """Products of one to three terms, each refitted with all else before the next is added."""
+    def select_terms(self, start: Hypothesis) -> FittedLaw | None:
+        """Forward selection of one to three terms, each refitted with all else before the next."""
         runs = self.workspace.bank.runs
         around, middle = Surroundings.of(runs), middle_of(runs)
         terms: tuple[LawTerm, ...] = ()
@@ -142,13 +148,13 @@ class LawSearch:
                 middle, known = stay(middle, list_moved(terms), place_of(best.law, around.site))
             taken = [t.kind for t in terms]
             left = [t for t in list_terms(runs, known) if t.kind not in taken]
-            columns = weigh(self.workspace, fit, left, middle)
+            columns = project_terms(self.workspace, fit, left, middle)
             if len(columns.terms) < TERMS:
                 break
             kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]
             h = fit.hypothesis
             starts = {k: add_term(h, terms, k, columns, middle, around) for k in kinds}
-            tried = self.race({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
+            tried = self.fit_each({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
             more = next((k for k, one in tried.items() if self.is_worth(one, fit, score)), None)
             if more is None:
                 break
@@ -156,7 +162,7 @@ class LawSearch:
             terms, fit, score = (*terms, more), best.fit, best.score
         return best
 
-    def remember(self, start: Hypothesis) -> list[Judged]:
+    def fit_memory_laws(self, start: Hypothesis) -> list[FittedLaw]:
         """Of each form with a memory the likeliest, if it is worth anything."""
         runs, worthy = self.workspace.bank.runs, []
         axes = np.logical_and.reduce([run.axes for run in runs])
@@ -170,50 +176,50 @@ class LawSearch:
             if not bare.held:
                 continue
             laws = [(form, bare.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
-            best = next(iter(self.race(dict(enumerate(laws)), bare).values()))
+            best = next(iter(self.fit_each(dict(enumerate(laws)), bare).values()))
             if self.is_worth(best, bare, self.workspace.score(bare)):
                 worthy.append(best)
         return worthy
 
-    def keep_close(self, grown: Sequence[Judged]) -> list[Judged]:
+    def keep_close(self, grown: Sequence[FittedLaw]) -> list[FittedLaw]:
         """Laws that may be the likeliest once they are finished."""
         most = max((one.score for one in grown), default=0.0)
         return [one for one in grown if one.score > most - HOPELESS]
 
-    def is_surely_half(self, grown: Judged) -> bool:
+    def is_surely_half(self, grown: FittedLaw) -> bool:
         """Whether a law leaves so much on its own axis that it cannot hold."""
         bank = self.workspace.bank
         action = find_action(grown.form, grown.fit, bank.runs)
         return is_half(action.axis, grown.fit, bank, SURELY)
 
-    def pull(self, start: Hypothesis, grown: Judged | None) -> list[Judged]:
+    def fit_thrust_laws(self, start: Hypothesis, grown: FittedLaw | None) -> list[FittedLaw]:
         """The likeliest law of the thrust, where it may come near to what products explain."""
         fit = self.selection.fit(start)
         runs, score = self.workspace.bank.runs, self.workspace.score(fit)
         terms = list_thrust_terms(runs, fit.hypothesis.model)
         if not terms or not fit.held:
             return []
-        columns = weigh(self.workspace, fit, terms, middle_of(runs), push_thrust)
-        gain = find_alone(columns.products) - self.penalty
+        columns = project_terms(self.workspace, fit, terms, middle_of(runs), push_thrust)
+        explained = find_alone(columns.products) - self.penalty
         least = max(self.chance, 0.0 if grown is None else NEAR * (grown.score - score))
-        order = np.argsort(-gain, kind="stable")[:PULLED]
+        order = np.argsort(-explained, kind="stable")[:THRUST_LAWS_TRIED]
         laws = {
             int(k): (WithThrust(columns.terms[k]), begin(columns, int(k), fit.hypothesis))
-            for k in order if gain[k] > least
+            for k in order if explained[k] > least
         }  # fmt: skip
-        best, *others = self.race(laws, fit).values() or (None,)
+        best, *others = self.fit_each(laws, fit).values() or (None,)
         if best is None or not self.is_worth(best, fit, score):
             return []
         return [best.beats(others)]
 
-    def finish(self, grown: Judged) -> Judged:
+    def finish(self, grown: FittedLaw) -> FittedLaw:
         """Without effects of the catalogue that the law has made idle, and terms it can spare."""
         current = grown
         while True:
             h, form = current.fit.hypothesis, current.form
             fewer = [(form, h.without(i)) for i in self._list_idle(current.fit)]
             less = (*fewer, *form.simplify(h))
-            tried = [self.challenge(*one, current.fit, current.score) for one in less]
+            tried = [self.fit_unless_worse(*one, current.fit, current.score) for one in less]
             best = max(filter(None, tried), key=lambda one: one.score, default=None)
             if best is None or best.score < current.score:
                 return current
@@ -246,13 +252,13 @@ def choose_kinds(terms: Sequence[LawTerm]) -> list[LawTerm]:
     return list(kinds.values())
 
 
-def seek_law(selection: Selection) -> Judged | None:
+def search_laws(selection: SearchResult) -> FittedLaw | None:
     """The likeliest law beside what was selected, or in place of it; None where all may be chance.
 
     None either where an axis in which the vehicle can move is read now and then, or never: filters
     have another clock there.
     """
-    runs, fit = selection.workspace.bank.runs, selection.found
+    runs, fit = selection.workspace.bank.runs, selection.best
     terms = list_terms(runs)
     if not terms or not is_seen(selection):
         return None
@@ -261,10 +267,10 @@ def seek_law(selection: Selection) -> Judged | None:
     starts = [fit.hypothesis]
     if fit.hypothesis.terms:
         starts.append(replace(fit.hypothesis, terms=()))
-    each = [(start, search.grow(start)) for start in starts]
+    each = [(start, search.select_terms(start)) for start in starts]
     grown = [one for _, one in each if one is not None]
-    grown += [one for start, own in each for one in search.pull(start, own)]
-    grown += [one for start in starts for one in search.remember(start)]
+    grown += [one for start, own in each for one in search.fit_thrust_laws(start, own)]
+    grown += [one for start in starts for one in search.fit_memory_laws(start)]
     if all(search.is_surely_half(one) for one in search.keep_close(grown)):
         return None  # which effects it can spare need not be known
     finished = sorted((search.finish(one) for one in grown), key=lambda one: -one.score)
@@ -273,13 +279,13 @@ def seek_law(selection: Selection) -> Judged | None:
     return finished[0].beats(finished[1:])
 
 
-def is_seen(selection: Selection) -> bool:
+def is_seen(selection: SearchResult) -> bool:
     """Whether each axis in which the vehicle can move is read at every reading."""
     runs = selection.workspace.bank.runs
     return all((run.innovation_mask | ~run.free_axes.astype(bool)).all() for run in runs)
 
 
-def weigh(
+def project_terms(
     workspace: SearchWorkspace, current: Fit, candidates: Sequence[Any], middle: Array,
     push: Push = push,
 ) -> Columns:  # fmt: skip

@@ -35,7 +35,7 @@ class Linearised:
         return [np.concatenate([e[None], J]) for e, J in zip(self.e, self.J, strict=True)]
 
 
-class Evidence(Protocol):
+class ResidualSource(Protocol):
     """What a hypothesis is fitted to."""
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:

@@ -11,7 +11,7 @@ from rovsim.diagnosis.equations.proposal import ProposedLaw
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.ranking import Ranked, Selected
-from rovsim.diagnosis.selection.rivals import Rival
+from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.dynamics.model import Model
 from rovsim.results.diagnosis import Verdict
 from rovsim.results.fitted import Correlation
@@ -22,7 +22,7 @@ class TrainDiagnosis:
     """What was found on the train runs.
 
     `usable` runs; `fit` of the base and all selected effects, None where there was too little to
-    judge, and the `correlation` of its values; `structures` that are left, and whether the gate
+    judge, and the `correlation` of its values; `structures` that are left, and whether validation
     `refused` effects that explain something; `scale` of all forces, where it is unknown;
     `not_observable` effects that the runs could not show; `proposed`: a law for what is left, where
     one holds; `stand_ins`: names that it, or half a law, makes unnecessary or others;

@@ -27,7 +27,7 @@ class Rival:
 
 
 @dataclass(frozen=True, eq=False)
-class Selection:
+class SearchResult:
     """What a search found, its rivals, and the workspace as it was then.
 
     `reach`: how far a fit may go from where it starts, in scales. Without end where terms were
@@ -36,7 +36,7 @@ class Selection:
     """
 
     workspace: SearchWorkspace
-    found: Fit
+    best: Fit
     rivals: tuple[Rival, ...]
     reach: float = np.inf
 
@@ -44,12 +44,12 @@ class Selection:
         """Fit another hypothesis as this one was found."""
         return self.workspace.fit(start, self.reach)
 
-    def challenge(self, start: Hypothesis, current: Fit, score: float) -> Fit | None:
+    def fit_unless_worse(self, start: Hypothesis, current: Fit, score: float) -> Fit | None:
         """The same, but None as soon as it surely does not come near a score.
 
         `current`: a fit whose derivatives it may begin with.
         """
-        return self.workspace.challenge(start, current, score, self.reach)
+        return self.workspace.fit_unless_worse(start, current, score, self.reach)
 
     def prune(self, workspace: SearchWorkspace, fit: Fit) -> Fit:
         """Without what is not worth its penalty to a fit of the selection.
@@ -61,5 +61,5 @@ class Selection:
     @property
     def named_rivals(self) -> list[Rival]:
         """The rivals of what is still in the model."""
-        named = {term.id for term in self.found.hypothesis.terms}
+        named = {term.id for term in self.best.hypothesis.terms}
         return [rival for rival in self.rivals if rival.instead_of in named]

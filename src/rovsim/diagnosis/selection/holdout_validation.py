@@ -1,4 +1,4 @@
-"""The gate: what was chosen must replay stretches of the train runs that took no part in choosing.
+"""Hold-out validation: what was chosen must replay stretches that took no part in choosing.
 
 A likelihood can be wrong about what matters to a user; a replay is what users do. So the last part
 of every train run is kept apart. An effect without which these stretches are replayed better goes,
@@ -14,13 +14,13 @@ from numpy import ndarray as Array
 from scipy.stats import norm
 from scipy.stats import t as student
 
-from rovsim.diagnosis.observer.evidence import evaluate_possible
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.residual_source import evaluate_possible
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED
-from rovsim.diagnosis.selection.rivals import Selection
+from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread
 
@@ -52,7 +52,7 @@ def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[Obs
 
 
 @dataclass(frozen=True, eq=False)
-class Gate:
+class HoldoutValidation:
     """The stretches that were kept apart; the whole runs tell how much each axis varies.
 
     Where the `current_drifts`, what all windows of a run have in common is by chance.
@@ -67,9 +67,9 @@ class Gate:
         """Standard deviation (6,) of the measured velocity."""
         return np.fmax(measured_spread(run.motion for run in self.whole), SMALLEST)
 
-    def judge(self, selection: Selection) -> tuple[Selection, bool]:
+    def judge(self, selection: SearchResult) -> tuple[SearchResult, bool]:
         """What passes, and whether that is all that was selected."""
-        fit = selection.found
+        fit = selection.best
         while self.runs and fit.hypothesis.terms:
             weakest = self._find_harmful(selection, fit)
             fewer = selection.fit(weakest) if weakest else None
@@ -79,7 +79,7 @@ class Gate:
         if self.refuses(fit.hypothesis.model, fit.hypothesis.base):
             base = replace(fit.hypothesis, terms=())
             fit = selection.fit(base)
-        return replace(selection, found=fit), fit is selection.found
+        return replace(selection, best=fit), fit is selection.best
 
     def refuses(self, model: Model, before: Model) -> bool:
         """Whether a model replays these stretches surely worse than the one before."""
@@ -113,7 +113,7 @@ class Gate:
             return True
         return False if find_sure_improvement(own, others) > 0.0 else None
 
-    def keep_earning(self, selection: Selection) -> Selection:
+    def keep_earning(self, selection: SearchResult) -> SearchResult:
         """Where physics is left that no name explains: only what makes a difference there.
 
         A name then stands for part of what has none, unless replays are surely better for it. What
@@ -123,9 +123,9 @@ class Gate:
             selection = self._drop_idle(selection, split, least)
         return selection
 
-    def _drop_idle(self, selection: Selection, split: Split, least: float) -> Selection:
+    def _drop_idle(self, selection: SearchResult, split: Split, least: float) -> SearchResult:
         """Without groups of terms whose absence does not surely cost that share of the error."""
-        kept = selection.found
+        kept = selection.best
         while self.runs and (groups := split(kept.hypothesis)):
             fewer, errors = self._do_without(selection, kept, groups)
             idle = [k for k, e in enumerate(errors[1:]) if not surely_costs(e, errors[0], least)]
@@ -137,9 +137,9 @@ class Gate:
             if without is None:
                 break
             kept = without
-        return replace(selection, found=kept)
+        return replace(selection, best=kept)
 
-    def _find_harmful(self, selection: Selection, fit: Fit) -> Hypothesis | None:
+    def _find_harmful(self, selection: SearchResult, fit: Fit) -> Hypothesis | None:
         """Without the effect whose absence helps most; None where each of them earns its place."""
         fewer, errors = self._do_without(selection, fit, [(t,) for t in fit.hypothesis.terms])
         tried = len(errors) - 1
@@ -148,7 +148,7 @@ class Gate:
         return fewer[best] if improvements[best] > 0.0 else None
 
     def _do_without(
-        self, selection: Selection, fit: Fit, groups: Sequence[Sequence[Term]]
+        self, selection: SearchResult, fit: Fit, groups: Sequence[Sequence[Term]]
     ) -> tuple[list[Hypothesis], Array]:
         """Hypotheses without each group of terms, and errors (1 + g, w), those with all first.
 
