@@ -30,7 +30,7 @@ def spread(bank, found, lasting):
     blocks = number_blocks(bank.runs)
     random = np.random.default_rng(1)
     shown = bank.whiten(found.seen.e, found.noise)
-    scale = bank.tunings[0].variance[:, None] ** 0.5
+    scale = bank.run_filters[0].variance[:, None] ** 0.5
     pushes = random.normal(size=(blocks.max() + 1, 6, 1)) * scale
     settled = bank.runs[0].settled
     assert shown.shape[-1] == settled.sum()

@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 from rovsim.diagnosis.equations.disturbance import smooth_stretch
 from rovsim.diagnosis.equations.spectrum import SEGMENT, find_spectrum
 from rovsim.diagnosis.observer.axis_kernels import POSE
-from rovsim.diagnosis.observer.kalman import AxisMotion, AxisNoise, design_filter
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
 PERIOD, NOISE, COUNT = 0.05, AxisNoise(0.1, 1.0, 1e-3), 4000
 
@@ -17,24 +17,25 @@ TIME = PERIOD * np.arange(COUNT)  # s
 
 def observe(truth):
     """Whitened innovations (n,) of a filter that reads what a push (n,) does, and its smoother."""
-    f = design_filter(POSE, PERIOD, AxisMotion(0.5), NOISE)
+    f = design_filter(POSE, PERIOD, AxisErrorDynamics(0.5), NOISE)
     rng, n = np.random.default_rng(2), len(f.C)
     x, seen, white = np.zeros(n), np.zeros(n), np.empty(COUNT)
     for k in range(COUNT):
         x = f.F @ x
         x[2] = truth[k]
         seen = f.F @ seen
-        e = f.C @ (x - seen) + NOISE.reading * rng.normal()
+        e = f.C @ (x - seen) + NOISE.measurement_std * rng.normal()
         seen = seen + f.gain * e
         white[k] = e / np.sqrt(f.variance)
-    return white, smooth_stretch(white, f, PERIOD, NOISE.level, NOISE.memory)
+    return white, smooth_stretch(white, f, PERIOD, NOISE.disturbance_std, NOISE.correlation_time)
 
 
 @pytest.fixture(scope="module")
 def told():
     """A disturbance (n,) drawn from the model, and what its smoother tells of it."""
-    fade = np.exp(-PERIOD / NOISE.memory)
-    kicks = NOISE.level * np.sqrt(1.0 - fade**2) * np.random.default_rng(1).normal(size=COUNT)
+    fade = np.exp(-PERIOD / NOISE.correlation_time)
+    std = NOISE.disturbance_std * np.sqrt(1.0 - fade**2)
+    kicks = std * np.random.default_rng(1).normal(size=COUNT)
     truth = lfilter([1.0], [1.0, -fade], kicks)
     return truth, *observe(truth)
 
@@ -48,7 +49,8 @@ def test_the_innovations_are_white(told):
 def test_a_disturbance_is_found_in_its_place_and_size(told):
     truth, _, found = told
     error = found - truth
-    assert np.std(error) < 0.45 * NOISE.level  # a filter, without later readings, has 0.65 of it
+    # a filter, without later readings, has 0.65 of it
+    assert np.std(error) < 0.45 * NOISE.disturbance_std
     assert np.corrcoef(found, truth)[0, 1] > 0.9
     later = [np.mean((found - np.roll(truth, k)) ** 2) for k in (-4, -2, 0, 2, 4)]
     assert int(np.argmin(later)) == 2  # neither early nor late
@@ -62,7 +64,7 @@ def along(axis, force):
 
 def test_a_push_that_swings_has_its_peak_where_it_swings():
     """3 N at 0.2 Hz, read by cameras: through the smoother the peak stays, and nearly its size."""
-    swing = 3.0 * NOISE.level * np.sin(2.0 * np.pi * 0.2 * TIME)
+    swing = 3.0 * NOISE.disturbance_std * np.sin(2.0 * np.pi * 0.2 * TIME)
     found = find_spectrum([along(1, observe(swing)[1])], PERIOD)
     peak = np.argmax(found.density[:, 1])
     assert found.frequency[peak] == pytest.approx(0.2)

@@ -19,8 +19,8 @@ from rovsim.diagnosis.observer.axis_kernels import (
     misfit,
     sum_of_squares,
 )
-from rovsim.diagnosis.observer.kalman import AxisMotion, AxisNoise, design_filter
-from rovsim.diagnosis.observer.noise import Noise, Tuning
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
+from rovsim.diagnosis.observer.noise import Noise, RunFilters
 from rovsim.diagnosis.observer.noise_fit import fit_noise
 
 H = 0.01
@@ -30,14 +30,14 @@ noises = st.tuples(
 )  # fmt: skip
 
 
-def rung(f, h, level, memory, reading, n, seed):
+def rung(f, h, disturbance_std, correlation_time, measurement_std, n, seed):
     """Readings (n,) of the very process that a filter is made for."""
     random = np.random.default_rng(seed)
     x = np.zeros(len(f.C))
-    driving = level * np.sqrt(1.0 - f.decay**2)
+    driving = disturbance_std * np.sqrt(1.0 - f.decay**2)
     y = np.empty(n)
     for k in range(n):
-        y[k] = f.C @ x + reading * random.normal()
+        y[k] = f.C @ x + measurement_std * random.normal()
         x = f.F @ x
         x[-1] += driving * random.normal()
     return y
@@ -54,11 +54,12 @@ def innovations(f, y):
 
 @given(noises)
 def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
-    binned, d, level, memory, reading = noise
-    f = design_filter(binned, H, AxisMotion(d), AxisNoise(level, memory, reading))
-    n, r = len(f.C), reading**2
+    binned, d, disturbance_std, correlation_time, measurement_std = noise
+    own = AxisNoise(disturbance_std, correlation_time, measurement_std)
+    f = design_filter(binned, H, AxisErrorDynamics(d), own)
+    n, r = len(f.C), measurement_std**2
     Q = SOLVABLE * r * np.eye(n)
-    Q[-1, -1] = level**2 * (1.0 - np.exp(-2.0 * H / memory)) + LEAST_DRIVING
+    Q[-1, -1] = disturbance_std**2 * (1.0 - np.exp(-2.0 * H / correlation_time)) + LEAST_DRIVING
     P = solve_discrete_are(f.F.T, f.C[:, None], Q, np.array([[r]]))
     assert f.variance == pytest.approx(f.C @ P @ f.C + r, rel=1e-6)
     np.testing.assert_allclose(f.gain, P @ f.C / (f.C @ P @ f.C + r), rtol=1e-4, atol=1e-9)
@@ -66,7 +67,7 @@ def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
 
 @given(noises)
 def test_a_filter_is_stable_and_its_poles_are_its_eigenvalues(noise):
-    f = design_filter(noise[0], H, AxisMotion(noise[1]), AxisNoise(*noise[2:]))
+    f = design_filter(noise[0], H, AxisErrorDynamics(noise[1]), AxisNoise(*noise[2:]))
     A = f.F @ (np.eye(len(f.C)) - np.outer(f.gain, f.C))
     assert np.abs(np.linalg.eigvals(A)).max() < 1.0
     np.testing.assert_allclose(f.denominator, np.poly(A), atol=1e-9)
@@ -79,15 +80,15 @@ def test_an_axis_goes_on_as_its_differential_equation_says(damping, stiffness, h
         return [x[1], 0.7 - damping * x[1] - stiffness * x[0]]
 
     expected = solve_ivp(rates, (0.0, h), [0.2, -0.5], rtol=1e-9, atol=1e-12).y[:, -1]
-    moved = AxisMotion(damping, stiffness).over(h) @ [0.2, -0.5, 0.7]
+    moved = AxisErrorDynamics(damping, stiffness).over(h) @ [0.2, -0.5, 0.7]
     np.testing.assert_allclose(moved[:2], expected, rtol=1e-6, atol=1e-9)
 
 
 @pytest.mark.parametrize("binned", [False, True])
 def test_innovations_of_one_filter_become_those_of_another(binned):
     h = 0.16 if binned else H
-    old = design_filter(binned, h, AxisMotion(1.0), AxisNoise(0.2, 0.5, 1e-3))
-    new = design_filter(binned, h, AxisMotion(1.0), AxisNoise(0.05, 1.5, 2e-3))
+    old = design_filter(binned, h, AxisErrorDynamics(1.0), AxisNoise(0.2, 0.5, 1e-3))
+    new = design_filter(binned, h, AxisErrorDynamics(1.0), AxisNoise(0.05, 1.5, 2e-3))
     y = rung(new, h, 0.05, 1.5, 2e-3, 4000, 3)
     np.testing.assert_allclose(
         lfilter(*new.whitening(old), innovations(old, y)), innovations(new, y), atol=1e-9
@@ -95,7 +96,7 @@ def test_innovations_of_one_filter_become_those_of_another(binned):
 
 
 def test_the_right_filter_leaves_white_noise_of_the_variance_it_says():
-    f = design_filter(False, H, AxisMotion(1.0), AxisNoise(0.05, 1.0, 1e-3))
+    f = design_filter(False, H, AxisErrorDynamics(1.0), AxisNoise(0.05, 1.0, 1e-3))
     e = innovations(f, rung(f, H, 0.05, 1.0, 1e-3, 40000, 1))[500:]
     assert np.var(e) == pytest.approx(f.variance, rel=0.03)
     for lag in (1, 3, 10, 50):
@@ -105,10 +106,10 @@ def test_the_right_filter_leaves_white_noise_of_the_variance_it_says():
 @pytest.mark.parametrize("binned", [False, True])
 def test_a_push_shows_in_the_innovations_as_the_response_says(binned):
     h = 0.16 if binned else H
-    f = design_filter(binned, h, AxisMotion(1.0), AxisNoise(0.05, 1.0, 1e-3))
+    f = design_filter(binned, h, AxisErrorDynamics(1.0), AxisNoise(0.05, 1.0, 1e-3))
     push = np.where(np.arange(400) % 90 < 30, 0.3, -0.1)
     x, y = np.zeros(len(f.C)), np.empty(len(push))
-    moved = AxisMotion(1.0).over(h)
+    moved = AxisErrorDynamics(1.0).over(h)
     B = np.array([h, 0.0]) if binned else np.array([*moved[:2, 2], 0.0])
     for k, a in enumerate(push):  # felt over the step before the reading
         x = f.F @ x + B * a
@@ -150,10 +151,12 @@ def test_what_is_not_shown_is_passed_over():
         assert count == np.sum(there & kept)
 
 
-@pytest.mark.parametrize(("level", "reading"), [(1e-300, 1e-3), (0.1, 1e-300), (1e200, 1e-3)])
-def test_a_noise_that_cannot_be_ends_no_search(level, reading):
+@pytest.mark.parametrize(
+    ("disturbance_std", "measurement_std"), [(1e-300, 1e-3), (0.1, 1e-300), (1e200, 1e-3)]
+)
+def test_a_noise_that_cannot_be_ends_no_search(disturbance_std, measurement_std):
     """A search may ask for it on its way."""
-    motion, usual = AxisMotion(0.5), AxisNoise(0.1, 1.0, 1e-3)
+    motion, usual = AxisErrorDynamics(0.5), AxisNoise(0.1, 1.0, 1e-3)
     f, every = design_filter(POSE, H, motion, usual), np.ones(500, bool)
     e = np.sqrt(f.variance) * np.random.default_rng(0).normal(size=500)
 
@@ -164,15 +167,16 @@ def test_a_noise_that_cannot_be_ends_no_search(level, reading):
         )  # fmt: skip
         return squares + count * log
 
-    assert not cost(usual._replace(level=level, reading=reading)) < cost(usual)
+    other = usual._replace(disturbance_std=disturbance_std, measurement_std=measurement_std)
+    assert not cost(other) < cost(usual)
 
 
 def observed(start, y):
     """Innovations of readings y (n,) on every axis, found with filters that suit a noise."""
-    n, motions = len(y), [AxisMotion(1.0)] * 6
-    axes = enumerate(motions)
+    n, error_dynamics = len(y), [AxisErrorDynamics(1.0)] * 6
+    axes = enumerate(error_dynamics)
     filters = tuple(design_filter(POSE, H, own, start.of_axis(i)) for i, own in axes)
-    found = Tuning(filters, np.full(6, H), np.full(n, H))
+    found = RunFilters(filters, np.full(6, H), np.full(n, H))
     run = SimpleNamespace(
         axis_periods=np.full(6, H),
         reading_kinds=np.full(6, POSE),
@@ -182,29 +186,29 @@ def observed(start, y):
         settled=np.arange(n) > 100,
         group=1,
     )
-    return [np.array([innovations(f, y) for f in found.filters])], [run], [found], motions
+    return [np.array([innovations(f, y) for f in found.filters])], [run], [found], error_dynamics
 
 
 def test_the_noise_of_made_innovations_is_found():
     true = AxisNoise(0.04, 1.0, 1.5e-3)
-    y = rung(design_filter(POSE, H, AxisMotion(1.0), true), H, *true[:3], 20000, 7)
+    y = rung(design_filter(POSE, H, AxisErrorDynamics(1.0), true), H, *true[:3], 20000, 7)
     start = Noise(np.full(6, 0.1), np.full(6, 0.5), np.full(6, 5e-4))
     noise, _ = fit_noise(*observed(start, y), start)
-    np.testing.assert_allclose(noise.reading, true.reading, rtol=0.03)
-    np.testing.assert_allclose(noise.level, true.level, rtol=0.25)
-    assert np.all((noise.memory > 0.6) & (noise.memory < 1.7))
+    np.testing.assert_allclose(noise.measurement_std, true.measurement_std, rtol=0.03)
+    np.testing.assert_allclose(noise.disturbance_std, true.disturbance_std, rtol=0.25)
+    assert np.all((noise.correlation_time > 0.6) & (noise.correlation_time < 1.7))
 
 
-@pytest.mark.parametrize("colour", [False, True])
-def test_beside_slow_errors_some_noise_is_left_from_frame_to_frame(colour):
+@pytest.mark.parametrize("with_bias", [False, True])
+def test_beside_slow_errors_some_noise_is_left_from_frame_to_frame(with_bias):
     """Without any no filter can be told from another: what it forgets it would have to know."""
     slow, lasting = 2e-4, 0.1
-    motion = design_filter(POSE, H, AxisMotion(1.0), AxisNoise(0.01, 1.0, 1e-4))
+    motion = design_filter(POSE, H, AxisErrorDynamics(1.0), AxisNoise(0.01, 1.0, 1e-4))
     keep = np.exp(-H / lasting)
     drawn = np.random.default_rng(8).normal(size=8000)
     errors = lfilter([slow * np.sqrt(1.0 - keep**2)], [1.0, -keep], drawn)
     y = rung(motion, H, 0.01, 1.0, 0.0, 8000, 7) + errors
     sixfold = (np.full(6, one) for one in (0.03, 0.5, 1e-4, slow, lasting))
     start = Noise(*sixfold)
-    noise, _ = fit_noise(*observed(start, y), start, colour)
-    assert np.all(noise.reading > 0.05 * noise.colour)
+    noise, _ = fit_noise(*observed(start, y), start, with_bias)
+    assert np.all(noise.measurement_std > 0.05 * noise.bias_std)

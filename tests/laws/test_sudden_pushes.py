@@ -8,15 +8,15 @@ from scipy.signal import lfilter
 from rovsim.diagnosis.checks.residual import AxisResidual
 from rovsim.diagnosis.checks.sudden_pushes import find_kicks
 from rovsim.diagnosis.observer.axis_kernels import POSE
-from rovsim.diagnosis.observer.kalman import AxisMotion, AxisNoise, design_filter
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
 PERIOD, COUNT, KICK = 0.05, 1200, 600
-NOISE = AxisNoise(level=0.02, memory=1.0, reading=1e-3)
+NOISE = AxisNoise(disturbance_std=0.02, correlation_time=1.0, measurement_std=1e-3)
 
 
 def residual_with(size, undecided, noise=1.0):
     """Noise and one push of 0.2 s, m/s2, in the innovations of an axis."""
-    f = design_filter(POSE, PERIOD, AxisMotion(1.0), NOISE)
+    f = design_filter(POSE, PERIOD, AxisErrorDynamics(1.0), NOISE)
     push = np.zeros(COUNT)
     push[KICK : KICK + 4] = size
     shown = lfilter(*f.response, push)

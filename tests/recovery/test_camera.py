@@ -51,7 +51,7 @@ def test_a_slow_error_of_the_cameras_is_told_from_noise_and_from_turbulence(tmp_
         bank = FilterBank.design(runs, base, FIRST_NOISE)
         e = [one[0] for one in bank.evaluate([base])]
         noise, _ = bank.fit_noise(e, FIRST_NOISE, thorough=True)
-        levels.append(noise.colour)
+        levels.append(noise.bias_std)
     assert np.all(levels[0][3:] == 0.0)
     assert np.count_nonzero(levels[0]) <= 1
     assert np.median(levels[1][:3]) == pytest.approx(1.0e-3, rel=0.4)

@@ -11,7 +11,7 @@ from rovsim.benchmarks.blind.laws import carried
 from rovsim.diagnosis.observer.drifting_current import LIKELY, MovingWater
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import FIRST_NOISE, DriftingCurrent, Path
+from rovsim.diagnosis.observer.noise import FIRST_NOISE, CurrentPath, DriftingCurrent
 from rovsim.diagnosis.observer.random_walk import list_terms
 from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.selection.candidates import list_candidates
@@ -139,11 +139,11 @@ def test_water_that_moves_shows_as_a_current_does(tmp_path):
 
     def err(paths):
         about = replace(bank, paths=paths)
-        walk = MovingWater(base, bank.runs, bank.tunings, paths).walk
+        walk = MovingWater(base, bank.runs, bank.run_filters, paths).walk
         begins = list_terms(runs[0])[0, 0]  # the first term of a walk is a steady current
         linear = np.tensordot(steady / begins, walk.columns[0][:2], axes=1)
         return rms((about.innovations(base)[0] - linear - expected)[:, settled])
 
-    path = Path(runs[0].time, np.tile(steady, (len(runs[0].time), 1)))
+    path = CurrentPath(runs[0].time, np.tile(steady, (len(runs[0].time), 1)))
     assert err((path,)) < 0.15 * rms((expected - still)[:, settled])
     assert err((path,)) < err(())

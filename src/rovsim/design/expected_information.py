@@ -24,9 +24,9 @@ from rovsim.design.record import record
 from rovsim.design.recording_setup import RecordingSetup
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.innovations import estimate_errors
-from rovsim.diagnosis.observer.kalman import AxisMotion
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
-from rovsim.diagnosis.observer.noise import tune
+from rovsim.diagnosis.observer.noise import design_filters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.gauss_newton import REACH
@@ -82,16 +82,16 @@ def expect_information(
     """
     if not exact:
         setup = setup.coarser
-    information, gains, motions, alone = [], [], None, len(prior.rivals) == 1
+    information, gains, error_dynamics, alone = [], [], None, len(prior.rivals) == 1
     for k, (path, rival) in enumerate(zip(paths, prior.rivals, strict=True)):
         if not (exact or prior.likely[k]):
             information.append(np.zeros_like(rival.information))
             gains.append(np.inf)
             continue
         run = record(path, commands, rival.hypothesis.model, setup)
-        if exact or motions is None:
-            motions = _mix_motions(run, rival, prior)
-        bank = _observe(run, rival, prior, motions, exact)
+        if exact or error_dynamics is None:
+            error_dynamics = _mix_error_dynamics(run, rival, prior)
+        bank = _observe(run, rival, prior, error_dynamics, exact)
         own = bank.linearise(rival.hypothesis if exact or alone else rival.fixed)
         information.append(measure_information(bank, own, rival, prior))
         if not alone:
@@ -102,25 +102,25 @@ def expect_information(
     return ExpectedInformation(std_ratio, tuple(then), np.array(gains), prior.likely)
 
 
-def _mix_motions(
+def _mix_error_dynamics(
     run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation
-) -> tuple[AxisMotion, ...]:
+) -> tuple[AxisErrorDynamics, ...]:
     """How errors go on in the train runs and a flight, each as long as it lasts."""
     some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
-    own = np.array(estimate_errors(rival.hypothesis.model, [some]).motions)
+    own = np.array(estimate_errors(rival.hypothesis.model, [some]).error_dynamics)
     before, lasts = prior.seconds, float(run.reading_times[-1])
-    both = (before * np.array(prior.motions) + lasts * own) / (before + lasts)
-    return tuple(AxisMotion(float(d), float(k)) for d, k in both)
+    both = (before * np.array(prior.error_dynamics) + lasts * own) / (before + lasts)
+    return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in both)
 
 
 def _observe(
     run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation,
-    motions: tuple[AxisMotion, ...], exact: bool,
+    error_dynamics: tuple[AxisErrorDynamics, ...], exact: bool,
 ) -> FilterBank:  # fmt: skip
     """Filters for the flight, which is the last run, and where exact for the train runs."""
     runs = (*prior.runs, run) if exact else (run,)
-    tunings = tuple(tune(prior.noise.white, motions, w) for w in runs)
-    return FilterBank(runs, motions, tunings, rival.hypothesis.model)
+    run_filters = tuple(design_filters(prior.noise.white, error_dynamics, w) for w in runs)
+    return FilterBank(runs, error_dynamics, run_filters, rival.hypothesis.model)
 
 
 def measure_information(

@@ -52,7 +52,7 @@ def fit_prior(
         found, bank = _fit(start, runs)
         wanted = [n for n in start.parameter_names if not question.know or n in question.know]
         one = _summarise(found, bank, wanted)
-        return PriorInformation(tuple(runs), (), (one,), found.noise, bank.motions)
+        return PriorInformation(tuple(runs), (), (one,), found.noise, bank.error_dynamics)
     return _fit_rivals(start, runs, question, candidates)
 
 
@@ -180,7 +180,7 @@ def _fit_rivals(
         rivals.append(_summarise(found, bank, wanted, penalty, widen(found.hypothesis, name)))
     best, bank = max(fits, key=lambda one: one[0].two_log_likelihood)
     asked = tuple(question.between)
-    return PriorInformation(tuple(runs), asked, tuple(rivals), best.noise, bank.motions)
+    return PriorInformation(tuple(runs), asked, tuple(rivals), best.noise, bank.error_dynamics)
 
 
 def widen(h: Hypothesis, effect: str) -> Hypothesis:

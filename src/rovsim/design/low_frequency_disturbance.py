@@ -15,8 +15,8 @@ from numpy import ndarray as Array
 
 from rovsim.core import gauss_markov
 from rovsim.diagnosis.observer.innovations import observe
-from rovsim.diagnosis.observer.kalman import AxisMotion
-from rovsim.diagnosis.observer.noise import Noise, Tuning, tune
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
+from rovsim.diagnosis.observer.noise import Noise, RunFilters, design_filters
 from rovsim.diagnosis.observer.observed_run import BLOCK, ObservedRun, number_blocks
 from rovsim.dynamics.model import Model
 
@@ -47,7 +47,9 @@ class LowFrequencyDisturbance:
         """What lasts, of the mean disturbances (b, 6) of blocks of so many seconds each."""
         if not len(blocks):
             return LowFrequencyDisturbance.none()
-        chance = noise.level * np.sqrt(gauss_markov.variance_of_mean(noise.memory / seconds))
+        chance = noise.disturbance_std * np.sqrt(
+            gauss_markov.variance_of_mean(noise.correlation_time / seconds)
+        )
         count, mean = len(blocks), blocks.mean(axis=0)
         error = chance / np.sqrt(count)
         varied = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
@@ -65,7 +67,10 @@ class LowFrequencyDisturbance:
 
 
 def estimate_disturbance(
-    model: Model, runs: Sequence[ObservedRun], noise: Noise, motions: Sequence[AxisMotion]
+    model: Model,
+    runs: Sequence[ObservedRun],
+    noise: Noise,
+    error_dynamics: Sequence[AxisErrorDynamics],
 ) -> LowFrequencyDisturbance:
     """What pushes the vehicle for long in the train runs, and a model does not know of.
 
@@ -73,21 +78,21 @@ def estimate_disturbance(
         model: fitted to them.
         runs: the train runs.
         noise: of the readings, and the short disturbance.
-        motions: how errors of the six axes go on.
+        error_dynamics: how errors of the six axes go on.
     """
-    slow = Noise(noise.level, np.full(6, LASTING), noise.reading)
+    slow = Noise(noise.disturbance_std, np.full(6, LASTING), noise.measurement_std)
     blocks: list[Array] = []
     for run in runs:
-        blocks += _average(run, _follow(model, run, tune(slow, motions, run)))
+        blocks += _average(run, _follow(model, run, design_filters(slow, error_dynamics, run)))
     return LowFrequencyDisturbance.of_blocks(np.array(blocks) * model.body.free, BLOCK, noise)
 
 
-def _follow(model: Model, run: ObservedRun, tuning: Tuning) -> Array:
+def _follow(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
     """The disturbance (n, 6) that an observer finds at the readings."""
-    e = np.nan_to_num(observe([model], run, tuning)[0])
-    found, decay = np.zeros(e.T.shape), tuning.decay(np.array([run.period]))[0]
+    e = np.nan_to_num(observe([model], run, filters)[0])
+    found, decay = np.zeros(e.T.shape), filters.decay(np.array([run.period]))[0]
     for first, last in run.innovation_segments:
-        for i, gain in enumerate(tuning.gains[2]):
+        for i, gain in enumerate(filters.gains[2]):
             found[first:last, i] = scipy.signal.lfilter([gain], [1.0, -decay[i]], e[i, first:last])
     return found
 

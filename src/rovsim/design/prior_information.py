@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.design.low_frequency_disturbance import LowFrequencyDisturbance, estimate_disturbance
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.kalman import AxisMotion
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
@@ -79,14 +79,14 @@ def _root(covariance: Array) -> Array:
 class PriorInformation:
     """What is known before the flight: one hypothesis, or two rivals, under one noise.
 
-    `rival_names` names the rivals; `motions` are those of the filters.
+    `rival_names` names the rivals; `error_dynamics` are those of the filters.
     """
 
     runs: tuple[ObservedRun, ...]
     rival_names: tuple[str, ...]
     rivals: tuple[FittedHypothesis, ...]
     noise: Noise
-    motions: tuple[AxisMotion, ...]
+    error_dynamics: tuple[AxisErrorDynamics, ...]
 
     @cached_property
     def seconds(self) -> float:
@@ -102,7 +102,7 @@ class PriorInformation:
     def low_frequency(self) -> tuple[LowFrequencyDisturbance, ...]:
         """What pushes the vehicle for long in the train runs, and each rival does not know of."""
         return tuple(
-            estimate_disturbance(rival.hypothesis.model, self.runs, self.noise, self.motions)
+            estimate_disturbance(rival.hypothesis.model, self.runs, self.noise, self.error_dynamics)
             for rival in self.rivals
         )
 

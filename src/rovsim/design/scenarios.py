@@ -99,8 +99,8 @@ def _draw_of(
     """Of the models of one rival: what passes by, and what lasts and it does not know of."""
     count, steps, h = len(models), len(setup.edges) - 1, setup.step
     noise, slow = prior.noise, prior.low_frequency[rival]
-    std = noise.level * models[0].body.free
-    correlation_time = float(np.median(noise.memory))
+    std = noise.disturbance_std * models[0].body.free
+    correlation_time = float(np.median(noise.correlation_time))
     disturbances = np.array(
         [
             std * gauss_markov.draw(steps, h / correlation_time, random)

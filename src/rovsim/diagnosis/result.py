@@ -210,12 +210,12 @@ def _noise(diagnosis: TrainDiagnosis) -> FittedNoise:
     if diagnosis.fit is None:
         return FittedNoise()
     noise = diagnosis.fit.noise
-    slow = noise.colour.any()
+    slow = noise.bias_std.any()
     return FittedNoise(
-        disturbance=tuple(map(rounded, noise.level)),
-        memory_s=tuple(map(rounded, noise.memory)),
-        reading=tuple(map(rounded, noise.reading)),
+        disturbance=tuple(map(rounded, noise.disturbance_std)),
+        memory_s=tuple(map(rounded, noise.correlation_time)),
+        reading=tuple(map(rounded, noise.measurement_std)),
         period_s=rounded(diagnosis.usable.runs[0].period),
-        colour=tuple(map(rounded, noise.colour)) if slow else (),
-        colour_memory_s=tuple(map(rounded, noise.colour_memory)) if slow else (),
+        colour=tuple(map(rounded, noise.bias_std)) if slow else (),
+        colour_memory_s=tuple(map(rounded, noise.bias_correlation_time)) if slow else (),
     )

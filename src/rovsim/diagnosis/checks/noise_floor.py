@@ -2,8 +2,8 @@
 
 Its errors come from three sources, all drawn at random here: the disturbance that pushes the
 vehicle while the model does not know of it, the noise of the state it starts from, and the noise of
-the velocity it is compared with, both after the filter. Level and memory are those of `noise.py`,
-fitted to the train runs.
+the velocity it is compared with, both after the filter. Sizes and correlation time are those of
+`noise.py`, fitted to the train runs.
 """
 
 from dataclasses import dataclass

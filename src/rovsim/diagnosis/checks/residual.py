@@ -49,8 +49,8 @@ class AxisResidual:
     """Whitened settled innovations (n_run,) of one axis, and the filter that made each run white.
 
     `fitted` (k, n), over all runs, are their derivatives to what was fitted, whose directions are
-    not judged again; `level` that of the disturbance, m/s2 or rad/s2; `undecided` (n_run,): where
-    nobody knows whether a thruster turned.
+    not judged again; `disturbance_std` in m/s2 or rad/s2; `undecided` (n_run,): where nobody knows
+    whether a thruster turned.
     """
 
     axis: str
@@ -58,7 +58,7 @@ class AxisResidual:
     fitted: Array
     runs: tuple[ObservedRun, ...]
     filters: tuple[AxisFilter, ...]
-    level: float
+    disturbance_std: float
     undecided: tuple[Array, ...]
 
     @property
@@ -88,8 +88,8 @@ class AxisResidual:
             moment: it is a single push.
         """
         limit *= self._margin
-        if statistic > limit and size > MATTERS * self.level:
-            share = min(1.0, (size / self.level) ** 2)
+        if statistic > limit and size > MATTERS * self.disturbance_std:
+            share = min(1.0, (size / self.disturbance_std) ** 2)
             yield Structure(self.axis, what, float(share), float(statistic / limit), moment)
 
 
@@ -109,7 +109,7 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     """
     J = bank.whiten(fit.seen.J, fit.noise)
     white = _split_by_run(bank.whiten(fit.seen.e, fit.noise), bank.runs)
-    tunings = bank.tune(fit.noise)
+    run_filters = bank.design_filters(fit.noise)
     model = fit.hypothesis.model
     unknown = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
     off = [find_jumps(run, model, lost) for run, lost in zip(bank.runs, unknown, strict=True)]
@@ -118,11 +118,11 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     for i, axis in enumerate(AXES):
         if not all(run.innovation_mask[:, i].all() for run in bank.runs):
             continue
-        filters = tuple(tuning.filters[i] for tuning in tunings)
+        filters = tuple(one.filters[i] for one in run_filters)
         each = zip(white, filters, bank.runs, unknown, off, strict=True)
         cleared = tuple(_clear(own[i], f, run, lost, by[:, i]) for own, f, run, lost, by in each)
-        level = float(fit.noise.level[i])
-        residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, level, undecided))
+        std = float(fit.noise.disturbance_std[i])
+        residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, std, undecided))
     return residuals
 
 

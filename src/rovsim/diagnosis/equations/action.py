@@ -30,7 +30,7 @@ def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
     each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
     whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
     sizes = np.sqrt(np.mean(np.sum((each @ bare.M.T) ** 2, axis=2), axis=1))
-    return Action(tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.level))])
+    return Action(tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.disturbance_std))])
 
 
 def is_half(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:

@@ -63,34 +63,43 @@ def trace_force(fit: Fit, bank: FilterBank, structures: Sequence[Structure]) -> 
     axes = tuple(a for a in AXES if a in residuals and a in named)
     if not axes:
         return None
-    M, memory = fit.hypothesis.model.M, fit.noise.memory
+    M, correlation_time = fit.hypothesis.model.M, fit.noise.correlation_time
     forces = []
     for k, run in enumerate(bank.runs):
         a = np.zeros((len(run.time), 6))
         for i, axis in enumerate(AXES):
             if axis in residuals:
                 own = residuals[axis]
-                a[:, i] = smooth(own.white[k], own.filters[k], run, own.level, float(memory[i]))
+                std, lasts = own.disturbance_std, float(correlation_time[i])
+                a[:, i] = smooth(own.white[k], own.filters[k], run, std, lasts)
         forces.append(a @ M.T)
     return _gather(bank.runs, forces, axes, residuals)
 
 
-def smooth(white: Array, f: AxisFilter, run: ObservedRun, level: float, memory: float) -> Array:
-    """Acceleration (n,) at the readings of a run, of its settled whitened innovations (m,)."""
+def smooth(white: Array, f: AxisFilter, run: ObservedRun, std: float, lasts: float) -> Array:
+    """Acceleration (n,) at the readings of a run, of its settled whitened innovations (m,).
+
+    Args:
+        white: the innovations.
+        f: the filter that made them.
+        run: where.
+        std: of the disturbance.
+        lasts: its correlation time, s.
+    """
     e, out = np.zeros(len(run.time)), np.zeros(len(run.time))
     e[run.settled] = white
     for first, last in run.innovation_segments:
-        out[first:last] = smooth_stretch(e[first:last], f, run.period, level, memory)
+        out[first:last] = smooth_stretch(e[first:last], f, run.period, std, lasts)
     return out
 
 
-def smooth_stretch(e: Array, f: AxisFilter, period: float, level: float, memory: float) -> Array:
+def smooth_stretch(e: Array, f: AxisFilter, period: float, std: float, lasts: float) -> Array:
     """Acceleration (n,) that an unbroken stretch of whitened innovations (n,) tells of."""
     count = next_fast_len(2 * len(e))  # so that the end does not meet the beginning
     z = np.exp(2j * np.pi * np.fft.rfftfreq(count))
     b, a = f.response
-    fade = np.exp(-period / memory)
-    spectrum = level**2 * (1.0 - fade**2) / np.abs(1.0 - fade / z) ** 2
+    fade = np.exp(-period / lasts)
+    spectrum = std**2 * (1.0 - fade**2) / np.abs(1.0 - fade / z) ** 2
     response = np.polyval(b, z) / np.polyval(a, z)
     return np.fft.irfft(spectrum * np.conj(response) * np.fft.rfft(e, count), count)[: len(e)]
 

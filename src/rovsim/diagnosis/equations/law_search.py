@@ -293,6 +293,6 @@ def project_terms(
     bank, noise = workspace.bank, current.noise
     white, J = bank.whiten(current.seen.e, noise), bank.whiten(current.seen.J, noise)
     return project(
-        candidates, current.hypothesis.model, bank, white, J, bank.tune(noise),
+        candidates, current.hypothesis.model, bank, white, J, bank.design_filters(noise),
         number_blocks(bank.runs) % BLOCKS, middle, push,
     )  # fmt: skip

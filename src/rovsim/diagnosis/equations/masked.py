@@ -53,7 +53,10 @@ def _find_suspect(selection: SearchResult) -> Structure | None:
     tables = [tabulate(run) for run in bank.runs]
     near = [
         Structure(
-            residual.axis, one.name, min(1.0, (one.size / residual.level) ** 2), one.statistic
+            residual.axis,
+            one.name,
+            min(1.0, (one.size / residual.disturbance_std) ** 2),
+            one.statistic,
         )
         for residual in split_by_axis(selection.best, bank)
         for one in list_dependences(residual, tables)

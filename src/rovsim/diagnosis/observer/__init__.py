@@ -4,7 +4,7 @@ observed_run      a run as read, before any filter
 train_runs        runs of a campaign, prepared: those parts of long ones that tell most
 divergence        where a model runs away although it is corrected
 usable_runs       those with something to observe, and whether that is enough
-noise             what no model predicts: noise of the readings, a disturbance with memory
+noise             what no model predicts: noise of the readings, a disturbance that lasts
 noise_fit         how large it most likely is
 whittle           the likeliest sizes of the parts of a noise, compiled
 camera_noise      how likely poses are, if the noise of the cameras is of some kind

@@ -98,17 +98,26 @@ def invert(A):
 
 
 @njit(**FROM_PYTHON)
-def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_memory):
+def solve_steady_state(
+    kind,
+    h,
+    moved,
+    disturbance_std,
+    correlation_time,
+    measurement_std,
+    bias_std,
+    bias_correlation_time,
+):
     """F, C, gain, variance of the innovations, denominators of the filter of one axis.
 
     Its pose and velocity go on as `moved` (3, 3) says. Velocities of bins have no slow error of
     their own.
     """
-    phi, slow = np.exp(-h / memory), np.exp(-h / colour_memory)
+    phi, slow = np.exp(-h / correlation_time), np.exp(-h / bias_correlation_time)
     binned = kind == BIN_MEAN
-    n = 2 if binned else 4 if colour > 0.0 else 3
+    n = 2 if binned else 4 if bias_std > 0.0 else 3
     F, C, noise_denominator = np.zeros((n, n)), np.zeros(n), np.zeros(3 if n == 4 else 2)
-    Q, r, disturbed = np.zeros((n, n)), reading**2, 1 if binned else 2
+    Q, r, disturbed = np.zeros((n, n)), measurement_std**2, 1 if binned else 2
     C[0], noise_denominator[0], noise_denominator[1] = 1.0, 1.0, -phi
     F[disturbed, disturbed] = phi
     if binned:
@@ -117,10 +126,10 @@ def solve_steady_state(kind, h, moved, level, memory, reading, colour, colour_me
     else:
         put_rows(F, moved, 2)
     add_to_diagonal(Q, SOLVABLE * r)
-    Q[disturbed, disturbed] = level**2 * (1.0 - phi**2) + LEAST_DRIVING
+    Q[disturbed, disturbed] = disturbance_std**2 * (1.0 - phi**2) + LEAST_DRIVING
     if n == 4:
         F[3, 3], C[3] = slow, 1.0
-        Q[3, 3] = colour**2 * (1.0 - slow**2)
+        Q[3, 3] = bias_std**2 * (1.0 - slow**2)
         noise_denominator[1], noise_denominator[2] = -phi - slow, phi * slow
     if kind == SUM:
         Q[0, 0], r = r, READ_AS_IS * r
@@ -257,7 +266,7 @@ def misfit(noise, kind, h, moved, denominator, noise_denominator, e, spans, kept
         noise: as `AxisNoise`.
         kind: what is read.
         h: period of the readings, s.
-        moved: transition (3, 3) over h, see `AxisMotion.over`.
+        moved: transition (3, 3) over h, see `AxisErrorDynamics.over`.
         denominator: of the filter that e was found with.
         noise_denominator: likewise.
         e: innovations.

@@ -9,7 +9,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.noise_fit import LONGEST_MEMORY
+from rovsim.diagnosis.observer.noise_fit import MAX_CORRELATION_TIME
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
 
@@ -29,7 +29,7 @@ class ModelLost(Exception):
         for run, held in zip(runs, self.held, strict=True):
             if not held.all():
                 away, time = run.time[: len(held)][~held], run.motion.time
-                begin = float(away[0]) - LONGEST_MEMORY
+                begin = float(away[0]) - MAX_CORRELATION_TIME
                 run = run.limited((time < begin) | (time > away[-1]))
                 lost[run.motion.run.id] = max(begin, float(time[0]))
             kept.append(run)

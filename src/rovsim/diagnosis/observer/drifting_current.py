@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core import rotations
 from rovsim.diagnosis.observer.innovations import accelerate, observe
-from rovsim.diagnosis.observer.noise import Path, Tuning, whiten_run
+from rovsim.diagnosis.observer.noise import CurrentPath, RunFilters, whiten_run
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.random_walk import RandomWalk, Rate, fit_common, list_terms
 from rovsim.dynamics.effects.current import CurrentDrift
@@ -56,8 +56,8 @@ class MovingWater:
 
     model: Model
     runs: tuple[ObservedRun, ...]
-    tunings: tuple[Tuning, ...]
-    paths: tuple[Path, ...] = ()
+    run_filters: tuple[RunFilters, ...]
+    paths: tuple[CurrentPath, ...] = ()
 
     @cached_property
     def walk(self) -> RandomWalk:
@@ -93,32 +93,32 @@ class MovingWater:
             return [np.zeros((len(run.time), 2)) for run in self.runs]
         return [path.at(run.time) for run, path in zip(self.runs, self.paths, strict=True)]
 
-    def find_drift(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> DriftFit:
+    def find_drift(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> DriftFit:
         """How the current most likely wanders.
 
         Args:
             z: innovations (6, m) of each run, whitened axis by axis.
-            tunings: the filters that made them so.
+            run_filters: the filters that made them so.
         """
-        rate = self.walk.fit_rate(z, tunings)
+        rate = self.walk.fit_rate(z, run_filters)
         if rate.lr_statistic < LIKELY:
             return DriftFit(rate, rate.lr_statistic)
         forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
-        others = [self._walk(pushes).fit_rate(z, tunings).lr_statistic for pushes in forces]
-        by_place = self._lr_by_place(z, tunings, _lines(self.runs))
+        others = [self._walk(pushes).fit_rate(z, run_filters).lr_statistic for pushes in forces]
+        by_place = self._lr_by_place(z, run_filters, _lines(self.runs))
         if not self.paths:  # about its own path what wanders is always likelier than a steady flow
-            flow = self._lr_by_place(z, tunings, _eddies(self.runs))
+            flow = self._lr_by_place(z, run_filters, _eddies(self.runs))
             if flow - rate.lr_statistic > SURE:
                 return DriftFit(rate, rate.lr_statistic - flow)
         return DriftFit(rate, rate.lr_statistic - max(0.0, by_place, *others))
 
-    def varies_with_place(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> bool:
+    def varies_with_place(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> bool:
         """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
-        rate = self.walk.fit_rate(z, tunings)
-        return rate.lr_statistic - self._lr_by_place(z, tunings, _eddies(self.runs)) < SURE
+        rate = self.walk.fit_rate(z, run_filters)
+        return rate.lr_statistic - self._lr_by_place(z, run_filters, _eddies(self.runs)) < SURE
 
     def _lr_by_place(
-        self, z: Sequence[Array], tunings: Sequence[Tuning], fields: Sequence[Array]
+        self, z: Sequence[Array], run_filters: Sequence[RunFilters], fields: Sequence[Array]
     ) -> float:
         """Likelihood-ratio statistic of a current that is steady, of another size at every place.
 
@@ -126,30 +126,30 @@ class MovingWater:
         how each part of it varies along the way.
         """
         pushes = zip(fields, self._pushes, self.bends, strict=True)
-        every = zip(self.runs, self.tunings, tunings, pushes, strict=True)
+        every = zip(self.runs, self.run_filters, run_filters, pushes, strict=True)
         columns = [
             whiten_run(self._show(run, found, *how), run, found, wanted)
             for run, found, wanted, how in every
         ]
         return fit_common(columns, z).lr_statistic
 
-    def shows_drift(self, tunings: Sequence[Tuning]) -> bool:
+    def shows_drift(self, run_filters: Sequence[RunFilters]) -> bool:
         """Whether a drift worth looking for would be told from none."""
         (rate,) = CurrentDrift.parameters
-        return self.walk.expected_lr(rate.scale, tunings) > LIKELY
+        return self.walk.expected_lr(rate.scale, run_filters) > LIKELY
 
     def _walk(self, pushes: Sequence[Array]) -> RandomWalk:
-        each = zip(self.runs, self.tunings, pushes, self.bends, strict=True)
-        columns = (self._show(run, tuning, list_terms(run), *how) for run, tuning, *how in each)
-        return RandomWalk(self.runs, tuple(columns), self.tunings)
+        each = zip(self.runs, self.run_filters, pushes, self.bends, strict=True)
+        columns = (self._show(run, filters, list_terms(run), *how) for run, filters, *how in each)
+        return RandomWalk(self.runs, tuple(columns), self.run_filters)
 
     def _show(
-        self, run: ObservedRun, tuning: Tuning, terms: Array, push: Array, bend: Array
+        self, run: ObservedRun, filters: RunFilters, terms: Array, push: Array, bend: Array
     ) -> Array:
         """Innovations (k d, 6, n) by terms (k, n) along pushes (d, n, 6)."""
         each = (terms[:, None, :, None] * push).reshape(-1, *bend.shape)
         pushed = np.concatenate([bend[None], bend + RATE * each])
-        e = observe([self.model] * len(pushed), run, tuning, pushed)
+        e = observe([self.model] * len(pushed), run, filters, pushed)
         return np.asarray((e[0] - e[1:]) / RATE)  # what a model does not foresee
 
 

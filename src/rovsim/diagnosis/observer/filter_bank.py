@@ -12,14 +12,14 @@ from rovsim.diagnosis.observer.autoregression import COUPLED, Stretches, fit_aut
 from rovsim.diagnosis.observer.drifting_current import DriftFit, MovingWater
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.innovations import estimate_errors, observe
-from rovsim.diagnosis.observer.kalman import AxisMotion
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
 from rovsim.diagnosis.observer.least_squares import as_rows
 from rovsim.diagnosis.observer.noise import (
+    CurrentPath,
     DriftingCurrent,
     Noise,
-    Path,
-    Tuning,
-    tune,
+    RunFilters,
+    design_filters,
     whiten,
     whiten_run,
 )
@@ -42,19 +42,19 @@ class FilterBank:
     """
 
     runs: tuple[ObservedRun, ...]
-    motions: tuple[AxisMotion, ...]
-    tunings: tuple[Tuning, ...]
+    error_dynamics: tuple[AxisErrorDynamics, ...]
+    run_filters: tuple[RunFilters, ...]
     model: Model
     coupled: bool = False
-    paths: tuple[Path, ...] = ()
+    paths: tuple[CurrentPath, ...] = ()
 
     @staticmethod
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
         errors = estimate_errors(base, runs)
-        tunings = tuple(tune(noise.white, errors.motions, w) for w in runs)
+        run_filters = tuple(design_filters(noise.white, errors.error_dynamics, w) for w in runs)
         coupled, paths = errors.coupling > COUPLED, noise.drift.paths if noise.drift else ()
-        return FilterBank(tuple(runs), errors.motions, tunings, base, coupled, paths)
+        return FilterBank(tuple(runs), errors.error_dynamics, run_filters, base, coupled, paths)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""
@@ -73,14 +73,14 @@ class FilterBank:
 
     def _of_run(self, k: int, models: Sequence[Model]) -> Array:
         pushed = np.array([self._water.bends[k]] * len(models)) if self.paths else None
-        return observe(models, self.runs[k], self.tunings[k], pushed)
+        return observe(models, self.runs[k], self.run_filters[k], pushed)
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
-        tunings, past = self.tune(noise), noise.autoregression
-        z = whiten(e, self.runs, self.tunings, tunings)
+        run_filters, past = self.design_filters(noise), noise.autoregression
+        z = whiten(e, self.runs, self.run_filters, run_filters)
         if noise.drift:
-            z = self._water.walk.whiten(z, noise.drift.rate, tunings)
+            z = self._water.walk.whiten(z, noise.drift.rate, run_filters)
         return z if past is None else past.whiten(z, self._stretches)
 
     @property
@@ -91,11 +91,11 @@ class FilterBank:
 
     def shows_drift(self, noise: Noise) -> bool:
         """Whether a usual drift of the current would be told from none."""
-        return self.looks_for_drift and self._water.shows_drift(self.tune(noise))
+        return self.looks_for_drift and self._water.shows_drift(self.design_filters(noise))
 
     @cached_property
     def _water(self) -> MovingWater:
-        return MovingWater(self.model, self.runs, self.tunings, self.paths)
+        return MovingWater(self.model, self.runs, self.run_filters, self.paths)
 
     @cached_property
     def _stretches(self) -> Stretches:
@@ -105,9 +105,9 @@ class FilterBank:
         """Rows (q, 6, n_run) of each run, whitened, all axes after one another: (q, 6 n)."""
         return as_rows(self.whiten(rows, noise))
 
-    def tune(self, noise: Noise) -> list[Tuning]:
+    def design_filters(self, noise: Noise) -> list[RunFilters]:
         """Filters of each run that suit another noise."""
-        return [tune(noise, self.motions, w) for w in self.runs]
+        return [design_filters(noise, self.error_dynamics, w) for w in self.runs]
 
     def fit_noise(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
         """The most likely noise of innovations (6, n) of each run; see `fit_noise`.
@@ -129,7 +129,7 @@ class FilterBank:
         each = [self._take_out(own, start, start.drift.rate) for own in draws]
         rests, walks = [rest for rest, _ in each], each[0][1]
         fit = self._fit_calm(rests, start, thorough)
-        paths = (Path(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
+        paths = (CurrentPath(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
         noise = replace(fit.noise, drift=start.drift._replace(paths=tuple(paths)))
         lr_statistics = [
             self._lr_of_drift(own, rest, noise, start.drift.rate)
@@ -137,11 +137,19 @@ class FilterBank:
         ]
         return NoiseFit(noise, fit.two_log_likelihood + float(np.mean(lr_statistics)))
 
-    def _fit_calm(self, draws: Sequence[Sequence[Array]], start: Noise, colour: bool) -> NoiseFit:
+    def _fit_calm(
+        self, draws: Sequence[Sequence[Array]], start: Noise, with_bias: bool
+    ) -> NoiseFit:
         count = len(draws)
         e = [one for own in draws for one in own]
         return fit_noise(
-            e, self.runs * count, self.tunings * count, self.motions, start, colour, count
+            e,
+            self.runs * count,
+            self.run_filters * count,
+            self.error_dynamics,
+            start,
+            with_bias,
+            count,
         )
 
     def _draws(self, e: Sequence[Array]) -> list[Sequence[Array]]:
@@ -163,18 +171,18 @@ class FilterBank:
 
     def measure_drift(self, e: Sequence[Array], noise: Noise) -> DriftFit:
         """How the current most likely wanders, from innovations (6, n) of each run."""
-        return self._water.find_drift(self._split(e, noise), self.tune(noise))
+        return self._water.find_drift(self._split(e, noise), self.design_filters(noise))
 
     def varies_with_place(self, e: Sequence[Array], noise: Noise) -> bool:
         """Whether a steady flow through the tank may be what seems to wander."""
-        return self._water.varies_with_place(self._split(e, noise), self.tune(noise))
+        return self._water.varies_with_place(self._split(e, noise), self.design_filters(noise))
 
     def _take_out(
         self, e: Sequence[Array], noise: Noise, rate: float
     ) -> tuple[list[Array], list[Array]]:
         """Innovations of each run less the likeliest drift, and that current (n, 2)."""
-        z, tunings = self._split(e, noise), self.tune(noise)
-        return self._water.walk.take_out(e, z, rate, tunings)
+        z, run_filters = self._split(e, noise), self.design_filters(noise)
+        return self._water.walk.take_out(e, z, rate, run_filters)
 
     def _lr_of_drift(
         self, e: Sequence[Array], rest: Sequence[Array], noise: Noise, rate: float
@@ -182,11 +190,11 @@ class FilterBank:
         """By how much likelier innovations are with a drift than what it left is without."""
         z, left = self._split(e, noise), self._split(rest, noise)
         more = sum(float(np.sum(a**2) - np.sum(b**2)) for a, b in zip(left, z, strict=True))
-        return more + self._water.walk.lr_statistic(z, rate, self.tune(noise))
+        return more + self._water.walk.lr_statistic(z, rate, self.design_filters(noise))
 
     def _split(self, e: Sequence[Array], noise: Noise) -> list[Array]:
         """Settled innovations (6, m) of each run, whitened axis by axis."""
-        each = zip(e, self.runs, self.tunings, self.tune(noise), strict=True)
+        each = zip(e, self.runs, self.run_filters, self.design_filters(noise), strict=True)
         return [whiten_run(*one) for one in each]
 
     def linearise(self, at: Hypothesis, known: Linearised | None = None) -> Linearised:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core import rotations
-from rovsim.diagnosis.observer.kalman import AxisMotion
-from rovsim.diagnosis.observer.noise import Tuning
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
+from rovsim.diagnosis.observer.noise import RunFilters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Correction, Starts
@@ -21,7 +21,7 @@ NUDGE = 0.05  # m/s or rad/s, a tenth of usual speeds; m or rad
 
 
 def observe(
-    models: Sequence[Model], run: ObservedRun, tuning: Tuning, pushed: Array | None = None
+    models: Sequence[Model], run: ObservedRun, filters: RunFilters, pushed: Array | None = None
 ) -> Array:
     """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle.
 
@@ -38,8 +38,8 @@ def observe(
         run.pose_measured,
         time,
         run.reading_steps,
-        tuning.gains,
-        tuning.decays,
+        filters.gains,
+        filters.decays,
         run.motion.binned,
     )
     drives = run.drives.of(models)
@@ -71,10 +71,10 @@ class ErrorDynamics(NamedTuple):
     stiffness: Array
 
     @property
-    def motions(self) -> tuple[AxisMotion, ...]:
+    def error_dynamics(self) -> tuple[AxisErrorDynamics, ...]:
         """Each axis by itself."""
         each = zip(np.diag(self.damping), np.diag(self.stiffness), strict=True)
-        return tuple(AxisMotion(float(d), float(k)) for d, k in each)
+        return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in each)
 
     @property
     def coupling(self) -> float:

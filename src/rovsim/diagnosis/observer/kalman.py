@@ -16,7 +16,7 @@ from rovsim.diagnosis.observer.axis_kernels import (
 )
 
 
-class AxisMotion(NamedTuple):
+class AxisErrorDynamics(NamedTuple):
     """How an error of one axis goes on: v' = -`damping` v - `stiffness` p, in 1/s and 1/s2."""
 
     damping: float
@@ -39,16 +39,17 @@ def _integrate(h: float, damping: float, stiffness: float) -> Array:
 
 
 class AxisNoise(NamedTuple):
-    """Noise of one axis: `level` m/s2 or rad/s2, `memory` s of the disturbance, `reading` noise.
+    """Noise of one axis: a disturbance (m/s2, rad/s2) and errors of the readings (in their units).
 
-    `colour`, in units of the reading, is a slow error of the readings that lasts `colour_memory` s.
+    The disturbance has a `correlation_time` in s. Errors are white with `measurement_std`; beside
+    them a slow one may last: a bias that changes.
     """
 
-    level: float
-    memory: float
-    reading: float
-    colour: float = 0.0
-    colour_memory: float = 0.5
+    disturbance_std: float
+    correlation_time: float
+    measurement_std: float
+    bias_std: float = 0.0
+    bias_correlation_time: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +97,6 @@ class AxisFilter:
         return b / np.sqrt(self.variance), self.denominator
 
 
-def design_filter(kind: int, h: float, motion: AxisMotion, noise: AxisNoise) -> AxisFilter:
+def design_filter(kind: int, h: float, dynamics: AxisErrorDynamics, noise: AxisNoise) -> AxisFilter:
     """The filter of one axis for one noise (noise.py), readings every h s."""
-    return AxisFilter(*solve_steady_state(kind, h, motion.over(h, kind), *noise))
+    return AxisFilter(*solve_steady_state(kind, h, dynamics.over(h, kind), *noise))

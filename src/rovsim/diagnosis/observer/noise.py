@@ -1,4 +1,4 @@
-"""What no model predicts: noise of the readings, and a disturbance with memory. Per axis.
+"""What no model predicts: noise of the readings, and a disturbance that lasts. Per axis.
 
     pose      x = (p, v, a):  p' = v,  v' = -d v - k p + a,  a' = -a / T + white noise
               reading p + noise
@@ -21,13 +21,13 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.autoregression import Autoregression
 from rovsim.diagnosis.observer.axis_kernels import filter_kept
-from rovsim.diagnosis.observer.kalman import AxisFilter, AxisMotion, AxisNoise, design_filter
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisFilter, AxisNoise, design_filter
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
 from rovsim.simulation.noise_draws import NoiseDraws
 
 
-class Path(NamedTuple):
+class CurrentPath(NamedTuple):
     """A current (n, 2), north and east in m/s, at the readings of a run (n,) s."""
 
     time: Array
@@ -45,43 +45,44 @@ class DriftingCurrent(NamedTuple):
     """
 
     rate: float
-    paths: tuple[Path, ...] = ()
+    paths: tuple[CurrentPath, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """Per axis (6,): `level` m/s2 or rad/s2 and `memory` s of the disturbance, `reading` noise.
+    """Per axis (6,): a disturbance, m/s2 or rad/s2, its `correlation_time`, s, and white noise.
 
-    `colour` is a slow error of the readings, which lasts `colour_memory` s; 0 where there is none.
+    `bias_std` is that of a slow error of the readings; 0 where there is none.
     `autoregression`: what the axes foretell of each other, where they hang together.
     `drift`: of the current, where it wanders.
     """
 
-    level: Array
-    memory: Array
-    reading: Array
-    colour: Array = field(default_factory=lambda: np.zeros(6))
-    colour_memory: Array = field(default_factory=lambda: np.full(6, 0.5))
+    disturbance_std: Array
+    correlation_time: Array
+    measurement_std: Array
+    bias_std: Array = field(default_factory=lambda: np.zeros(6))
+    bias_correlation_time: Array = field(default_factory=lambda: np.full(6, 0.5))
     autoregression: Autoregression | None = None
     drift: DriftingCurrent | None = None
 
     def of_axis(self, i: int) -> AxisNoise:
         """The noise of one axis."""
         return AxisNoise(
-            self.level[i], self.memory[i], self.reading[i], self.colour[i], self.colour_memory[i]
-        )
+            self.disturbance_std[i], self.correlation_time[i], self.measurement_std[i],
+            self.bias_std[i], self.bias_correlation_time[i],
+        )  # fmt: skip
 
     def draws(self, run: ObservedRun, random: np.random.Generator) -> NoiseDraws:
         """The same to draw from, of a run."""
         return NoiseDraws(
-            self.level, self.memory, self.reading, run.period, self.colour, self.colour_memory,
-            random,
+            self.disturbance_std, self.correlation_time, self.measurement_std, run.period,
+            self.bias_std, self.bias_correlation_time, random,
         )  # fmt: skip
 
     @property
     def white(self) -> "Noise":
         """The same without slow errors: what the observer itself corrects for."""
-        return replace(self, colour=np.zeros(6))
+        return replace(self, bias_std=np.zeros(6))
 
 
 # Turbulence that moves this vehicle by some mm/s2, and a usual motion capture: only a first guess.
@@ -91,7 +92,7 @@ FIRST_NOISE = Noise(
 
 
 @dataclass(frozen=True, eq=False)
-class Tuning:
+class RunFilters:
     """One filter an axis, for one noise and one way to move, and the run's steps (s,) s."""
 
     filters: tuple[AxisFilter, ...]
@@ -119,38 +120,40 @@ class Tuning:
         return np.array([f.variance for f in self.filters])
 
 
-def tune(noise: Noise, motions: Sequence[AxisMotion], run: ObservedRun) -> Tuning:
-    """The filters of six axes for one noise; errors go on as `motions` say."""
+def design_filters(
+    noise: Noise, error_dynamics: Sequence[AxisErrorDynamics], run: ObservedRun
+) -> RunFilters:
+    """The filters of six axes for one noise; errors go on as `error_dynamics` say."""
     kinds, periods = run.reading_kinds, run.axis_periods
     filters = [
-        design_filter(kinds[i], float(periods[i]), motion, noise.of_axis(i))
-        for i, motion in enumerate(motions)
+        design_filter(kinds[i], float(periods[i]), dynamics, noise.of_axis(i))
+        for i, dynamics in enumerate(error_dynamics)
     ]
-    return Tuning(tuple(filters), periods, run.step_lengths)
+    return RunFilters(tuple(filters), periods, run.step_lengths)
 
 
 def whiten(
     e: Sequence[Array],
     runs: Sequence[ObservedRun],
-    found: Sequence[Tuning],
-    wanted: Sequence[Tuning],
+    made_by: Sequence[RunFilters],
+    wanted: Sequence[RunFilters],
 ) -> Array:
     """Innovations of unit variance (..., 6, n) of all runs, those not settled left out.
 
     Args:
         e: innovations (..., 6, n_run) of each run.
         runs: the runs.
-        found: the tuning each was found with.
-        wanted: the tuning that should make them white.
+        made_by: the filters that each was made by.
+        wanted: the filters that should make them white.
     """
     return np.concatenate(
-        [whiten_run(*one) for one in zip(e, runs, found, wanted, strict=True)], axis=-1
+        [whiten_run(*one) for one in zip(e, runs, made_by, wanted, strict=True)], axis=-1
     )
 
 
-def whiten_run(e: Array, run: ObservedRun, found: Tuning, wanted: Tuning) -> Array:
+def whiten_run(e: Array, run: ObservedRun, made_by: RunFilters, wanted: RunFilters) -> Array:
     """The same (..., 6, m) of the innovations (..., 6, n) of one run."""
-    pairs = zip(wanted.filters, found.filters, strict=True)
+    pairs = zip(wanted.filters, made_by.filters, strict=True)
     b, a = map(_stack, zip(*(new.whitening(old) for new, old in pairs), strict=True))
     rows = e.reshape(int(np.prod(e.shape[:-2])), *e.shape[-2:])
     out = np.empty((*rows.shape[:-1], int(run.settled.sum())), e.dtype)

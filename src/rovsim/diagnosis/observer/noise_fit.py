@@ -9,21 +9,21 @@ from numpy import ndarray as Array
 from scipy.optimize import minimize
 
 from rovsim.diagnosis.observer.axis_kernels import misfit
-from rovsim.diagnosis.observer.kalman import AxisFilter, AxisMotion, AxisNoise
-from rovsim.diagnosis.observer.noise import Noise, Tuning
+from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisFilter, AxisNoise
+from rovsim.diagnosis.observer.noise import Noise, RunFilters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
 # Eddies as large as the vehicle (0.2 to 0.5 m) pass it within 0.3 to 3 s at 0.15 to 0.7 m/s.
-# Longer memory would let the disturbance swallow a steady force, which is a missing effect.
-SHORTEST_MEMORY, TYPICAL_MEMORY, LONGEST_MEMORY = 0.2, 1.0, 3.0  # s
-MEMORY_SPREAD = 0.7  # of log T: a factor of two either way
+# A longer one would let the disturbance swallow a steady force, which is a missing effect.
+MIN_CORRELATION_TIME, TYPICAL_CORRELATION_TIME, MAX_CORRELATION_TIME = 0.2, 1.0, 3.0  # s
+CORRELATION_TIME_LOG_STD = 0.7  # of log T: a factor of two either way
 
 
 # A slow error of calibrated cameras is no larger than their noise from frame to frame, and lasts as
 # long as the vehicle takes to leave the place where the calibration errs.
-TYPICAL_COLOUR, COLOUR_SPREAD = 0.5, 0.7  # s, and of its log
+TYPICAL_BIAS_TIME, BIAS_TIME_LOG_STD = 0.5, 0.7  # s, and of its log
 FAINTEST = 1e-12  # of the variance at first: an axis on which nothing at all happens
-COLOURED = 12.0  # in twice the log likelihood: two more numbers, and sure of it on six axes
+MIN_LR_OF_BIAS = 12.0  # in twice the log likelihood: two more numbers, and sure of it on six axes
 
 
 class NoiseFit(NamedTuple):
@@ -36,36 +36,36 @@ class NoiseFit(NamedTuple):
 def fit_noise(
     e: Sequence[Array],
     runs: Sequence[ObservedRun],
-    found: Sequence[Tuning],
-    motions: Sequence[AxisMotion],
+    made_by: Sequence[RunFilters],
+    error_dynamics: Sequence[AxisErrorDynamics],
     start: Noise,
-    colour: bool = False,
+    with_bias: bool = False,
     draws: int = 1,
 ) -> NoiseFit:
     """The most likely noise of innovations e (6, n_run).
 
-    The memory has a prior: turbulence remembers about a second, within a factor of two.
+    The correlation time has a prior: that of turbulence is about a second, within a factor of two.
 
     Args:
         e: innovations of each run.
         runs: the runs.
-        found: the tuning each was found with.
+        made_by: the filters that each was made by.
         motions: how errors of the six axes go on.
         start: where to begin.
-        colour: whether to look for slow errors of the readings; if not, they stay.
+        with_bias: whether to look for slow errors of the readings; if not, they stay.
         draws: how often each run is there, with innovations that might all be its own.
     """
     noises, costs = [], []
-    for i, motion in enumerate(motions):
-        filters = tuple(one.filters[i] for one in found)
+    for i, dynamics in enumerate(error_dynamics):
+        filters = tuple(one.filters[i] for one in made_by)
         own = tuple(one[i] for one in e)
-        axis = _AxisInnovations(i, own, tuple(runs), filters, motion, draws)
+        axis = _AxisInnovations(i, own, tuple(runs), filters, dynamics, draws)
         if not axis.counted:
             noises.append(start.of_axis(i))
             continue
         noise, cost = _fit_axis(axis, start.of_axis(i))
-        if colour and not axis.binned:
-            noise, cost = _fit_colour(axis, noise, cost)
+        if with_bias and not axis.binned:
+            noise, cost = _fit_bias(axis, noise, cost)
         noises.append(noise)
         costs.append(cost)
     return NoiseFit(Noise(*np.array(noises).T), -2.0 * sum(costs))
@@ -82,7 +82,7 @@ class _AxisInnovations:
     e: tuple[Array, ...]
     runs: tuple[ObservedRun, ...]
     filters: tuple[AxisFilter, ...]
-    motion: AxisMotion
+    dynamics: AxisErrorDynamics
     draws: int
 
     @property
@@ -111,7 +111,9 @@ class _AxisInnovations:
         size = max(squares / count, FAINTEST)  # of the variance; all of the noise makes it alike
         cost = _finite(0.5 * (squares / size + count * np.log(size) + logs) / self.draws)
         by = float(np.sqrt(size))
-        return noise._replace(level=by * noise.level, reading=by * noise.reading), cost
+        disturbance_std, measurement_std = by * noise.disturbance_std, by * noise.measurement_std
+        scaled = noise._replace(disturbance_std=disturbance_std, measurement_std=measurement_std)
+        return scaled, cost
 
     def _misfit(self, noise: AxisNoise) -> tuple[float, float, float]:
         """Sum of squares over their variance, sum of its logarithm, and how many innovations."""
@@ -130,19 +132,19 @@ class _AxisInnovations:
     def _of_run(self, run: ObservedRun, old: AxisFilter, e: Array) -> tuple:
         i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])
         return (
-            kind, h, self.motion.over(h, kind), old.denominator, old.noise_denominator,
+            kind, h, self.dynamics.over(h, kind), old.denominator, old.noise_denominator,
             e, run.innovation_segments, run.settled, run.innovation_mask[:, i],
         )  # fmt: skip
 
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
     """The noise of one axis, its slow error as given, and what it costs."""
-    if start.colour == 0.0:
+    if start.bias_std == 0.0:
         return _fit_white(axis, start)
 
     def at(x: Array) -> AxisNoise:
-        level, memory, reading = np.exp(x)
-        return start._replace(level=level, memory=memory, reading=reading)
+        std, lasts, error = np.exp(x)
+        return start._replace(disturbance_std=std, correlation_time=lasts, measurement_std=error)
 
     x, least = _descend(lambda x: _cost(axis, at(x)), np.log(start[:3]))
     return at(x), least
@@ -152,34 +154,36 @@ def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, flo
     """The noise of one axis without a slow error, and what it costs; how large it is, is known."""
 
     def at(x: Array) -> tuple[AxisNoise, float]:
-        memory, ratio = np.exp(x)
-        noise = start._replace(level=ratio * start.reading, memory=memory)
+        correlation_time, ratio = np.exp(x)
+        std = ratio * start.measurement_std
+        noise = start._replace(disturbance_std=std, correlation_time=correlation_time)
         scaled, cost = axis.scaled(noise)
-        return scaled, _memory_prior(memory) + cost
+        return scaled, _correlation_time_prior(correlation_time) + cost
 
-    first = np.log([start.memory, start.level / start.reading])
+    first = np.log([start.correlation_time, start.disturbance_std / start.measurement_std])
     x, least = _descend(lambda x: at(x)[1], first)
     return at(x)[0], least
 
 
-def _fit_colour(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
+def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
     """The noise of one axis with a slow error of the readings, where that is more likely."""
 
     def cost(x: Array) -> float:
         return _cost(axis, AxisNoise(*np.exp(x)))
 
-    first = white if white.colour else white._replace(colour=white.reading, colour_memory=0.5)
+    guess = white._replace(bias_std=white.measurement_std, bias_correlation_time=0.5)
+    first = white if white.bias_std else guess
     x, least = _descend(cost, np.log(first))
-    if white.colour:
-        white, known = _fit_axis(axis, white._replace(colour=0.0))
-    if 2.0 * (known - least) < COLOURED:
+    if white.bias_std:
+        white, known = _fit_axis(axis, white._replace(bias_std=0.0))
+    if 2.0 * (known - least) < MIN_LR_OF_BIAS:
         return white, known
     return AxisNoise(*np.exp(x)), least
 
 
 def _cost(axis: _AxisInnovations, noise: AxisNoise) -> float:
     """Negative log likelihood of a noise, and of its priors."""
-    prior = _memory_prior(noise.memory) + _colour_prior(noise, axis.single)
+    prior = _correlation_time_prior(noise.correlation_time) + _bias_prior(noise, axis.single)
     return prior + axis.cost(noise)
 
 
@@ -197,15 +201,17 @@ def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float
     return best.x, float(best.fun)
 
 
-def _memory_prior(memory: float) -> float:
-    """Negative log of the prior of a memory, s; steep outside of what eddies can do."""
-    outside = max(0.0, memory / LONGEST_MEMORY - 1.0) + max(0.0, SHORTEST_MEMORY / memory - 1.0)
-    return 0.5 * (np.log(memory / TYPICAL_MEMORY) / MEMORY_SPREAD) ** 2 + 1e3 * outside
+def _correlation_time_prior(time: float) -> float:
+    """Negative log of the prior of a correlation time, s; steep outside of what eddies can do."""
+    outside = max(0.0, time / MAX_CORRELATION_TIME - 1.0)
+    outside += max(0.0, MIN_CORRELATION_TIME / time - 1.0)
+    log = np.log(time / TYPICAL_CORRELATION_TIME)
+    return 0.5 * (log / CORRELATION_TIME_LOG_STD) ** 2 + 1e3 * outside
 
 
-def _colour_prior(noise: AxisNoise, single: float) -> float:
+def _bias_prior(noise: AxisNoise, single: float) -> float:
     """Negative log of the prior of a slow error, if there is one."""
-    if noise.colour == 0.0:
+    if noise.bias_std == 0.0:
         return 0.0
-    lasting = np.log(noise.colour_memory / TYPICAL_COLOUR) / COLOUR_SPREAD
-    return 0.5 * float(lasting**2 + (noise.colour / (single * noise.reading)) ** 2)
+    lasting = np.log(noise.bias_correlation_time / TYPICAL_BIAS_TIME) / BIAS_TIME_LOG_STD
+    return 0.5 * float(lasting**2 + (noise.bias_std / (single * noise.measurement_std)) ** 2)

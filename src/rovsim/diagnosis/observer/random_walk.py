@@ -14,7 +14,7 @@ from numpy import ndarray as Array
 from scipy.optimize import minimize_scalar
 
 from rovsim.core.bounded_cache import Recent
-from rovsim.diagnosis.observer.noise import Tuning, whiten_run
+from rovsim.diagnosis.observer.noise import RunFilters, whiten_run
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
 FASTEST = 0.5  # Hz; what is faster is too little to be told from the disturbance
@@ -55,24 +55,24 @@ def list_terms(run: ObservedRun) -> Array:
 class RandomWalk:
     """One walk for each of d directions on each run.
 
-    `columns` (c, 6, n) of each run: innovations by all terms in all directions, not white, as
-    filters `found` saw them.
+    `columns` (c, 6, n) of each run: innovations by all terms in all directions, not white,
+    `made_by` those filters.
     """
 
     runs: tuple[ObservedRun, ...]
     columns: tuple[Array, ...]
-    found: tuple[Tuning, ...]
+    made_by: tuple[RunFilters, ...]
     _kept: Recent[list[_Principal]] = field(default_factory=Recent)
 
-    def _decompose(self, wanted: Sequence[Tuning]) -> list[_Principal]:
+    def _decompose(self, wanted: Sequence[RunFilters]) -> list[_Principal]:
         key = tuple((f.gain.tobytes(), f.variance) for one in wanted for f in one.filters)
-        each = zip(self.columns, self.runs, self.found, wanted, strict=True)
+        each = zip(self.columns, self.runs, self.made_by, wanted, strict=True)
         return self._kept.get(key, lambda: [_decompose(whiten_run(*one)) for one in each])
 
-    def whiten(self, z: Array, rate: float, tunings: Sequence[Tuning]) -> Array:
+    def whiten(self, z: Array, rate: float, run_filters: Sequence[RunFilters]) -> Array:
         """Innovations (..., 6, m) of all runs, whitened axis by axis, white beside this walk."""
         out, first = np.array(z), 0
-        for own in self._decompose(tunings):
+        for own in self._decompose(run_filters):
             at = slice(first, first + own.directions.shape[1] // 6)
             rows = z[..., at].reshape(-1, own.directions.shape[1])
             shrunk = 1.0 - 1.0 / np.sqrt(1.0 + rate**2 * own.power)
@@ -81,21 +81,23 @@ class RandomWalk:
             first = at.stop
         return out
 
-    def lr_statistic(self, z: Sequence[Array], rate: float, tunings: Sequence[Tuning]) -> float:
+    def lr_statistic(
+        self, z: Sequence[Array], rate: float, run_filters: Sequence[RunFilters]
+    ) -> float:
         """Likelihood-ratio statistic: how much likelier it makes innovations (6, m) of each run."""
-        return _WalkLikelihood.of(z, self._decompose(tunings)).lr_statistic(rate)
+        return _WalkLikelihood.of(z, self._decompose(run_filters)).lr_statistic(rate)
 
-    def fit_rate(self, z: Sequence[Array], tunings: Sequence[Tuning]) -> Rate:
+    def fit_rate(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> Rate:
         """The likeliest rate for whitened innovations (6, m) of each run."""
-        return _WalkLikelihood.of(z, self._decompose(tunings)).fit()
+        return _WalkLikelihood.of(z, self._decompose(run_filters)).fit()
 
-    def expected_lr(self, rate: float, tunings: Sequence[Tuning]) -> float:
+    def expected_lr(self, rate: float, run_filters: Sequence[RunFilters]) -> float:
         """The likelihood-ratio statistic that a walk of that rate would reach on average."""
-        power = np.concatenate([own.power for own in self._decompose(tunings)])
+        power = np.concatenate([own.power for own in self._decompose(run_filters)])
         return _WalkLikelihood(1.0 + rate**2 * power, power).lr_statistic(rate)
 
     def take_out(
-        self, e: Sequence[Array], z: Sequence[Array], rate: float, tunings: Sequence[Tuning]
+        self, e: Sequence[Array], z: Sequence[Array], rate: float, run_filters: Sequence[RunFilters]
     ) -> tuple[list[Array], list[Array]]:
         """Innovations (6, n) of each run less the likeliest walk, and that walk (n, d).
 
@@ -103,10 +105,10 @@ class RandomWalk:
             e: the innovations.
             z: the same, whitened (6, m).
             rate: of the walk.
-            tunings: the filters that made them white.
+            run_filters: the filters that made them white.
         """
         rests, walks = [], []
-        every = zip(self._decompose(tunings), z, e, self.columns, self.runs, strict=True)
+        every = zip(self._decompose(run_filters), z, e, self.columns, self.runs, strict=True)
         for own, white, one, columns, run in every:
             x = own.mix @ (own.directions @ white.ravel() / (own.power + rate**-2.0))
             rests.append(one - np.tensordot(x, columns, axes=1))

@@ -42,7 +42,7 @@ def fit_remaining_noise(
     for _ in range(rounds - 1):
         known = noise
         noise = bank.fit_axes(draw_remainder(bank, e, columns, known), known).noise
-        if np.max(np.abs(np.log(noise.level / known.level))) < CLOSE:
+        if np.max(np.abs(np.log(noise.disturbance_std / known.disturbance_std))) < CLOSE:
             break
     fit = bank.fit_noise(draw_remainder(bank, e, columns, noise), noise, thorough=True)
     own = _fit_own_noise(bank, at.model, fit.noise)
@@ -56,8 +56,9 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
     Each round starts from the first guess: a level that once fell to zero does not come back.
     """
     first = replace(
-        FIRST_NOISE, colour=noise.colour, colour_memory=noise.colour_memory, drift=noise.drift
-    )
+        FIRST_NOISE, bias_std=noise.bias_std, bias_correlation_time=noise.bias_correlation_time,
+        drift=noise.drift,
+    )  # fmt: skip
     fit = NoiseFit(noise, -np.inf)
     for _ in range(ROUNDS):
         bank = bank.redesign(model, fit.noise)

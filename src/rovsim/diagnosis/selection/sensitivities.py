@@ -149,7 +149,7 @@ def measure_columns(bank: FilterBank, columns: Sequence[Array]) -> Array:
     What turns a vehicle about an axis that is held changes innovations there, and nobody sees it.
     """
     squares = [
-        np.sum((run.innovation_mask.T * own / np.sqrt(tuning.variance)[:, None]) ** 2, axis=(1, 2))
-        for own, run, tuning in zip(columns, bank.runs, bank.tunings, strict=True)
+        np.sum((run.innovation_mask.T * own / np.sqrt(filters.variance)[:, None]) ** 2, axis=(1, 2))
+        for own, run, filters in zip(columns, bank.runs, bank.run_filters, strict=True)
     ]
     return np.asarray(np.sqrt(np.sum(squares, axis=0)))

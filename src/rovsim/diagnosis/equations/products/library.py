@@ -31,7 +31,7 @@ from rovsim.diagnosis.equations.products.variables import (
     tabulate,
 )
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.noise import Tuning
+from rovsim.diagnosis.observer.noise import RunFilters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 
@@ -188,7 +188,7 @@ def push_at(terms: Sequence[LawTerm], state: Array, model: Model, middle: Array)
     return wrenches
 
 
-def respond_to(pushes: Array, model: Model, run: ObservedRun, tuning: Tuning) -> Array:
+def respond_to(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters) -> Array:
     """How wrenches (c, n, 6) would show in whitened settled innovations (6, c, m) of a run."""
     accelerations = pushes @ model.body.M_inv.T
     out = np.zeros((6, len(pushes), int(run.settled.sum())), np.float32)
@@ -198,7 +198,7 @@ def respond_to(pushes: Array, model: Model, run: ObservedRun, tuning: Tuning) ->
         acts = np.flatnonzero(np.abs(own).max(axis=1) > NEGLIGIBLE)
         if not len(acts):
             continue
-        b, a = tuning.filters[i].response
+        b, a = filters.filters[i].response
         for first, last in run.innovation_segments:
             whole[acts, first:last] = lfilter(b, a, own[acts, first:last], axis=1)
         out[i, acts] = whole[acts][:, run.settled]
@@ -214,7 +214,7 @@ def project(
     bank: FilterBank,
     white: Array,
     fitted: Array,
-    tunings: Sequence[Tuning],
+    run_filters: Sequence[RunFilters],
     block: Array,
     middle: Array,
     push: Push = push,
@@ -227,7 +227,7 @@ def project(
         bank: the runs.
         white: whitened innovations (6, m) of all runs.
         fitted: derivatives (k, 6, m) of what was fitted, whose directions are left out.
-        tunings: filters that made them white, one for each run.
+        run_filters: filters that made them white, one for each run.
         block: number (m,) of the part of the runs that each lies in.
         middle: see `push`.
         push: wrenches of terms, if they are of another kind.
@@ -238,9 +238,9 @@ def project(
     rows = 1 + len(acts) + len(fitted)
     parts = {int(k): np.zeros((rows, rows)) for k in np.unique(block)}
     first = 0
-    for run, tuning in zip(bank.runs, tunings, strict=True):  # columns of one run at a time
+    for run, filters in zip(bank.runs, run_filters, strict=True):  # columns of one run at a time
         pushes = push(kept, run, model, middle) / size[acts, None, None]
-        columns = respond_to(pushes, model, run, tuning)
+        columns = respond_to(pushes, model, run, filters)
         at = slice(first, first + columns.shape[2])
         every = [white[:, None, at], columns, fitted[:, :, at].swapaxes(0, 1)]
         whole = np.concatenate(every, axis=1, dtype=np.float32)
