@@ -3,7 +3,7 @@
 import numpy as np
 
 from flown import observed
-from rovsim.diagnosis.checks.observability import SURELY, find_shown, list_not_observable
+from rovsim.diagnosis.checks.observability import DETECTION_STDS, find_shown, list_not_observable
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -83,7 +83,7 @@ def test_of_a_larger_vehicle_more_is_worth_looking_for(tmp_path):
         bank, Hypothesis(base), [c for c in listed if c.effect.id == "linear_damping"]
     )
     (block,) = known.blocks
-    needed = np.sqrt(PENALTY) + SURELY
+    needed = np.sqrt(PENALTY) + DETECTION_STDS
     sizes = np.full(known.count, 0.1 * needed)
     assert find_shown(sizes, [block], PENALTY, 1.0) == {"linear_damping": False}
     assert find_shown(sizes, [block], PENALTY, 11.0) == {"linear_damping": True}

@@ -12,7 +12,7 @@ from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.proposals import rank_proposals
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.diagnosis.selection.uncertain_file import (
-    FILE_ODDS,
+    FILE_LR,
     FileNumber,
     cost_beside,
     explains,
@@ -25,7 +25,7 @@ from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 PENALTY = 10.0
 OFF = ("linear_damping", "quadratic_damping", "added_mass")
-LIMIT = PENALTY + FILE_ODDS  # of an effect with one number
+LIMIT = PENALTY + FILE_LR  # of an effect with one number
 
 
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 6))

@@ -8,7 +8,7 @@ import pytest
 
 from flown import observed
 from rovsim.benchmarks.blind.laws import carried
-from rovsim.diagnosis.observer.drifting_current import LIKELY, MovingWater
+from rovsim.diagnosis.observer.drifting_current import MIN_LR_OF_DRIFT, MovingWater
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE, CurrentPath, DriftingCurrent
@@ -125,7 +125,7 @@ def test_a_flow_that_differs_from_place_to_place_does_not_wander(tmp_path, hidde
     base, runs = observed(tmp_path, duration=60.0, effects=(hidden,), catalogue=known)
     bank, noise = settled_noise(base, runs)
     e = bank.innovations(base)
-    assert bank.measure_drift(e, noise).rate.lr_statistic > LIKELY
+    assert bank.measure_drift(e, noise).rate.lr_statistic > MIN_LR_OF_DRIFT
     assert bank.varies_with_place(e, noise) is by_place
 
 

@@ -19,7 +19,7 @@ from rovsim.diagnosis.equations.describe import (
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
-from rovsim.diagnosis.selection.search_result import SURE, Rival
+from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.uncertainty import correlate
@@ -140,7 +140,7 @@ def _listed(diagnosis: TrainDiagnosis) -> list[Ranked]:
 
 def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
     """Groups of effects that explain the data about equally well; groups that meet are one."""
-    pairs = [(r.effect, r.instead_of) for r in rivals if r.deviance_difference < SURE]
+    pairs = [(r.effect, r.instead_of) for r in rivals if r.deviance_difference < MIN_LR_APART]
     names = sorted({name for pair in pairs for name in pair})
     near = np.zeros((len(names), len(names)), bool)
     for one, other in pairs:
@@ -180,7 +180,9 @@ def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
     if diagnosis.fit is None:
         return None
     near = [
-        (r, r.fit) for r in diagnosis.rivals if r.deviance_difference < SURE and r.fit is not None
+        (r, r.fit)
+        for r in diagnosis.rivals
+        if r.deviance_difference < MIN_LR_APART and r.fit is not None
     ]
     odds = [float(np.exp(-0.5 * max(r.deviance_difference, 0.0))) for r, _ in near]
     return Posterior(

@@ -8,7 +8,7 @@ from rovsim.core.schema import Section
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings
 
-MOST = 600.0  # s of train runs: ten minutes at 100 Hz take 1.5 GB
+MAX_TRAIN_SECONDS = 600.0  # s of train runs: ten minutes at 100 Hz take 1.5 GB
 
 
 class SearchSettings(Section):
@@ -26,7 +26,7 @@ class SearchSettings(Section):
     trials: PositiveInt = 3
     most_effects: PositiveInt = 12
     relevant: Annotated[float, Field(ge=0)] = 0.02
-    most_seconds: Annotated[float, Field(ge=60)] = MOST
+    most_seconds: Annotated[float, Field(ge=60)] = MAX_TRAIN_SECONDS
 
 
 class DiagnosisSettings(Section):

@@ -7,7 +7,7 @@ from scipy.stats import chi2
 from rovsim.diagnosis.selection.gauss_newton import Fit
 
 ALIKE = 0.95  # correlation; each would be three times as sure if the other were known
-UNSURE = 2.0  # standard deviations: the value could as well be that of absence
+UNSURE_STDS = 2.0  # standard deviations: the value could as well be that of absence
 DOUBT = 0.01  # chance of values as far from absence
 
 
@@ -15,7 +15,7 @@ def group_joint_parameters(fit: Fit) -> list[list[str]]:
     """Groups of parameters, as `effect.parameter`, the largest group first."""
     h, std = fit.hypothesis, np.maximum(fit.std, 1e-12)
     names = h.parameter_names
-    unsure = np.flatnonzero(np.abs(h.x - h.absence) < UNSURE * std)
+    unsure = np.flatnonzero(np.abs(h.x - h.absence) < UNSURE_STDS * std)
     correlation = fit.covariance / np.outer(std, std)
     alike = np.abs(correlation[np.ix_(unsure, unsure)]) > ALIKE
     _, label = connected_components(alike, directed=False)

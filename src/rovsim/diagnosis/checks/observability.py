@@ -21,7 +21,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Requirement, StochasticCurrent
 from rovsim.dynamics.vehicle import Vehicle
 
-SURELY = 2.0  # standard deviations: found in 97 of 100 such recordings
+DETECTION_STDS = 2.0  # standard deviations: found in 97 of 100 such recordings
 # kg, the BlueROV2 Heavy (conf/vehicle): what is worth looking for in the catalogue is of its size.
 SCALED_FOR = 13.5
 OF_SIZE = ("N", "kg")  # units of what a larger vehicle has more of
@@ -62,7 +62,7 @@ def find_shown(
 
     `larger`: than what the scales are for, that many times, is the vehicle.
     """
-    needed = np.sqrt(penalty) + SURELY
+    needed = np.sqrt(penalty) + DETECTION_STDS
     shown: dict[str, bool] = {}
     for block in blocks:
         name = block.candidate.effect.id

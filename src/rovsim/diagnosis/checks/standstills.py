@@ -30,7 +30,7 @@ BLOCKS = (
     8.0,
     16.0,
 )  # s over which accelerations are averaged, as long as a standstill
-ENOUGH = 10  # blocks of a length
+MIN_BLOCKS = 10  # blocks of a length
 USUAL = 95.0  # percentile of what the model misses while the vehicle moves
 BEYOND = 3.0  # times that it misses where the vehicle stands
 # Share of what it does there that it does elsewhere; it then misses at most that share of it.
@@ -64,7 +64,7 @@ class _Moving(NamedTuple):
 
     def usual(self, lasts: float) -> Array:
         """What it misses at most, usually, (6,) over blocks of up to that many s."""
-        fits = [x for x in BLOCKS if x <= lasts and np.sum(self.length == x) >= ENOUGH]
+        fits = [x for x in BLOCKS if x <= lasts and np.sum(self.length == x) >= MIN_BLOCKS]
         own = self.blocks[self.length == max(fits, default=BLOCKS[0])]
         return np.percentile(np.abs(own), USUAL, axis=0) if len(own) else np.full(6, np.inf)
 

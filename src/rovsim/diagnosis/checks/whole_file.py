@@ -42,7 +42,7 @@ from rovsim.diagnosis.selection.nominal_terms import (
 )
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.diagnosis.selection.pruning import drop_parameters
-from rovsim.diagnosis.selection.search_result import SURE
+from rovsim.diagnosis.selection.search_result import MIN_LR_APART
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
@@ -92,7 +92,7 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
     told = in_all - np.diag(known**-2.0)  # by the runs: the fit knew the file as well
     likelier = np.linalg.slogdet(one + usual[:, None] * told * usual)[1]
     likelier -= pull @ solve(told + np.diag(usual**-2.0), pull)
-    return bool(likelier - 2.0 * np.log((of + 1) * comb(of, asked.sum())) > SURE)
+    return bool(likelier - 2.0 * np.log((of + 1) * comb(of, asked.sum())) > MIN_LR_APART)
 
 
 def settle_whole_file(

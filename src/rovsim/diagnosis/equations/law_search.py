@@ -37,12 +37,12 @@ from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.workspace import HOPELESS, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.effects.law import TERMS
 
 TRIED = 5  # terms that are fitted before one is added
 BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
-SURELY = 2.0  # times what chance allows: no fit to all runs brings so much below it
+HALF_LAW_MARGIN = 2.0  # times what chance allows: no fit to all runs brings so much below it
 THRUST_LAWS_TRIED = 4
 NEAR = 0.5  # of what products explain: laws of the thrust that may reach so much are fitted
 
@@ -184,13 +184,13 @@ class LawSearch:
     def keep_close(self, grown: Sequence[FittedLaw]) -> list[FittedLaw]:
         """Laws that may be the likeliest once they are finished."""
         most = max((one.score for one in grown), default=0.0)
-        return [one for one in grown if one.score > most - HOPELESS]
+        return [one for one in grown if one.score > most - HOPELESS_LR]
 
     def is_surely_half(self, grown: FittedLaw) -> bool:
         """Whether a law leaves so much on its own axis that it cannot hold."""
         bank = self.workspace.bank
         action = find_action(grown.form, grown.fit, bank.runs)
-        return is_half(action.axis, grown.fit, bank, SURELY)
+        return is_half(action.axis, grown.fit, bank, HALF_LAW_MARGIN)
 
     def fit_thrust_laws(self, start: Hypothesis, grown: FittedLaw | None) -> list[FittedLaw]:
         """The likeliest law of the thrust, where it may come near to what products explain."""
@@ -230,7 +230,7 @@ class LawSearch:
         """Effects of the catalogue that to first order are not needed: others surely stay."""
         h, idle = fit.hypothesis, []
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
-            most = HOPELESS + 2.0 * self.workspace.penalty * len(own)
+            most = HOPELESS_LR + 2.0 * self.workspace.penalty * len(own)
             stays = own and term.vanishes and fit.distance(own) > most
             if term.effect.listed and not stays:
                 idle.append(i)

@@ -22,7 +22,7 @@ from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import PROPOSED
 
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
-ENOUGH = 0.05  # of the error of replays: less is not worth an equation
+MIN_ERROR_REDUCTION = 0.05  # of the error of replays: less is not worth an equation
 
 
 class Catalogued(NamedTuple):
@@ -124,4 +124,6 @@ def _holds(
     if cross_validate(judged.fit, selection.fit(rest), selection.workspace.bank) <= 0.0:
         return False
     law = judged.fit.hypothesis.model
-    return holdout.improves(law, best.whole, ENOUGH) and holdout.keeps(law, best.chosen)
+    return holdout.improves(law, best.whole, MIN_ERROR_REDUCTION) and holdout.keeps(
+        law, best.chosen
+    )

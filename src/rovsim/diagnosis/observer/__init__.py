@@ -18,6 +18,7 @@ innovations       many models on one run, in one compiled call
 filter_bank       all runs, each with its filters: innovations, whitened
 hypothesis        a base model and terms, whose parameters may be free
 residual_source   errors of a hypothesis, and how they change with its parameters
+odds              of names, as likelihood-ratio statistics
 least_squares     any of many columns, from their inner products
 windows           errors in windows of 2 s: what users see of a model
 

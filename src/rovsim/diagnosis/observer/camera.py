@@ -18,14 +18,14 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
 
-SURE = 30.0  # in twice the log likelihood: odds of a million to one, for no effect depends on it
-KNOWN = 0.15  # of the cutoff: software at 6 Hz is known to 0.03 of it in four minutes
-SLOWEST, FASTEST = 0.5, 0.5  # Hz, and of the highest frequency there is: what can be told
-TRIED = 24  # cutoffs between these, a fifth apart
-STEP = 0.05  # of the logarithm, for the curvature
-OPEN = 3.0  # standard deviations
+MIN_LR_OF_FILTER = 30.0  # odds of a million to one, for no effect depends on it
+MAX_RELATIVE_STD = 0.15  # of the cutoff: software at 6 Hz is known to 0.03 of it in four minutes
+MIN_CUTOFF_HZ, MAX_CUTOFF_SHARE = 0.5, 0.5  # the share is of the highest frequency there is
+CUTOFFS_TRIED = 24  # cutoffs between these, a fifth apart
+LOG_CUTOFF_STEP = 0.05  # of the logarithm, for the curvature
+OPEN_STDS = 3.0
 # Of the cutoff, left open in any case: behind stamps that are off by 2 ms it is found 7 % too high.
-SHAPE = 0.1
+OPEN_CUTOFF_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None
 
 def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
     """The filter that the noise of these poses went through; None: none."""
-    highest = FASTEST * min(float(s.frequency[-1]) for s in spectra)
-    tried = np.geomspace(SLOWEST, highest, TRIED)
+    highest = MAX_CUTOFF_SHARE * min(float(s.frequency[-1]) for s in spectra)
+    tried = np.geomspace(MIN_CUTOFF_HZ, highest, CUTOFFS_TRIED)
     costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in tried] for kind in KINDS])
     likely = [_refine(spectra, kind, tried, own) for kind, own in zip(KINDS, costs, strict=True)]
     least, cutoff, std = min(likely)
@@ -68,10 +68,14 @@ def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
     lr_statistic = unfiltered - least
     # far below what is looked at a filter only makes the motion fall off more steeply, as it does
     # by itself where a vehicle tumbles: its cutoff is then hardly known
-    if lr_statistic < SURE or cutoff > 0.98 * highest or not std < KNOWN * cutoff:
+    if (
+        lr_statistic < MIN_LR_OF_FILTER
+        or cutoff > 0.98 * highest
+        or not std < MAX_RELATIVE_STD * cutoff
+    ):
         return None
-    possible = tried[costs.min(axis=0) < costs.min() + OPEN**2]
-    off = max(OPEN * std, SHAPE * cutoff)
+    possible = tried[costs.min(axis=0) < costs.min() + OPEN_STDS**2]
+    off = max(OPEN_STDS * std, OPEN_CUTOFF_SHARE * cutoff)
     lowest, highest = min(cutoff - off, possible[0]), max(cutoff + off, possible[-1])
     frame = max(s.period for s in spectra)
     return Smoothing(cutoff, std, lr_statistic, cutoff, float(lowest), float(highest), frame)
@@ -97,7 +101,8 @@ def _refine(
     between = np.log(tried[[max(at - 1, 0), min(at + 1, len(tried) - 1)]])
     best = minimize_scalar(cost, bounds=between, method="bounded", options={"xatol": 1e-3})
     x, least = float(best.x), float(best.fun)
-    bend = 0.5 * (cost(x + STEP) + cost(x - STEP) - 2.0 * least) / STEP**2
+    sides = cost(x + LOG_CUTOFF_STEP) + cost(x - LOG_CUTOFF_STEP)
+    bend = 0.5 * (sides - 2.0 * least) / LOG_CUTOFF_STEP**2
     cutoff = float(np.exp(x))
     std = cutoff / np.sqrt(bend) if bend > 0.0 else np.inf
     return least + _penalty(spectra, kind), cutoff, float(std)

@@ -11,22 +11,23 @@ from rovsim.core import rotations
 from rovsim.diagnosis.observer.innovations import accelerate, observe
 from rovsim.diagnosis.observer.noise import CurrentPath, RunFilters, whiten_run
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.odds import lr_statistic_of
 from rovsim.diagnosis.observer.random_walk import RandomWalk, Rate, fit_common, list_terms
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
 from rovsim.simulation.measured_states import undo_mocap_view
 
-NUDGE = 0.05  # m/s, a usual current
-RATE = 0.005  # m/s per sqrt(s), a usual drift, or N per sqrt(s)
+CURRENT_STEP = 0.05  # m/s, a usual current
+USUAL_RATE = 0.005  # m/s per sqrt(s), a usual drift, or N per sqrt(s)
 # Likelihood-ratio statistic. Where no current wandered, physics outside of the catalogue reached 4
 # in eight of nine development cases, and a jet in one corner 11 (a force along the tank 330);
 # where one did, it was thousands.
-LIKELY = 25.0
+MIN_LR_OF_DRIFT = 25.0
 # Along the way of a vehicle: an eddy a sixth as wide as the tank is seen.
 HALF_WAVES = 6
-SMALL = 1e-9  # m
-# Odds of a thousand to one against a force that wanders, along the tank or along the body.
-SURE = 13.8
+MIN_EXTENT = 1e-9  # m
+# Against a force that wanders, along the tank or along the body.
+MIN_LR_MARGIN = lr_statistic_of(odds=1000.0)
 
 
 class DriftFit(NamedTuple):
@@ -41,7 +42,7 @@ class DriftFit(NamedTuple):
     @property
     def sure(self) -> bool:
         """Whether the current wanders."""
-        return self.rate.lr_statistic > LIKELY and self.lr_margin > SURE
+        return self.rate.lr_statistic > MIN_LR_OF_DRIFT and self.lr_margin > MIN_LR_MARGIN
 
 
 Push = Callable[[Model, ObservedRun], Array]
@@ -101,21 +102,22 @@ class MovingWater:
             run_filters: the filters that made them so.
         """
         rate = self.walk.fit_rate(z, run_filters)
-        if rate.lr_statistic < LIKELY:
+        if rate.lr_statistic < MIN_LR_OF_DRIFT:
             return DriftFit(rate, rate.lr_statistic)
         forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
         others = [self._walk(pushes).fit_rate(z, run_filters).lr_statistic for pushes in forces]
         by_place = self._lr_by_place(z, run_filters, _lines(self.runs))
         if not self.paths:  # about its own path what wanders is always likelier than a steady flow
             flow = self._lr_by_place(z, run_filters, _eddies(self.runs))
-            if flow - rate.lr_statistic > SURE:
+            if flow - rate.lr_statistic > MIN_LR_MARGIN:
                 return DriftFit(rate, rate.lr_statistic - flow)
         return DriftFit(rate, rate.lr_statistic - max(0.0, by_place, *others))
 
     def varies_with_place(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> bool:
         """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
         rate = self.walk.fit_rate(z, run_filters)
-        return rate.lr_statistic - self._lr_by_place(z, run_filters, _eddies(self.runs)) < SURE
+        flow = self._lr_by_place(z, run_filters, _eddies(self.runs))
+        return rate.lr_statistic - flow < MIN_LR_MARGIN
 
     def _lr_by_place(
         self, z: Sequence[Array], run_filters: Sequence[RunFilters], fields: Sequence[Array]
@@ -136,7 +138,7 @@ class MovingWater:
     def shows_drift(self, run_filters: Sequence[RunFilters]) -> bool:
         """Whether a drift worth looking for would be told from none."""
         (rate,) = CurrentDrift.parameters
-        return self.walk.expected_lr(rate.scale, run_filters) > LIKELY
+        return self.walk.expected_lr(rate.scale, run_filters) > MIN_LR_OF_DRIFT
 
     def _walk(self, pushes: Sequence[Array]) -> RandomWalk:
         each = zip(self.runs, self.run_filters, pushes, self.bends, strict=True)
@@ -148,9 +150,9 @@ class MovingWater:
     ) -> Array:
         """Innovations (k d, 6, n) by terms (k, n) along pushes (d, n, 6)."""
         each = (terms[:, None, :, None] * push).reshape(-1, *bend.shape)
-        pushed = np.concatenate([bend[None], bend + RATE * each])
+        pushed = np.concatenate([bend[None], bend + USUAL_RATE * each])
         e = observe([self.model] * len(pushed), run, filters, pushed)
-        return np.asarray((e[0] - e[1:]) / RATE)  # what a model does not foresee
+        return np.asarray((e[0] - e[1:]) / USUAL_RATE)  # what a model does not foresee
 
 
 def _places(runs: Sequence[ObservedRun]) -> list[Array]:
@@ -172,7 +174,7 @@ def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
     waves = [(k, j) for k in range(HALF_WAVES + 1) for j in range(HALF_WAVES + 1 - k)]
 
     def vary(place: Array) -> Array:
-        x, y, z = (place - low) / np.maximum(high - low, SMALL)
+        x, y, z = (place - low) / np.maximum(high - low, MIN_EXTENT)
         each = [np.cos(np.pi * k * x) * np.cos(np.pi * j * y) / (1 + k + j) for k, j in waves]
         return np.stack([*each, z - 0.5])
 
@@ -182,9 +184,9 @@ def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
 def push_by_current(model: Model, run: ObservedRun, current: Array) -> Array:
     """Accelerations (2, n, 6) per m/s by which the water moves faster north, and east."""
     pushes = []
-    for step in NUDGE * np.eye(2):
+    for step in CURRENT_STEP * np.eye(2):
         there, back = (_accelerate(model, run, current + way * step) for way in (1.0, -1.0))
-        pushes.append((there - back) / (2.0 * NUDGE))
+        pushes.append((there - back) / (2.0 * CURRENT_STEP))
     return np.stack(pushes)
 
 

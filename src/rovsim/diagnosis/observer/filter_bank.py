@@ -29,7 +29,7 @@ from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possi
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # at most: what wanders and what pushes for a second are told apart by then
-CLOSE = 0.05  # of a drift, which its standard deviation exceeds
+RATE_TOLERANCE = 0.05  # of a drift, which its standard deviation exceeds
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +164,7 @@ class FilterBank:
             now = DriftingCurrent(drift.rate.value) if drift.sure else None
             if now is None and known is None:
                 break
-            if now and known and abs(now.rate - known.rate) < CLOSE * known.rate:
+            if now and known and abs(now.rate - known.rate) < RATE_TOLERANCE * known.rate:
                 break
             fit = self.fit_axes(e, replace(fit.noise, drift=now), thorough=True)
         return fit

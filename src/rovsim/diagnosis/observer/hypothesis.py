@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.model import Model
 
-STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
+SCALED_STEP = 0.02  # of a parameter's scale: far above rounding, far below curvature
 
 
 class Bounds(NamedTuple):
@@ -130,7 +130,7 @@ class Hypothesis:
     def steps(self) -> Array:
         """A step of each scaled parameter (k,) that stays inside its range, to see what changes."""
         parameters = [p for term in self.terms for p in term.parameters]
-        sizes = [max(STEP, p.resolution / p.scale) for p in parameters]
+        sizes = [max(SCALED_STEP, p.resolution / p.scale) for p in parameters]
         return np.array([
             -step if (x + step) * p.scale > p.high else step
             for x, step, p in zip(self.x, sizes, parameters, strict=True)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import lsq_linear
 
-MOST = 12  # columns of one effect: more is not an effect but a fit of everything
+MAX_COLUMNS = 12  # columns of one effect: more is not an effect but a fit of everything
 RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
 
 
@@ -62,7 +62,7 @@ def solve_bounded(H: Array, b: Array, offset: float, low: Array, high: Array) ->
 def select_columns(H: Array, b: Array, penalty: float) -> Reduction:
     """The columns that are worth their penalty each, added one by one, then pruned."""
     chosen: list[int] = []
-    while len(chosen) < min(len(b), MOST):
+    while len(chosen) < min(len(b), MAX_COLUMNS):
         left = [j for j in range(len(b)) if j not in chosen]
         worth = _worth(H, b, chosen)
         best = max(left, key=lambda j: worth[j])

@@ -26,7 +26,7 @@ SETTLING = 1.0  # s
 # A velocity that nobody reads forgets its start by drag alone: within three times mass / drag, some
 # 3 s for a small vehicle at usual speeds.
 SETTLING_UNREAD = 9.0  # s
-SHORTEST = 2.0  # s; a shorter stretch would be mostly settling
+MIN_STRETCH_SECONDS = 2.0  # s; a shorter stretch would be mostly settling
 # Frames are read in groups of about this length: what a vehicle of this size does is slower than
 # 5 Hz, and so are its propellers (5 / s, docs/simulator.md).
 GROUP = 0.05  # s
@@ -289,8 +289,8 @@ def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
 def _lasts(motion: Motion, a: int, b: int) -> bool:
     """Whether the stretch from sample or bin a to b - 1 is long enough."""
     if motion.binned:
-        return bool(motion.time[b - 1] - motion.time[a] > SHORTEST)
-    return bool((b - a) * time_step(motion.time) > SHORTEST)
+        return bool(motion.time[b - 1] - motion.time[a] > MIN_STRETCH_SECONDS)
+    return bool((b - a) * time_step(motion.time) > MIN_STRETCH_SECONDS)
 
 
 def number_blocks(runs: Sequence[ObservedRun], seconds: float = BLOCK) -> Array:

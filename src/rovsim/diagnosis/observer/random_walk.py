@@ -17,11 +17,11 @@ from rovsim.core.bounded_cache import Recent
 from rovsim.diagnosis.observer.noise import RunFilters, whiten_run
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
-FASTEST = 0.5  # Hz; what is faster is too little to be told from the disturbance
-LEAD = 60.0  # s for which it has wandered when a recording begins: a flight made ready
-EMPTY = 1e-9  # of the largest: directions that show nothing
-LEAST, MOST, TRIED = 1e-5, 10.0, 80  # rates, from none that shows to larger than any
-STEP = 0.05  # of the log of a rate: for its second derivative
+MAX_FREQUENCY_HZ = 0.5  # what is faster is too little to be told from the disturbance
+LEAD_SECONDS = 60.0  # for which it has wandered when a recording begins: a flight made ready
+MIN_POWER_SHARE = 1e-9  # of the largest: directions that show nothing
+MIN_RATE, MAX_RATE, RATES_TRIED = 1e-5, 10.0, 80  # rates, from none that shows to larger than any
+LOG_RATE_STEP = 0.05  # for the second derivative
 
 
 class Rate(NamedTuple):
@@ -46,9 +46,9 @@ class _Principal(NamedTuple):
 def list_terms(run: ObservedRun) -> Array:
     """Terms (k, n) of a walk of rate 1 at the readings of a run, the first where it begins."""
     before, lasts = run.motion.commands.before, float(run.time[-1])
-    w = np.pi * (np.arange(max(1, round(2.0 * FASTEST * lasts))) + 0.5)
+    w = np.pi * (np.arange(max(1, round(2.0 * MAX_FREQUENCY_HZ * lasts))) + 0.5)
     terms = np.sqrt(2.0 * lasts) / w[:, None] * np.sin(w[:, None] * run.time / lasts)
-    return np.vstack([np.full(len(run.time), np.sqrt(LEAD + before)), terms])
+    return np.vstack([np.full(len(run.time), np.sqrt(LEAD_SECONDS + before)), terms])
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +132,7 @@ def _decompose(columns: Array) -> _Principal:
     """Of whitened columns (c, 6, m)."""
     columns = columns.reshape(len(columns), -1)
     power, vectors = np.linalg.eigh((columns @ columns.T).astype(float))
-    shown = power > EMPTY * max(power[-1], 1e-300)
+    shown = power > MIN_POWER_SHARE * max(power[-1], 1e-300)
     power, vectors = power[shown], vectors[:, shown]
     directions = (vectors / np.sqrt(power)).T @ columns
     return _Principal(directions, power, vectors * np.sqrt(power))
@@ -159,7 +159,7 @@ class _WalkLikelihood:
 
     def fit(self) -> Rate:
         """The likeliest rate."""
-        tried = np.linspace(np.log(LEAST), np.log(MOST), TRIED)
+        tried = np.linspace(np.log(MIN_RATE), np.log(MAX_RATE), RATES_TRIED)
         best = tried[int(np.argmax([self.lr_statistic(np.exp(x)) for x in tried]))]
         width = tried[1] - tried[0]
         found = minimize_scalar(
@@ -168,7 +168,8 @@ class _WalkLikelihood:
             bounds=(best - width, best + width),
         )
         x, lr_statistic = float(found.x), -float(found.fun)
-        sides = self.lr_statistic(np.exp(x - STEP)) + self.lr_statistic(np.exp(x + STEP))
-        bend = (2.0 * lr_statistic - sides) / STEP**2
+        sides = self.lr_statistic(np.exp(x - LOG_RATE_STEP))
+        sides += self.lr_statistic(np.exp(x + LOG_RATE_STEP))
+        bend = (2.0 * lr_statistic - sides) / LOG_RATE_STEP**2
         std = np.exp(x) * np.sqrt(2.0 / bend) if bend > 0.0 else np.inf
         return Rate(float(np.exp(x)), float(std), lr_statistic)

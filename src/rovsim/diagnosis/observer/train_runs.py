@@ -17,7 +17,7 @@ from numpy import ndarray as Array
 from rovsim.core.bounded_cache import Recent
 from rovsim.core.rotations import unrotate
 from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
-from rovsim.diagnosis.settings import MOST
+from rovsim.diagnosis.settings import MAX_TRAIN_SECONDS
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Motion, Poses
@@ -25,10 +25,10 @@ from rovsim.results.diagnosis import LookedAt
 from rovsim.simulation.settings import ReplaySettings
 
 DRIVES = 1 << 29  # bytes of drives of all runs together: fifty of each in four minutes of runs
-PART = 60.0  # s: a fifth of it is kept apart for validation, which takes windows of 2 s
-LEAD = 5.0  # s of commands before a part: propellers remember half a second
+PART_SECONDS = 60.0  # a fifth of it is kept apart for validation, which takes windows of 2 s
+LEAD_SECONDS = 5.0  # of commands before a part: propellers remember half a second
 SAMPLED = 0.2  # s between the samples that parts are compared by: half a period of 2.5 Hz
-LEAST = 1e-6  # of what all parts tell: a direction that hardly any of them shows
+MIN_INFORMATION_SHARE = 1e-6  # of what all parts tell: a direction that hardly any of them shows
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,11 @@ class _Part(NamedTuple):
 
 
 def prepare_train(
-    runs: Runs, settings: ReplaySettings, catalogue: Catalogue, free: Array, most: float = MOST
+    runs: Runs,
+    settings: ReplaySettings,
+    catalogue: Catalogue,
+    free: Array,
+    most: float = MAX_TRAIN_SECONDS,
 ) -> TrainRuns:
     """Train runs of up to `most` s as the observer sees them; see `prepare_run`."""
     parts = [part for name in runs.of("train") for part in _divide(runs.motions[name])]
@@ -86,7 +90,7 @@ def _prepare(
 ) -> ObservedRun:  # fmt: skip
     stage, motion = runs.stages[name], runs.motions[name]
     if at != slice(None):
-        first = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD))
+        first = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD_SECONDS))
         whole = slice(first, at.stop)
         stage = stage.part(whole) if isinstance(stage, Poses) else stage
         led = np.arange(at.stop - first) >= at.start - first
@@ -100,7 +104,7 @@ def _choose(parts: Sequence[_Part], most: float) -> list[_Part]:
     squares = np.array([part.squares for part in parts])
     size = np.sqrt(np.maximum(np.einsum("pkk->k", squares), np.finfo(float).tiny))
     squares /= size[:, None] * size
-    known, chosen, left = LEAST * np.eye(len(size)), set[int](), most
+    known, chosen, left = MIN_INFORMATION_SHARE * np.eye(len(size)), set[int](), most
     while fits := [k for k, p in enumerate(parts) if k not in chosen and p.lasts <= left]:
         best = fits[int(np.argmax(np.linalg.slogdet(known + squares[fits])[1]))]
         chosen.add(best)
@@ -109,9 +113,9 @@ def _choose(parts: Sequence[_Part], most: float) -> list[_Part]:
 
 
 def _divide(motion: Motion) -> Iterator[_Part]:
-    """A run in equal parts, each as close to `PART` as can be."""
+    """A run in equal parts, each as close to `PART_SECONDS` as can be."""
     whole = motion.end - motion.time[0]
-    ends = np.linspace(motion.time[0], motion.end, max(1, round(whole / PART)) + 1)
+    ends = np.linspace(motion.time[0], motion.end, max(1, round(whole / PART_SECONDS)) + 1)
     places = np.searchsorted(motion.time, ends)
     places[-1] = len(motion.time)
     step = max(1, round(SAMPLED / float(np.median(np.diff(motion.time)))))

@@ -13,7 +13,7 @@ from numba import njit
 from rovsim.diagnosis.observer.axis_kernels import FROM_PYTHON, INTERNAL
 
 MOST_STEPS = 200
-CLOSE = 1e-10  # of a likelihood of one frequency, that a step still gains
+COST_TOLERANCE = 1e-10  # of a likelihood of one frequency, that a step still gains
 # Much at first: from all parts alike, a whole step puts some at their ends, and few come back.
 FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 100.0, 0.2, 5.0, 1e12
 
@@ -40,7 +40,7 @@ def take_step(slope, curvature, damping, free):
     """The damped step (k,) of those sizes that are free (k,); the others stay."""
     A = curvature.copy()
     for k in range(len(slope)):
-        A[k, k] += damping * (curvature[k, k] + CLOSE)
+        A[k, k] += damping * (curvature[k, k] + COST_TOLERANCE)
         if not free[k]:
             A[k], A[:, k], A[k, k] = 0.0, 0.0, 1.0
     return solve(A, np.where(free, -slope, 0.0))
@@ -92,7 +92,7 @@ def least_cost(power, white, others, low, high):
             gained = cost - found
             x, cost, slope, curvature = new, found, new_slope, new_curvature
             damping *= LESS
-            if gained < CLOSE * len(power):
+            if gained < COST_TOLERANCE * len(power):
                 break
         elif damping > MOST_DAMPING:
             break

@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.workspace import HOPELESS
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.dynamics.model import Model
@@ -42,7 +42,7 @@ def absorb_delay(
     unlagged = _without_short_lag(fit.hypothesis, smoothing)
     if unlagged:
         again, finer = _absorb(selection, _with_delay(selection, unlagged), base, smoothing)
-        if again and workspace.score(again) > workspace.score(fit) - HOPELESS:
+        if again and workspace.score(again) > workspace.score(fit) - HOPELESS_LR:
             return replace(selection, best=prune(workspace, again)), finer
     if DELAY not in (term.id for term in fit.hypothesis.terms):
         fit = _with_delay(selection, fit.hypothesis)

@@ -21,17 +21,21 @@ from rovsim.diagnosis.selection.vehicle_file_steps import (
     prefer_file,
     suspect_file,
 )
-from rovsim.diagnosis.selection.workspace import HOPELESS, Removed, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR, Removed, SearchWorkspace
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
-SWAP = 1.0  # of the deviance: less is not worth another name
-SLIGHT = 0.01  # of what the last addition gained: while more is sought, less is not worth a swap
-PROMISING = 0.5  # of what a term explains: another name may do better than it promises, not twice
-# Of the best predicted gain: effects that promise about the same are all refitted, for the order of
-# first-order predictions is not that of fits (a torpedo's weight, sixth to first order, was best).
-LEVEL = 0.75
-CLOSE = 0.2  # of the best predicted gain: less has never turned out best after refitting
+MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name
+# Of what the last addition explained: while more is sought, less is not worth a swap.
+MIN_SWAP_SHARE = 0.01
+# Of what a term explains: another name may do better than first order predicts, not twice.
+PROMISING_SHARE = 0.5
+# Of the best predicted decrease: effects predicted about the same are all refitted, for the order
+# of first-order predictions is not that of fits (a torpedo's weight, sixth to first order, was
+# best).
+NEARLY_BEST_SHARE = 0.75
+# Of the best predicted decrease: less has never turned out best after refitting.
+WORTH_TRYING_SHARE = 0.2
 
 
 def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
@@ -41,7 +45,9 @@ def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
 
 def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
     """The first proposals, as far as they could turn out best once refitted."""
-    return [p for p in ranked[:trials] if p.net_decrease > CLOSE * ranked[0].net_decrease]
+    return [
+        p for p in ranked[:trials] if p.net_decrease > WORTH_TRYING_SHARE * ranked[0].net_decrease
+    ]
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
@@ -52,7 +58,7 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
     """
     left, off = list_promising(workspace, current), is_off(current.hypothesis)
     for _ in range(ROUNDS):
-        level = sum(p.net_decrease > LEVEL * left[0].net_decrease for p in left)
+        level = sum(p.net_decrease > NEARLY_BEST_SHARE * left[0].net_decrease for p in left)
         trying = keep_close(left, max(workspace.settings.trials, level))
         left = [p for p in left if p not in trying]
         tried = [(workspace.fit(current.hypothesis.with_term(p.term)), p.term.id) for p in trying]
@@ -84,7 +90,7 @@ def find_relevant(workspace: SearchWorkspace, fit: Fit, without: Sequence[Model]
 
 
 def try_swaps(
-    workspace: SearchWorkspace, current: Fit, trials: int, swap: float = SWAP
+    workspace: SearchWorkspace, current: Fit, trials: int, swap: float = MIN_LR_OF_SWAP
 ) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close.
 
@@ -99,8 +105,8 @@ def try_swaps(
         for p in find_swaps(workspace, term, rest, trials):
             trial = None
             worse = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
-            if worse < 0.0 or _explains(workspace, p) > PROMISING * rest.ss_increase:
-                start, worse = rest.hypothesis.with_term(p.term), HOPELESS
+            if worse < 0.0 or _explains(workspace, p) > PROMISING_SHARE * rest.ss_increase:
+                start, worse = rest.hypothesis.with_term(p.term), HOPELESS_LR
                 trial = workspace.fit_unless_worse(start, current, workspace.score(current))
             if trial is not None:
                 worse = workspace.score(current) - workspace.score(trial)
@@ -124,9 +130,9 @@ def find_swaps(
     worth its penalty, a rival need not be: the two share the evidence.
     """
     others = [p for p in rest.others if p.term.id != term.id]
-    trials = max(trials, sum(p.net_decrease > LEVEL * rest.ss_increase for p in others))
+    trials = max(trials, sum(p.net_decrease > NEARLY_BEST_SHARE * rest.ss_increase for p in others))
     worth = keep_close([p for p in others if p.net_decrease > 0.0], trials)
-    least = PROMISING * rest.ss_increase
+    least = PROMISING_SHARE * rest.ss_increase
     return worth or [p for p in others[:trials] if _explains(workspace, p) > least]
 
 
@@ -147,7 +153,7 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
         for start in workspace.list_modes(term):
             terms = (*h.terms[:i], start, *h.terms[i + 1 :])
             trial = prune(workspace, workspace.fit(replace(h, terms=terms)))
-            if workspace.score(trial) > workspace.score(current) + SWAP:
+            if workspace.score(trial) > workspace.score(current) + MIN_LR_OF_SWAP:
                 return trial
     return current
 
@@ -180,7 +186,7 @@ def _add_and_swap(
         gained = workspace.score(more) - workspace.score(current)
         workspace = workspace.update_after(more)
         workspace, again = prefer_steady(workspace, workspace.fit(more.hypothesis))
-        swap = max(SWAP, SLIGHT * gained)
+        swap = max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gained)
         current, _ = try_swaps(workspace, again, 1, swap)  # the likeliest other name
     return workspace, current
 

@@ -26,15 +26,17 @@ from rovsim.evaluation.scores import measured_spread
 
 Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 
-KEPT_APART = 0.2  # of each run's time
-SHORTEST = 60.0  # s of a run, less than which a fifth shows too few windows of 2 s
-WORSE = 0.02  # of the error: less is within what the windows happen to hold
-SLIGHT = 0.005  # of the error: what is let go one after the other adds up to about WORSE
-CERTAIN = 2.0  # standard errors over many windows
-FEWEST = 2  # windows: one tells nothing of chance
-CLOSE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
-LOST = 1.0  # of the error: more is no matter of which windows there happen to be
-SMALLEST = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
+HOLDOUT_SHARE = 0.2  # of each run's time
+MIN_RUN_SECONDS = 60.0  # a fifth of less shows too few windows of 2 s
+WORSE_SHARE = 0.02  # of the error: less is within what the windows happen to hold
+SLIGHT_SHARE = (
+    0.005  # of the error: what is let go one after the other adds up to about WORSE_SHARE
+)
+CERTAIN_STANDARD_ERRORS = 2.0  # over many windows
+MIN_WINDOWS = 2  # one tells nothing of chance
+REFIT_SHARE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
+LOST_SHARE = 1.0  # of the error: more is no matter of which windows there happen to be
+MIN_SPREAD = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
 
 
 def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[ObservedRun]]:
@@ -42,8 +44,8 @@ def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[Obs
     chosen, held = [], []
     for run in runs:
         time = run.motion.time
-        end = time[0] + (1.0 - KEPT_APART) * (time[-1] - time[0])
-        if time[-1] - time[0] < SHORTEST - 1.0:
+        end = time[0] + (1.0 - HOLDOUT_SHARE) * (time[-1] - time[0])
+        if time[-1] - time[0] < MIN_RUN_SECONDS - 1.0:
             chosen.append(run)
             continue
         chosen.append(run.limited(time <= end))
@@ -65,7 +67,7 @@ class HoldoutValidation:
     @cached_property
     def spread(self) -> Array:
         """Standard deviation (6,) of the measured velocity."""
-        return np.fmax(measured_spread(run.motion for run in self.whole), SMALLEST)
+        return np.fmax(measured_spread(run.motion for run in self.whole), MIN_SPREAD)
 
     def judge(self, selection: SearchResult) -> tuple[SearchResult, bool]:
         """What passes, and whether that is all that was selected."""
@@ -119,7 +121,7 @@ class HoldoutValidation:
         A name then stands for part of what has none, unless replays are surely better for it. What
         the vehicle file states counts together; then whatever of it is not sure by itself goes.
         """
-        for split, least in ((_group, WORSE), (_list_stated, SLIGHT)):
+        for split, least in ((_group, WORSE_SHARE), (_list_stated, SLIGHT_SHARE)):
             selection = self._drop_idle(selection, split, least)
         return selection
 
@@ -157,7 +159,7 @@ class HoldoutValidation:
         h, fewer = fit.hypothesis, selection.workspace.drop(fit, groups)
         errors = self._errors([h.model, *(one.model for one in fewer)])
         for k, one in enumerate(fewer):
-            if _ratio(errors[1 + k], errors[0]) < 1.0 + CLOSE:
+            if _ratio(errors[1 + k], errors[0]) < 1.0 + REFIT_SHARE:
                 fewer[k] = selection.fit(one).hypothesis
         return fewer, self._errors([h.model, *(one.model for one in fewer)])
 
@@ -209,21 +211,21 @@ def surely_costs(error: Array, usual: Array, least: float) -> bool:
     the mean large and nothing sure.
     """
     more = _ratio(error, usual) - 1.0
-    return more > LOST or (more > least and _is_surely_less(usual, error))
+    return more > LOST_SHARE or (more > least and _is_surely_less(usual, error))
 
 
-def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN) -> bool:
+def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN_STANDARD_ERRORS) -> bool:
     """Whether an error (w,) is less than another, beyond what windows differ by chance."""
     less = other - one
     return bool(np.mean(less) > certain * np.std(less) / np.sqrt(len(less)))
 
 
 def _find_limit(windows: int, tried: int) -> float:
-    """Standard errors that the best of so many differences reaches as seldom as one `CERTAIN`.
+    """Standard errors that the best of so many differences reaches as seldom as one is certain.
 
     Of Student's t, for the spread is that of few windows; `np.std` divides by their number.
     """
-    chance = norm.sf(CERTAIN) / tried
+    chance = norm.sf(CERTAIN_STANDARD_ERRORS) / tried
     return float(student.isf(chance, windows - 1) * np.sqrt(windows / (windows - 1.0)))
 
 
@@ -237,6 +239,6 @@ def find_sure_improvement(error: Array, other: Array, tried: int = 1) -> float:
     if not np.isfinite(error).all():
         return np.inf
     share = 1.0 - _ratio(other, error)
-    if share <= WORSE or len(error) < FEWEST:
+    if share <= WORSE_SHARE or len(error) < MIN_WINDOWS:
         return 0.0
     return share if _is_surely_less(other, error, _find_limit(len(error), tried)) else 0.0

@@ -10,6 +10,7 @@ from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.drifting_current import DriftFit
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.diagnosis.observer.odds import probability_of
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.search_result import Rival
@@ -18,7 +19,7 @@ from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
 
-CHANGED = 0.5  # of an effect: more is not the same effect beside something else
+CHANGED_SHARE = 0.5  # of an effect: more is not the same effect beside something else
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ def name_terms(fit: Fit, rivals: Sequence[Rival]) -> list[Named]:
 def name_smoothing(smoothing: Smoothing) -> Named:
     """What the camera does, as an effect; white noise was tried in its place."""
     term = Term(smoothing.effect, ("cutoff",))
-    return Named(term, {"cutoff": smoothing.std}, _odds(smoothing.lr_statistic))
+    return Named(term, {"cutoff": smoothing.std}, probability_of(smoothing.lr_statistic))
 
 
 def leads(one: Named) -> bool:
@@ -107,7 +108,7 @@ def _differs(own: Term, other: Term) -> bool:
         np.array([effect[p.name] / p.scale for p in names])
         for effect in (own.effect.neutral(), own.effect, other.effect)
     )
-    return bool(np.linalg.norm(others - values) > CHANGED * np.linalg.norm(values - usual))
+    return bool(np.linalg.norm(others - values) > CHANGED_SHARE * np.linalg.norm(values - usual))
 
 
 def doubt_names(named: Sequence[Named], doubted: Collection[str]) -> list[Named]:
@@ -122,13 +123,8 @@ def name_drift(drift: DriftFit, lasting: bool) -> Named:
     be what seems to wander.
     """
     term = Term(CurrentDrift(rate=drift.rate.value), ("rate",))
-    probability = None if lasting else _odds(drift.lr_margin)
+    probability = None if lasting else probability_of(drift.lr_margin)
     return Named(term, {"rate": drift.rate.std}, probability)
-
-
-def _odds(lr_margin: float) -> float:
-    """Probability of a name that is likelier by that likelihood-ratio statistic."""
-    return float(1.0 / (1.0 + np.exp(-0.5 * min(lr_margin, 700.0))))
 
 
 def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:

@@ -15,10 +15,10 @@ from rovsim.diagnosis.selection.sensitivities import Sensitivities
 from rovsim.dynamics.model import Model
 
 DRAW = 0  # seed
-ENOUGH = 10_000  # readings: the noise of fewer hangs on what was drawn; so more is drawn
+MIN_READINGS = 10_000  # the noise of fewer hangs on what was drawn; so more is drawn
 ROUNDS = 10  # at most, where the noise is not yet known
-CLOSE = 0.1  # of a level of noise: changed by less, it is known
-SETTLED = 1.0  # in twice the log likelihood: gained by less, so is a hypothesis' own noise
+LOG_STD_TOLERANCE = 0.1  # changed by less, it is known
+MIN_LR_OF_OWN_NOISE = 1.0  # likelier by less, so is a hypothesis' own noise
 SHRINK = 1e-4  # of each column's own square: parallel candidates share
 
 
@@ -42,7 +42,10 @@ def fit_remaining_noise(
     for _ in range(rounds - 1):
         known = noise
         noise = bank.fit_axes(draw_remainder(bank, e, columns, known), known).noise
-        if np.max(np.abs(np.log(noise.disturbance_std / known.disturbance_std))) < CLOSE:
+        if (
+            np.max(np.abs(np.log(noise.disturbance_std / known.disturbance_std)))
+            < LOG_STD_TOLERANCE
+        ):
             break
     fit = bank.fit_noise(draw_remainder(bank, e, columns, noise), noise, thorough=True)
     own = _fit_own_noise(bank, at.model, fit.noise)
@@ -63,7 +66,7 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
     for _ in range(ROUNDS):
         bank = bank.redesign(model, fit.noise)
         again = bank.fit_noise(bank.innovations(model), first)
-        if not again.two_log_likelihood > fit.two_log_likelihood + SETTLED:
+        if not again.two_log_likelihood > fit.two_log_likelihood + MIN_LR_OF_OWN_NOISE:
             break
         fit = again
     return fit
@@ -90,7 +93,7 @@ def draw_remainder(
     size[size == 0.0] = 1.0
     sure, turn = np.linalg.eigh(H / np.outer(size, size))
     sure = np.maximum(sure, 0.0) + SHRINK
-    draws = -(-ENOUGH // len(target))
+    draws = -(-MIN_READINGS // len(target))
     # by the symmetric root: unlike eigenvectors it hardly changes with a rounding
     chance = turn.T @ np.random.default_rng(DRAW).normal(size=(draws, len(H))).T
     best = turn.T @ (white @ target / size) / sure

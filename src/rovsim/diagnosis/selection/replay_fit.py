@@ -25,8 +25,8 @@ from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, levenberg
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.dynamics.model import Model
 
-SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
-SMALLEST = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count
+WINDOW_SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
+MIN_SPREAD = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,15 +38,15 @@ class Replays:
     @cached_property
     def windows(self) -> list[Windows]:
         """Those of each run."""
-        return [Windows(run, SECONDS) for run in self.runs]
+        return [Windows(run, WINDOW_SECONDS) for run in self.runs]
 
     @cached_property
     def spread(self) -> tuple[Array, Array]:
         """Standard deviations (6,) of the measured velocity and acceleration."""
         nu = np.concatenate([run.motion.nu[run.motion.usable] for run in self.runs])
         nu_dot = np.concatenate([run.motion.nu_dot[run.motion.usable] for run in self.runs])
-        return np.maximum(np.std(nu, axis=0), SMALLEST), np.maximum(
-            np.nanstd(nu_dot, axis=0), SMALLEST
+        return np.maximum(np.std(nu, axis=0), MIN_SPREAD), np.maximum(
+            np.nanstd(nu_dot, axis=0), MIN_SPREAD
         )
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.diagnosis.observer.odds import lr_statistic_of
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
-SURE = 6.0  # twice a log likelihood: odds of 20 to 1
+MIN_LR_APART = lr_statistic_of(odds=20.0)
 
 
 @dataclass(frozen=True)

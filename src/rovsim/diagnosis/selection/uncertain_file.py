@@ -15,15 +15,16 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
+from rovsim.diagnosis.observer.odds import lr_statistic_of
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file
-from rovsim.diagnosis.selection.workspace import HOPELESS, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
-# In twice the log likelihood, odds of a thousand to one: some thirty effects, each there once in
-# thirty times, against a coefficient of a file that is known to be off.
-FILE_ODDS = 13.8
+# Some thirty effects, each there once in thirty times, against a coefficient of a file that is
+# known to be off.
+FILE_LR = lr_statistic_of(odds=1000.0)
 
 
 class FileNumber(NamedTuple):
@@ -79,7 +80,7 @@ def measure_cost(workspace: SearchWorkspace, fit: Fit) -> float:
 def measure_doubt(workspace: SearchWorkspace, fit: Fit) -> float:
     """How much likelier a file is that is off everywhere than one that is right beside a fit.
 
-    In twice a log likelihood: Bayes' factor, to first order, of all numbers of the file as free as
+    Twice the log of Bayes' factor, to first order, of all numbers of the file as free as
     such files are off. Each number that nothing asks for counts against it.
     """
     numbers, products = list_numbers(workspace), workspace.columns.products(fit.seen)
@@ -96,7 +97,7 @@ def measure_loss(workspace: SearchWorkspace, fit: Fit, term: Term) -> float:
 
 def find_limit(workspace: SearchWorkspace, term: Term) -> float:
     """What a term must take away beside a loose file; nothing if it is of the file."""
-    return 0.0 if term.id in STATED else workspace.penalty * term.choices + FILE_ODDS
+    return 0.0 if term.id in STATED else workspace.penalty * term.choices + FILE_LR
 
 
 def explains(workspace: SearchWorkspace, fit: Fit, name: str) -> bool:
@@ -119,7 +120,7 @@ def weigh(
     """
     (current, term), (trial, rival) = own, other
     both = term.id in STATED and rival.id in STATED
-    if both or not is_off(current.hypothesis) or deviance_difference >= HOPELESS:
+    if both or not is_off(current.hypothesis) or deviance_difference >= HOPELESS_LR:
         return deviance_difference
     more = measure_cost(workspace, trial) - measure_cost(workspace, current)
     return more + find_limit(workspace, rival) - find_limit(workspace, term)

@@ -5,7 +5,7 @@ from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
-from rovsim.diagnosis.selection.search_result import SURE
+from rovsim.diagnosis.selection.search_result import MIN_LR_APART
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 
@@ -26,7 +26,7 @@ def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
 def _is_as_good(workspace: SearchWorkspace, fewer: Fit, current: Fit, term: Term) -> bool:
     """Whether more of the file makes up for a special term, as far as such a term is rare."""
     if not is_off(current.hypothesis):
-        return workspace.score(fewer) > workspace.score(current) - uncertain_file.FILE_ODDS
+        return workspace.score(fewer) > workspace.score(current) - uncertain_file.FILE_LR
     costs = [uncertain_file.measure_cost(workspace, one) for one in (fewer, current)]
     return costs[0] - costs[1] <= uncertain_file.find_limit(workspace, term)
 
@@ -44,11 +44,11 @@ def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     while explained := _find_explained(workspace, rest):
         rest = workspace.fit(workspace.drop(rest, [(explained,)])[0])
     doubt = uncertain_file.measure_doubt(workspace, rest)
-    if workspace.score(rest) + doubt < workspace.score(current) + SURE:
+    if workspace.score(rest) + doubt < workspace.score(current) + MIN_LR_APART:
         return current
     loose = add_file(workspace, rest)
     # first-order promises of many numbers together may be five times what a fit makes of them
-    kept = workspace.score(loose) > workspace.score(current) - uncertain_file.FILE_ODDS
+    kept = workspace.score(loose) > workspace.score(current) - uncertain_file.FILE_LR
     return loose if is_off(loose.hypothesis) and kept else current
 
 

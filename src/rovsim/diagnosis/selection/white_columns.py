@@ -21,7 +21,7 @@ from rovsim.dynamics.model import Model
 
 # Of the square of a derivative: if one has turned by more, what was found has changed columns.
 # Chosen on a marker 0.1 m beside CO, which turned its own by 0.2: one drag passed for another.
-CHANGED = 0.1
+CHANGED_SQUARE = 0.1
 # Of a column's own square, in six digits: what free parameters leave less of is theirs.
 EXPLAINED = 1e-6
 
@@ -84,7 +84,7 @@ class WhiteColumns:
         both = [(k, known[name]) for k, name in enumerate(names) if name in known]
         own = self.bank.flatten([J.astype(np.float32) for J in seen.J], self.noise)
         columns = self._whiten(h).columns
-        return any(_turned(own[k], columns[j]) > CHANGED for k, j in both)
+        return any(_turned(own[k], columns[j]) > CHANGED_SQUARE for k, j in both)
 
     def _whiten(self, at: Hypothesis) -> _White:
         loops = _list_loops(at.model)

@@ -25,7 +25,7 @@ from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_ca
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.settings import SearchSettings
 
-HOPELESS = 100.0  # twice the log likelihood: what is less likely by e^50 need not be known better
+HOPELESS_LR = 100.0  # what is less likely by e^50 need not be known better
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,11 +119,11 @@ class SearchWorkspace:
     def fit_unless_worse(
         self, start: Hypothesis, current: Fit, score: float, reach: float = np.inf
     ) -> Fit | None:
-        """The same, but None as soon as it surely scores `HOPELESS` less than that.
+        """The same, but None as soon as it surely scores `HOPELESS_LR` less than that.
 
         `current`: a fit whose derivatives it may begin with.
         """
-        key, least = (start.key, reach), score - HOPELESS + self._penalty_of(start)
+        key, least = (start.key, reach), score - HOPELESS_LR + self._penalty_of(start)
         if key not in self._fitted and least < self._given_up.get(key, np.inf):
             first = self.bank.linearise(start, current.seen)
             fitted = fit_or_give_up(first, self.bank, self.noise, least, reach)
