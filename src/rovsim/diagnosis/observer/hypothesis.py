@@ -107,9 +107,14 @@ class Hypothesis:
 
     @property
     def key(self) -> tuple:
-        """The same for the same terms, in the same order, at the same values."""
-        own = ((t.id, t.free, t.effect.values.tobytes()) for t in self.terms)
-        return (self.base.mocap_view.key, *own)
+        """The same for the same base and terms, in the same order, at the same values."""
+        given = tuple((e.id, e.values.tobytes()) for e in self.base.effects)
+        own = (
+            (t.id, t.free, tuple(sorted(t.bounds.items())), t.effect.values.tobytes())
+            for t in self.terms
+        )
+        # a vehicle cannot be hashed; models that come of one another share theirs
+        return (id(self.base.vehicle), self.base.residual, given, *own)
 
     @property
     def x(self) -> Array:
