@@ -5,7 +5,7 @@ import pytest
 
 from flown import observed
 from rovsim.diagnosis import procedure
-from rovsim.diagnosis.observer.divergence import ModelLost, require_held
+from rovsim.diagnosis.observer.divergence import ModelLost, require_finite
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in
 
@@ -23,13 +23,13 @@ def lost_between(run, begin, end):
 
 
 def test_what_is_finite_is_held(flight):
-    require_held([lost_between(run, 0.0, 0.0) for run in flight[1]])
+    require_finite([lost_between(run, 0.0, 0.0) for run in flight[1]])
 
 
 def test_readings_are_left_out_from_before_the_model_is_lost_until_it_is_back(flight):
     _, (run,) = flight
     with pytest.raises(ModelLost) as caught:
-        require_held([lost_between(run, 12.0, 15.0)])
+        require_finite([lost_between(run, 12.0, 15.0)])
     (kept,), lost = caught.value.leave_out([run])
     gone = run.motion.time[run.motion.usable & ~kept.motion.usable]
     assert gone.min() == pytest.approx(9.0, abs=0.1)
@@ -42,9 +42,9 @@ def test_a_diagnosis_goes_on_without_what_was_lost(flight, monkeypatch):
     lost = iter([[lost_between(run, 24.0, 99.0)]])
 
     def lose_once(e):
-        require_held(next(lost, e))
+        require_finite(next(lost, e))
 
-    monkeypatch.setattr(procedure, "require_held", lose_once)
+    monkeypatch.setattr(procedure, "require_finite", lose_once)
     few = Catalogue({"net_buoyancy": built_in()["net_buoyancy"]})
     found = procedure.diagnose_train_runs(base, [run], SearchSettings(), catalogue=few)
     assert found.fit is not None

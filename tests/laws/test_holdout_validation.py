@@ -21,22 +21,22 @@ from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 
 def test_no_reading_is_on_both_sides(tmp_path):
     _, runs = observed(tmp_path, duration=60.0)
-    (chosen,), (held,) = keep_apart(runs)
-    assert not np.any(chosen.motion.usable & held.motion.usable)
+    (chosen,), (holdout,) = keep_apart(runs)
+    assert not np.any(chosen.motion.usable & holdout.motion.usable)
     ends = [
         set(run.reading_samples[a] for a, b in run.segments for a in range(a, b))
-        for run in (chosen, held)
+        for run in (chosen, holdout)
     ]
     assert not ends[0] & ends[1]
-    seconds = [run.settled.sum() * run.period for run in (chosen, held)]
+    seconds = [run.settled.sum() * run.period for run in (chosen, holdout)]
     assert seconds[1] / sum(seconds) == pytest.approx(0.2, abs=0.06)
 
 
 def test_short_runs_are_used_whole(tmp_path):
     _, runs = observed(tmp_path, duration=20.0)
-    chosen, held = keep_apart(runs)
+    chosen, holdout = keep_apart(runs)
     assert chosen == runs
-    assert held == []
+    assert holdout == []
 
 
 def test_only_what_is_sure_and_matters_is_less():
@@ -67,12 +67,14 @@ def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
 
 def test_where_a_current_wanders_the_windows_of_one_run_are_one_sample(tmp_path):
     base, runs = observed(tmp_path, duration=60.0)
-    _, held = keep_apart(runs)
+    _, holdout = keep_apart(runs)
     slower = base + LinearDamping(surge=60.0, sway=60.0)
-    assert HoldoutValidation(held, runs).refuses(slower, base)
-    assert not HoldoutValidation(held, runs, current_drifts=True).refuses(slower, base)
-    assert not HoldoutValidation([*held, *held], runs, current_drifts=True).refuses(base, slower)
-    assert HoldoutValidation([*held, *held], runs, current_drifts=True).refuses(slower, base)
+    assert HoldoutValidation(holdout, runs).refuses(slower, base)
+    assert not HoldoutValidation(holdout, runs, current_drifts=True).refuses(slower, base)
+    assert not HoldoutValidation([*holdout, *holdout], runs, current_drifts=True).refuses(
+        base, slower
+    )
+    assert HoldoutValidation([*holdout, *holdout], runs, current_drifts=True).refuses(slower, base)
 
 
 def test_where_physics_is_left_a_name_must_be_surely_worth_it():
@@ -89,11 +91,11 @@ def test_where_physics_is_left_a_name_must_be_surely_worth_it():
 class Workspace:
     """Fits nothing: hypotheses as they are, and no filter holds any but those it is given."""
 
-    def __init__(self, held=True):
-        self.held = held
+    def __init__(self, finite=True):
+        self.finite = finite
 
     def fit(self, h, reach):
-        return Found(h, self.held)
+        return Found(h, self.finite)
 
     def drop(self, found, groups):
         h = found.hypothesis
@@ -101,25 +103,25 @@ class Workspace:
 
 
 class Found:
-    def __init__(self, h, held=True):
-        self.hypothesis, self.held = h, held
+    def __init__(self, h, finite=True):
+        self.hypothesis, self.is_finite = h, finite
 
 
 def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
     truth = [{"effect": "quadratic_damping", "parameters": {"surge": {"value": 120.0}}}]
     base, runs = observed(tmp_path, duration=60.0, effects=truth)
-    _, held = keep_apart(runs)
+    _, holdout = keep_apart(runs)
     right = Term(QuadraticDamping(surge=120.0), ("surge",))
     wrong = Term(LinearDamping(sway=150.0), ("sway",))
     selection = SearchResult(Workspace(), Found(Hypothesis(base, (right, wrong))), (), True)
-    passed, whole = HoldoutValidation(held, runs).judge(selection)
+    passed, whole = HoldoutValidation(holdout, runs).judge(selection)
     assert [t.id for t in passed.best.hypothesis.terms] == ["quadratic_damping"]
     assert not whole
-    lost = replace(selection, workspace=Workspace(held=False))
-    assert HoldoutValidation(held, runs).keep_earning(lost).best is lost.best
-    assert HoldoutValidation(held, runs).keep_earning(selection).best is not selection.best
+    lost = replace(selection, workspace=Workspace(finite=False))
+    assert HoldoutValidation(holdout, runs).keep_earning(lost).best is lost.best
+    assert HoldoutValidation(holdout, runs).keep_earning(selection).best is not selection.best
     alone = SearchResult(Workspace(), Found(Hypothesis(base, (wrong,))), (), True)
-    passed, whole = HoldoutValidation(held, runs).judge(alone)
+    passed, whole = HoldoutValidation(holdout, runs).judge(alone)
     assert passed.best.hypothesis.terms == ()
     assert not whole
-    assert Windows(held[0]).spans
+    assert Windows(holdout[0]).spans

@@ -208,7 +208,8 @@ def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood
     delayed = Term(InputDelay(delay=delay), ("delay",))
     h = Hypothesis(seen_through(base, smoothing), (delayed,))
     found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
-    rest = SimpleNamespace(held=np.isfinite(likelihood), hypothesis=SimpleNamespace(x=np.empty(0)))
+    unmoved = SimpleNamespace(x=np.empty(0))
+    rest = SimpleNamespace(is_finite=np.isfinite(likelihood), hypothesis=unmoved)
     workspace = SimpleNamespace(fit=lambda start: rest)
     selection = SearchResult(workspace, found, ())
     again, finer = absorb_delay(selection, base, smoothing)
@@ -233,7 +234,7 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
 
     def found(start, score=0.0):
         std = np.full(len(start.x), 0.01)
-        return SimpleNamespace(hypothesis=start, std=std, held=True, score=score)
+        return SimpleNamespace(hypothesis=start, std=std, is_finite=True, score=score)
 
     def fit(start, reach=np.inf):
         if "thruster_lag" in (term.id for term in start.terms):

@@ -27,9 +27,9 @@ class Wald:
         gone = sum(self.z[name] ** 2 for name in self.z if name not in left)
         std = np.array([abs(x) / self.z[name] for x, name in zip(h.x, left, strict=True)])
         two_log_likelihood = self.two_log_likelihood - gone
-        held = np.isfinite(two_log_likelihood)
+        finite = np.isfinite(two_log_likelihood)
         return SimpleNamespace(
-            hypothesis=h, std=std, two_log_likelihood=two_log_likelihood, held=held
+            hypothesis=h, std=std, two_log_likelihood=two_log_likelihood, is_finite=finite
         )
 
     def score(self, found: SimpleNamespace) -> float:

@@ -46,13 +46,13 @@ class Answer:
     @property
     def complete(self) -> bool:
         """Whether it leaves nothing."""
-        return self.fit.held and not (self.structures or self.refused)
+        return self.fit.is_finite and not (self.structures or self.refused)
 
     @property
     def lasting(self) -> bool:
         """Whether more is left than single pushes: then names may stand for what has none."""
         single = all(one.moment for one in self.structures)
-        return self.refused or not (self.fit.held and single)
+        return self.refused or not (self.fit.is_finite and single)
 
     @cached_property
     def replayed(self) -> Model:
@@ -94,10 +94,10 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> Answer:
     borne_out = selection.prune(selection.workspace.on_runs(bank, fit.noise), fit)
     if borne_out is not fit:
         fewer = selection.fit(borne_out.hypothesis)
-        if fewer.held:
+        if fewer.is_finite:
             return _settle_values(replace(selection, best=fewer), usable)
     score, whole = selection.workspace.score(fit), fit_whole_file(fit, bank)
-    left = find_structure(fit if whole is None else whole, bank) if fit.held else []
+    left = find_structure(fit if whole is None else whole, bank) if fit.is_finite else []
     return Answer(selection, fit, bank, score, left, whole=whole)
 
 

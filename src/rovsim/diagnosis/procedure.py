@@ -37,7 +37,7 @@ from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
-from rovsim.diagnosis.observer.divergence import ModelLost, require_held
+from rovsim.diagnosis.observer.divergence import ModelLost, require_finite
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -144,7 +144,7 @@ def _diagnose(
         rank_selected(base, named, usable.runs),
         ranking=rank_alone(workspace, nothing, answer.fit),
         rivals=rivals, structures=answer.structures,
-        refused=answer.refused or not answer.fit.held, scale=scale,
+        refused=answer.refused or not answer.fit.is_finite, scale=scale,
         not_observable=list_not_observable(answer.selection, catalogue, base.vehicle),
         proposed=proposed, stand_ins=tuple(sorted(stand_ins)),
         disturbance=None if proposed else _trace(answer),
@@ -203,7 +203,7 @@ def _observe(
     candidates = [one for one in listed if (base + one.start).possible]
     while True:
         sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
-        require_held(sensitivities.base)
+        require_finite(sensitivities.base)
         noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
         if not noise.drift or close.paths:
             break
@@ -228,6 +228,6 @@ def _propose(
 
 def _trace(answer: Answer) -> ForceInTime | None:
     """The force in time that is left; None where nothing is seen of it, or no filter holds."""
-    if not answer.structures or not answer.fit.held:
+    if not answer.structures or not answer.fit.is_finite:
         return None
     return trace_force(answer.fit, answer.bank, answer.structures)

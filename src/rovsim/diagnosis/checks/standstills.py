@@ -124,19 +124,19 @@ def _judge(
     run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving
 ) -> Standstill | None:  # fmt: skip
     """The longest standstill of a run; those near each other are one."""
-    held: list[tuple[_Rest, int, float]] = []
+    candidates: list[tuple[_Rest, int, float]] = []
     for rest in rests:
         if (axis := _find_axis(rest, moving)) is None:
             continue
-        gained, last = float(abs(rest.missed[axis]) * (rest.end - rest.begin)), held[-1:]
+        gained, last = float(abs(rest.missed[axis]) * (rest.end - rest.begin)), candidates[-1:]
         for before, _, more in last:
             if rest.begin - before.end < max(before.end - before.begin, rest.end - rest.begin):
                 rest, gained = replace(rest, begin=before.begin), gained + more
-                held.pop()
-        held.append((rest, axis, gained))
-    if not held:
+                candidates.pop()
+        candidates.append((rest, axis, gained))
+    if not candidates:
         return None
-    rest, axis, gained = max(held, key=lambda one: one[0].end - one[0].begin)
+    rest, axis, gained = max(candidates, key=lambda one: one[0].end - one[0].begin)
     return Standstill(
         run=run, from_s=round(rest.begin, 2), to_s=round(rest.end, 2), axis=AXES[axis],
         gained=float(f"{gained:.3g}"), use=tuple(_without(spans, rest.begin, rest.end)),

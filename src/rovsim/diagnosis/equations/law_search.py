@@ -142,7 +142,7 @@ class LawSearch:
         terms: tuple[LawTerm, ...] = ()
         fit, best = self.selection.fit(start), None
         score = self.workspace.score(fit)
-        while len(terms) < TERMS and fit.held:
+        while len(terms) < TERMS and fit.is_finite:
             known: Known = (None, None)
             if best is not None:
                 middle, known = stay(middle, list_moved(terms), place_of(best.law, around.site))
@@ -173,7 +173,7 @@ class LawSearch:
         for kind in (k for k in FORMS if k.effect.requires in means):
             beside = tuple(term for term in start.terms if term.id not in kind.imitates)
             bare = self.selection.fit(replace(start, terms=beside))
-            if not bare.held:
+            if not bare.is_finite:
                 continue
             laws = [(form, bare.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
             best = next(iter(self.fit_each(dict(enumerate(laws)), bare).values()))
@@ -197,7 +197,7 @@ class LawSearch:
         fit = self.selection.fit(start)
         runs, score = self.workspace.bank.runs, self.workspace.score(fit)
         terms = list_thrust_terms(runs, fit.hypothesis.model)
-        if not terms or not fit.held:
+        if not terms or not fit.is_finite:
             return []
         columns = project_terms(self.workspace, fit, terms, middle_of(runs), push_thrust)
         explained = find_alone(columns.products) - self.penalty

@@ -103,7 +103,7 @@ def propose_law(
     if judged is None or not _holds(judged, selection, best, holdout):
         return None
     fit, bank = polish(judged.fit)
-    if not fit.held:
+    if not fit.is_finite:
         return None
     action = find_action(judged.form, fit, runs)
     whole = not is_half(action.axis, fit, bank)

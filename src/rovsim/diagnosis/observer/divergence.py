@@ -18,7 +18,7 @@ class ModelLost(Exception):
 
     def __init__(self, e: Sequence[Array]) -> None:
         super().__init__("the model runs away from the recordings")
-        self.held = [np.isfinite(one).all(axis=0) for one in e]
+        self.finite = [np.isfinite(one).all(axis=0) for one in e]
 
     def leave_out(self, runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], dict[str, float]]:
         """The same runs, or longer ones, without those stretches; from which s on, by run.
@@ -26,9 +26,9 @@ class ModelLost(Exception):
         A stretch begins as long before as a disturbance is remembered.
         """
         kept, lost = [], {}
-        for run, held in zip(runs, self.held, strict=True):
-            if not held.all():
-                away, time = run.time[: len(held)][~held], run.motion.time
+        for run, finite in zip(runs, self.finite, strict=True):
+            if not finite.all():
+                away, time = run.time[: len(finite)][~finite], run.motion.time
                 begin = float(away[0]) - MAX_CORRELATION_TIME
                 run = run.limited((time < begin) | (time > away[-1]))
                 lost[run.motion.run.id] = max(begin, float(time[0]))
@@ -36,7 +36,7 @@ class ModelLost(Exception):
         return kept, lost
 
 
-def require_held(e: Sequence[Array]) -> None:
+def require_finite(e: Sequence[Array]) -> None:
     """Refuse to go on where innovations e (6, n) of some run are not finite.
 
     Raises:

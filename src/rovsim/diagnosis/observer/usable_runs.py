@@ -19,13 +19,14 @@ class UsableRuns:
     """Runs with something to observe, and s of settled readings.
 
     `still` axes that were measured, and none of them moved; `unmeasured` those nobody measured,
-    `held` those in which the vehicle cannot move. `lost`: s from which on a run is not followed.
+    `locked_axes` those in which the vehicle cannot move. `lost`: s from which on a run is not
+    followed.
     """
 
     runs: tuple[ObservedRun, ...]
     still: tuple[str, ...]
     unmeasured: tuple[str, ...]
-    held: tuple[str, ...]
+    locked_axes: tuple[str, ...]
     seconds: float
     lost: Mapping[str, float] = field(default_factory=dict)
 
@@ -37,7 +38,7 @@ class UsableRuns:
     @property
     def moved(self) -> tuple[str, ...]:
         """Axes about which something can be said."""
-        silent = (*self.still, *self.unmeasured, *self.held)
+        silent = (*self.still, *self.unmeasured, *self.locked_axes)
         return tuple(axis for axis in AXES if axis not in silent)
 
     def where_no_water_wanders(self) -> "UsableRuns":
@@ -52,8 +53,8 @@ def select_usable(
     runs = tuple(run for run in train if len(run.segments))
     seconds = float(sum(run.settled.sum() * run.period for run in runs))
     free, measured, moved = _ask(runs)
-    still, unmeasured, held = measured & free & ~moved, free & ~measured, ~free
-    return UsableRuns(runs, _name(still), _name(unmeasured), _name(held), seconds, lost or {})
+    still, unmeasured, locked = measured & free & ~moved, free & ~measured, ~free
+    return UsableRuns(runs, _name(still), _name(unmeasured), _name(locked), seconds, lost or {})
 
 
 def _name(axes: Array) -> tuple[str, ...]:

@@ -80,7 +80,7 @@ def _absorb(
         return None, smoothing
     rest = Hypothesis(seen_through(base, finer), h.without(k).terms)
     again = selection.workspace.fit(rest)
-    if not again.held:  # undone, so slow a filter makes more than was there
+    if not again.is_finite:  # undone, so slow a filter makes more than was there
         return None, smoothing
     return again, finer
 

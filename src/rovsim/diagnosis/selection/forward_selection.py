@@ -17,7 +17,7 @@ from rovsim.diagnosis.selection.search_result import Rival, SearchResult
 from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.vehicle_file_steps import (
     add_file,
-    hold_gain,
+    fix_gain,
     prefer_file,
     suspect_file,
 )
@@ -170,7 +170,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     workspace = workspace.relinearise_if_changed(current)
     current, _ = try_swaps(workspace, current, 1)
     current = change_mode(workspace, current)
-    current = hold_gain(workspace, prefer_file(workspace, current))
+    current = fix_gain(workspace, prefer_file(workspace, current))
     current, rivals = try_swaps(workspace, current, workspace.settings.trials)
     return SearchResult(workspace, current, tuple(rivals))
 

@@ -51,8 +51,8 @@ class Fit:
     covariance: Array
 
     @property
-    def held(self) -> bool:
-        """Whether the filters could hold the model; if not, nothing is known of it."""
+    def is_finite(self) -> bool:
+        """Whether the model stayed finite beside its filters; if not, nothing is known of it."""
         return bool(np.isfinite(self.two_log_likelihood))
 
     @property
@@ -117,7 +117,7 @@ def polish(
     polished = again(start)
     for _ in range(1, POLISHING_ROUNDS):
         finer = again(polished[0])
-        if not finer[0].held:
+        if not finer[0].is_finite:
             break
         polished = finer
     return polished

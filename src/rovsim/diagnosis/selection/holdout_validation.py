@@ -41,7 +41,7 @@ MIN_SPREAD = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
 
 def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[ObservedRun]]:
     """The runs to choose by, and those stretches of them that take no part in it."""
-    chosen, held = [], []
+    chosen, holdout = [], []
     for run in runs:
         time = run.motion.time
         end = time[0] + (1.0 - HOLDOUT_SHARE) * (time[-1] - time[0])
@@ -49,8 +49,8 @@ def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[Obs
             chosen.append(run)
             continue
         chosen.append(run.limited(time <= end))
-        held.append(run.limited(time > end))
-    return chosen, [run for run in held if Windows(run).spans]
+        holdout.append(run.limited(time > end))
+    return chosen, [run for run in holdout if Windows(run).spans]
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class HoldoutValidation:
         while self.runs and fit.hypothesis.terms:
             weakest = self._find_harmful(selection, fit)
             fewer = selection.fit(weakest) if weakest else None
-            if fewer is None or not fewer.held:
+            if fewer is None or not fewer.is_finite:
                 break
             fit = fewer
         if self.refuses(fit.hypothesis.model, fit.hypothesis.base):
@@ -135,7 +135,7 @@ class HoldoutValidation:
                 break
             idle.sort(key=lambda k: _ratio(errors[1 + k], errors[0]))
             left = (selection.fit(fewer[k]) for k in idle)
-            without = next((fit for fit in left if fit.held), None)
+            without = next((fit for fit in left if fit.is_finite), None)
             if without is None:
                 break
             kept = without

@@ -34,7 +34,7 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
     here, noise = _start(base, usable.moved), FIRST_NOISE
     for _ in range(ROUNDS):
         fitted = fit(here, FilterBank.design(usable.runs, base, noise), noise)
-        here, noise = _hold(fitted.hypothesis), fitted.noise
+        here, noise = _fix_at_bounds(fitted.hypothesis), fitted.noise
     return here.model.called("refitted")
 
 
@@ -45,8 +45,8 @@ def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     return Hypothesis(base, (*terms, gain))
 
 
-def _hold(fitted: Hypothesis) -> Hypothesis:
-    """With what came to rest at a bound held there."""
+def _fix_at_bounds(fitted: Hypothesis) -> Hypothesis:
+    """With what came to rest at a bound fixed there."""
 
     def inside(term: Term) -> tuple[str, ...]:
         known = zip(term.parameters, (term.effect[name] for name in term.free), strict=True)

@@ -15,7 +15,7 @@ def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
 
     A hypothesis that could not be fitted stays: nothing is known of what its parameters are worth.
     """
-    while len(current.hypothesis.x) and current.held:
+    while len(current.hypothesis.x) and current.is_finite:
         smaller = _drop_weakest(workspace, current)
         if smaller is None:
             return current

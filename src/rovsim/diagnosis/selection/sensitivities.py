@@ -93,8 +93,8 @@ def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> 
             model = replace(at, terms=others).model
             rests[own] = Hypothesis(model), bank.innovations(model)
         columns = _columns(bank, rests[own][0], candidate, rests[own][1])
-        held = all(np.isfinite(one).all() for one in columns)
-        parts.append(columns if held else [np.zeros_like(one) for one in columns])
+        finite = all(np.isfinite(one).all() for one in columns)
+        parts.append(columns if finite else [np.zeros_like(one) for one in columns])
     stacked = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
     base, beside = bank.innovations(at.model), tuple(term.id for term in at.terms)
     return replace(known, bank=bank, base=base, columns=stacked, beside=beside)

@@ -72,7 +72,7 @@ def add_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     return trial if workspace.score(trial) > workspace.score(current) else current
 
 
-def hold_gain(workspace: SearchWorkspace, current: Fit) -> Fit:
+def fix_gain(workspace: SearchWorkspace, current: Fit) -> Fit:
     """With the file's gain of the thrusters, where other numbers of the file explain as much."""
     gain = mark_gain(current.hypothesis)
     if not (is_off(current.hypothesis) and gain.any()):

@@ -216,7 +216,7 @@ class SearchWorkspace:
 
         None where the observer cannot hold the current model.
         """
-        if not current.held:
+        if not current.is_finite:
             return []
         key = current.hypothesis.key
         if key not in self._proposed:
