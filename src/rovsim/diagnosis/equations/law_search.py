@@ -1,6 +1,7 @@
 """From what is left to an equation, or to none."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Iterable, Mapping, Sequence, TypeVar
 
 import numpy as np
@@ -135,26 +136,46 @@ class LawSearch:
             return False
         return bool(find_relevant(self.workspace, more.fit, [less.hypothesis.model])[0])
 
+    @cached_property
+    def surroundings(self) -> Surroundings:
+        """Where the runs were."""
+        return Surroundings.of(self.workspace.bank.runs)
+
+    def fit_products(
+        self, fit: Fit, terms: tuple[LawTerm, ...], more: Sequence[LawTerm], columns: Columns,
+        middle: Array,
+    ) -> dict[LawTerm, FittedLaw]:  # fmt: skip
+        """Laws of all these terms and one more beside a fit, the likeliest first.
+
+        Args:
+            fit: with the law of the terms, if there are any.
+            terms: what it has already.
+            more: the terms that are tried.
+            columns: of these, among others.
+            middle: see `library.push`.
+        """
+        h, around = fit.hypothesis, self.surroundings
+        starts = {k: add_term(h, terms, k, columns, middle, around) for k in more}
+        return self.fit_each({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
+
     def select_terms(self, start: Hypothesis) -> FittedLaw | None:
         """Forward selection of one to three terms, each refitted with all else before the next."""
         runs = self.workspace.bank.runs
-        around, middle = Surroundings.of(runs), middle_of(runs)
+        site, middle = self.surroundings.site, middle_of(runs)
         terms: tuple[LawTerm, ...] = ()
         fit, best = self.selection.fit(start), None
         score = self.workspace.score(fit)
         while len(terms) < TERMS and fit.is_finite:
             known: Known = (None, None)
             if best is not None:
-                middle, known = stay(middle, list_moved(terms), place_of(best.law, around.site))
+                middle, known = stay(middle, list_moved(terms), place_of(best.law, site))
             taken = [t.kind for t in terms]
             left = [t for t in list_terms(runs, known) if t.kind not in taken]
             columns = project_terms(self.workspace, fit, left, middle)
             if len(columns.terms) < TERMS:
                 break
             kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]
-            h = fit.hypothesis
-            starts = {k: add_term(h, terms, k, columns, middle, around) for k in kinds}
-            tried = self.fit_each({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
+            tried = self.fit_products(fit, terms, kinds, columns, middle)
             more = next((k for k, one in tried.items() if self.is_worth(one, fit, score)), None)
             if more is None:
                 break
@@ -166,10 +187,8 @@ class LawSearch:
         """Of each form with a memory the likeliest, if it is worth anything."""
         runs, worthy = self.workspace.bank.runs, []
         axes = np.logical_and.reduce([run.axes for run in runs])
-        moving, means = (
-            [AXES[i] for i in np.flatnonzero(axes)],
-            list_means(runs, start.base.vehicle),
-        )
+        moving = [AXES[i] for i in np.flatnonzero(axes)]
+        means = list_means(runs, start.base.vehicle)
         for kind in (k for k in FORMS if k.effect.requires in means):
             beside = tuple(term for term in start.terms if term.id not in kind.imitates)
             bare = self.selection.fit(replace(start, terms=beside))

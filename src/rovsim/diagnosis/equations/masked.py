@@ -13,13 +13,11 @@ import numpy as np
 from rovsim.diagnosis.checks.regressors import list_dependences, tabulate
 from rovsim.diagnosis.checks.residual import Structure, split_by_axis
 from rovsim.diagnosis.equations.law_search import LawSearch, choose_kinds, is_seen, project_terms
-from rovsim.diagnosis.equations.products.as_effect import Surroundings, add_term
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
-from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.selection.search_result import SearchResult
 
-# In twice the log likelihood. Of all functions of an axis one reaches 15 by chance in one campaign
+# Likelihood-ratio statistics. Of all functions of an axis one reaches 15 by chance in one campaign
 # of fifteen, 8 in most; of those that names could have taken half of there are few.
 SUSPECT, RESEMBLES, FAINT = 15.0, 0.5, 8.0
 TRIED = 3  # laws that are fitted
@@ -38,10 +36,8 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
     columns = project_terms(workspace, fit, terms, middle)
     order = np.argsort(-find_alone(columns.products), kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
-    around, h = Surroundings.of(runs), fit.hypothesis
-    laws = {k: (Products((k,)), add_term(h, (), k, columns, middle, around)) for k in kinds}
     score = workspace.score(fit)
-    for judged in search.fit_each(laws, fit).values():
+    for judged in search.fit_products(fit, (), kinds, columns, middle).values():
         if search.is_worth(judged, fit, score):
             return [replace(suspect, surprise=(judged.score - score) / max(search.chance, 1.0))]
     return []
