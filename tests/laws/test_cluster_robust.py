@@ -10,7 +10,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import number_blocks
-from rovsim.diagnosis.selection.cluster_robust import estimate_spread
+from rovsim.diagnosis.observer.sandwich import estimate_covariance
 from rovsim.diagnosis.selection.gauss_newton import fit
 from rovsim.dynamics.catalogue import built_in
 
@@ -37,7 +37,7 @@ def spread(bank, found, lasting):
     e = found.seen.e[0].copy()
     e[:, settled] += lasting * np.concatenate([pushes[b] for b in blocks], axis=1)
     moved = replace(found, seen=replace(found.seen, e=[e]))
-    return float(estimate_spread(moved, bank, blocks)[0, 0])
+    return float(estimate_covariance(bank.whiten(moved.seen.rows, moved.noise), blocks)[0, 0])
 
 
 def test_blocks_of_independent_readings_tell_what_the_readings_do(fitted):

@@ -7,7 +7,8 @@ import pytest
 from scipy.signal import lfilter
 
 from rovsim.core.rotations import from_euler, matrix
-from rovsim.diagnosis.checks.regressors import find_spread, tabulate
+from rovsim.diagnosis.checks.regressors import tabulate
+from rovsim.diagnosis.observer.sandwich import find_inflation
 
 COUNT, PERIOD = 400, 0.05
 
@@ -55,7 +56,8 @@ def shares(kept, seed, lasting):
         target = target / target.std()
         power = column @ column
         factor = column @ target / power
-        spread = find_spread(column * (target - factor * column), power, blocks) if lasting else 1.0
+        left = column * (target - factor * column)
+        spread = find_inflation(left, power, blocks) if lasting else 1.0
         found.append(factor**2 * power / spread > 3.84)
     return np.mean(found)
 

@@ -12,6 +12,7 @@ from rovsim import AXES
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.diagnosis.observer.observed_run import ObservedRun, number_blocks
+from rovsim.diagnosis.observer.sandwich import find_inflation
 from rovsim.dynamics.effects.law import SMOOTH
 from rovsim.dynamics.low_pass import LowPass
 
@@ -113,23 +114,9 @@ def list_dependences(
         part = abs(factor) * size * np.sqrt(power / whole)
         statistic = factor**2 * power
         if blocks is not None:
-            statistic /= find_spread(own * (target - factor * own), power, blocks)
+            # where errors last longer than the noise has it, what agrees with them agrees by chance
+            statistic /= find_inflation(own * (target - factor * own), power, blocks)
         yield Dependence(name, statistic, part, 1.0 - power / whole)
-
-
-def find_spread(products: Array, power: float, blocks: Array) -> float:
-    """How much more a factor is spread than where innovations are white (Liang & Zeger 1986).
-
-    Where a sensor's errors last longer than the noise model has it, all readings of some time err
-    alike, and what agrees with them there agrees by chance.
-
-    Args:
-        products: of the column and what it leaves (n,).
-        power: the square of the column: their variance where innovations are white.
-        blocks: the block of time that each lies in (n,).
-    """
-    sums = np.bincount(blocks, products)
-    return max(1.0, float(sums @ sums) / power * len(sums) / max(1, len(sums) - 1))
 
 
 def _lag(v: Array, run: ObservedRun, memory: float) -> Array:

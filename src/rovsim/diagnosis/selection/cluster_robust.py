@@ -8,11 +8,9 @@ alike. The observer does not know, but blocks of time then differ by more than i
 from dataclasses import replace
 
 import numpy as np
-from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.observed_run import BLOCK, number_blocks
+from rovsim.diagnosis.observer.sandwich import estimate_covariance
 from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -39,23 +37,11 @@ def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:
     h, unsure = fit.hypothesis, set()
     for seconds in LASTING:
         blocks = number_blocks(workspace.bank.runs, seconds)
-        as_blocks_see = replace(fit, covariance=estimate_spread(fit, workspace.bank, blocks))
+        rows = workspace.bank.whiten(fit.seen.rows, fit.noise)
+        as_blocks_see = replace(fit, covariance=estimate_covariance(rows, blocks))
         most = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
             judged = term.vanishes and 0 < len(own) <= most
             if judged and as_blocks_see.distance(own) < workspace.penalty * term.choices:
                 unsure.add(i)
     return sorted(unsure)
-
-
-def estimate_spread(fit: Fit, bank: FilterBank, blocks: Array) -> Array:
-    """Covariance (k, k) of the scaled parameters, by how much `blocks` (n,) differ.
-
-    That of Liang & Zeger (1986), which does not take readings of one block for independent.
-    """
-    rows = bank.whiten(fit.seen.rows, fit.noise)
-    each = rows[1:] * rows[:1]
-    scores = np.array([each[..., blocks == b].sum(axis=(1, 2)) for b in np.unique(blocks)])
-    scores = scores - scores.mean(axis=0)
-    inverse = solve(inner_products(as_rows(rows[1:])), np.eye(len(rows) - 1))
-    return np.asarray(inverse @ (scores.T @ scores) @ inverse * len(scores) / (len(scores) - 1))

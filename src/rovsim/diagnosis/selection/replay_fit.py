@@ -4,7 +4,7 @@ The likelihood of the innovations takes all that is left for noise. Where it is 
 explains, the disturbance it allows for swallows slow errors, and the values that foresee the next
 reading best drift off in a replay. So they are fitted once more to what users see: velocity and
 acceleration in windows. How sure they are then comes from how the windows disagree, not from the
-noise (the sandwich estimate: White 1980; windows are the clusters: Liang & Zeger 1986).
+noise (sandwich.py; windows are the clusters).
 """
 
 from dataclasses import dataclass, replace
@@ -16,10 +16,10 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
+from rovsim.diagnosis.observer.sandwich import estimate_covariance_of_few
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, levenberg_marquardt
 from rovsim.diagnosis.selection.prior import Prior
@@ -98,24 +98,10 @@ def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     seen = levenberg_marquardt(
         fit.hypothesis, source, fit.noise, Prior.around(fit.hypothesis.x, REACH)
     )
-    covariance = _sandwich(
+    covariance = estimate_covariance_of_few(
         source.whiten(seen.e, fit.noise), source.whiten(seen.J, fit.noise),
         source.number(),
     )  # fmt: skip
     fresh = bank.redesign(seen.at.model, fit.noise)
     again = judge(fresh.linearise(seen.at), fresh, fit.noise)
     return replace(again, covariance=covariance)
-
-
-def _sandwich(e: Array, J: Array, window: Array) -> Array:
-    """Covariance (k, k): how sure from the scores of each window, what goes together from J.
-
-    There may be fewer windows than parameters, which then would all seem to go together; and never
-    surer than if every error were one for itself.
-    """
-    bread = solve(inner_products(as_rows(J)), np.eye(len(J)))
-    scores = np.einsum("kin,in->kn", J, e)
-    each = bread @ np.array([np.bincount(window, row) for row in scores])
-    alone = np.diag(bread) * np.sum(e**2) / max(e.size - len(J), 1)
-    ratio = np.sqrt(np.maximum(np.sum(each**2, axis=1), alone) / np.diag(bread))
-    return bread * np.outer(ratio, ratio)
