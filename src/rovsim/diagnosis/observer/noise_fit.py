@@ -23,7 +23,7 @@ CORRELATION_TIME_LOG_STD = 0.7  # of log T: a factor of two either way
 # long as the vehicle takes to leave the place where the calibration errs.
 TYPICAL_BIAS_TIME, BIAS_TIME_LOG_STD = 0.5, 0.7  # s, and of its log
 FAINTEST = 1e-12  # of the variance at first: an axis on which nothing at all happens
-MIN_LR_OF_BIAS = 12.0  # in twice the log likelihood: two more numbers, and sure of it on six axes
+MIN_LR_OF_BIAS = 12.0  # two more numbers, and sure of it on six axes
 
 
 class NoiseFit(NamedTuple):

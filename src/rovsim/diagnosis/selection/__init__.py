@@ -3,7 +3,7 @@
 candidates          every effect of the catalogue, from each of its starts
 sensitivities       how each would change the innovations, to first order
 remaining_noise     of what a hypothesis leaves and none of them explains
-proposals           what each promises, and what chance would seem to gain
+proposals           what each should explain, and what chance would seem to
 white_columns       the same under one noise, beside what was found
 workspace           the runs, the columns, one noise for all; what is fitted already
 prior               what is known of parameters before the runs are looked at

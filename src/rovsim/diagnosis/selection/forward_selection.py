@@ -94,7 +94,7 @@ def try_swaps(
 ) -> tuple[Fit, list[Rival]]:
     """Replace any one term by another effect while that is more likely; then what comes close.
 
-    Names that promise less than half of what the term explains are not refitted, unless for that
+    Names that should explain less than half of what the term does are not refitted, unless for that
     they ask so much less that they seem likelier.
 
     `swap`: the least difference of the scores.
@@ -125,9 +125,9 @@ def find_swaps(
 ) -> list[Proposal]:
     """The first other effects that may explain what a removed term did, best first.
 
-    All that promise nearly as much as it did are among them: loops about three angles were third in
-    the place of weak sticks and drag, and likelier once refitted. Where a term itself is hardly
-    worth its penalty, a rival need not be: the two share the evidence.
+    All that should explain nearly as much as it did are among them: loops about three angles were
+    third in the place of weak sticks and drag, and likelier once refitted. Where a term itself is
+    hardly worth its penalty, a rival need not be: the two share what they explain.
     """
     others = [p for p in rest.others if p.term.id != term.id]
     trials = max(trials, sum(p.net_decrease > NEARLY_BEST_SHARE * rest.ss_increase for p in others))

@@ -47,7 +47,7 @@ def suspect_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     if workspace.score(rest) + doubt < workspace.score(current) + MIN_LR_APART:
         return current
     loose = add_file(workspace, rest)
-    # first-order promises of many numbers together may be five times what a fit makes of them
+    # first-order predictions of many numbers together may be five times what a fit makes of them
     kept = workspace.score(loose) > workspace.score(current) - uncertain_file.FILE_LR
     return loose if is_off(loose.hypothesis) and kept else current
 

@@ -138,7 +138,7 @@ class SearchWorkspace:
         return (start.key, np.inf) in self._fitted
 
     def score(self, fit: Fit) -> float:
-        """Twice the log likelihood, less the penalty of the free parameters, and an odd gain."""
+        """Its 2 log L, less the penalty of the free parameters, and an odd gain."""
         return fit.two_log_likelihood - self._penalty_of(fit.hypothesis)
 
     def _penalty_of(self, at: Hypothesis) -> float:

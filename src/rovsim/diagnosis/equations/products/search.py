@@ -36,7 +36,7 @@ def propose(columns: Columns, steps: int) -> list[LawTerm]:
 
 
 def find_alone(products: Array) -> Array:
-    """What each term (c,) explains alone, in twice the log likelihood."""
+    """What each term (c,) explains alone: decrease of the sum of squares."""
     power = np.diag(products)[1:]
     return np.divide(products[0, 1:] ** 2, power, out=np.zeros(len(power)), where=power > 0.0)
 
