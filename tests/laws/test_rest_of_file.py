@@ -19,21 +19,25 @@ from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
 OFF = 0.2  # of each coefficient
-WEAK = 0.95  # thrusters of this strength
+WEAK, WEAKER = 0.95, 0.75  # thrusters of this strength
 COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")
 
 
-@pytest.fixture(scope="module")
-def flown(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("run")
+def fly_off(folder, gain):
+    """The file, runs of a vehicle of which all is off, and by how much."""
     base, _ = observed(folder / "right", duration=2.0)
     body = base.body
     stated = dict(zip(COEFFICIENTS, (body.linear, body.quadratic, np.diag(body.M_A)), strict=True))
     off = {n: dict(zip(AXES, OFF * x, strict=True)) for n, x in stated.items()}
-    off["thruster_gain"] = {"all": WEAK}
+    off["thruster_gain"] = {"all": gain}
     hidden = tuple(EffectEntry(effect=name, parameters=own) for name, own in off.items())
     base, runs = observed(folder / "off", duration=20.0, effects=hidden)
     return base, runs, off
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    return fly_off(tmp_path_factory.mktemp("run"), WEAK)
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +91,18 @@ def test_of_the_file_only_that_is_named_without_which_a_replay_is_worse(flown, b
     assert {term.id for term in final.hypothesis.terms} == {*COEFFICIENTS, "buoyancy_center"}
     assert np.abs(miss(final, off)).max() < 3.0
     assert "added_mass.surge" in scale.parameters
+
+
+def test_a_gain_that_is_surely_off_stays_though_no_replay_would_miss_it(tmp_path):
+    """Else all values are off by its inverse, and each with the narrow interval of the scale."""
+    base, runs, off = fly_off(tmp_path, WEAKER)
+    other = FilterBank.design(runs, base, FIRST_NOISE)
+    found = fitted(other, ("surge", "sway"))
+    assert "thruster_gain.all" not in found.hypothesis.parameter_names
+    final, _ = settle_whole_file(fit_whole_file(found, other), found.hypothesis, other)
+    assert np.abs(miss(final, off)).max() < 3.5
+    (gain,) = (t.effect["all"] for t in final.hypothesis.terms if t.id == "thruster_gain")
+    assert gain == pytest.approx(WEAKER, abs=0.1)
 
 
 @pytest.mark.parametrize("axes", [("surge", "sway"), ("surge", "sway", "heave", "yaw"), AXES])

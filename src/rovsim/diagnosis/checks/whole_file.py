@@ -5,7 +5,8 @@ were selected it is not, and what was left as it was draws the others away: thru
 drag share a factor that little but such numbers fixes. So in the end all that the file states is
 fitted, each number beside what is known of such files (`nominal_terms.py`). Then what is not sure,
 or nobody would miss, is left out again, at the gain that was found: the others take what it did,
-and their intervals stay those of all together.
+and their intervals stay those of all together. The gain itself stays where it is surely not what
+the file says, although replays without it are as good: the others were all off by one factor.
 
 A file may also be wrong in a few things alone. Where the runs find all other drag and added mass to
 be what the file says, far closer than such files are known to be, it is right elsewhere, and what
@@ -108,7 +109,7 @@ def settle_whole_file(
     h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
     untold = new & (whole.std > TOLD * _know(selected, h).std)
     owner = np.array([term.id for term in h.terms for _ in term.free])
-    named = {term.id for term in selected.terms}
+    named = {term.id for term in selected.terms} | _name_gain(whole)
     sure = {one for one in set(owner) - named if _is_sure(whole, (owner == one) & ~untold)}
     gone = untold | ~np.isin(owner, list(named))
     while left := sorted(sure - named):
@@ -123,6 +124,16 @@ def settle_whole_file(
     gain = _share_gains(h)
     variance = float(gain @ whole.covariance @ gain)
     return final, describe_scale(final, variance, whole.covariance[~gone] @ gain / variance)
+
+
+def _name_gain(whole: Fit) -> set[str]:
+    """The gain of all thrusters, if it is surely not what the file says.
+
+    No replay would miss it: all others, wrong by its inverse, would make up for it.
+    """
+    gain = mark_gain(whole.hypothesis)
+    sure = gain.any() and whole.distance(gain) > chi2.isf(FALSE_ALARM, 1)
+    return {ThrusterGain.id} if sure else set()
 
 
 def _share_gains(h: Hypothesis) -> Array:
