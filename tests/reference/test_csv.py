@@ -76,7 +76,7 @@ def test_demands_go_to_the_axes_they_name(tmp_path):
 def test_command_lines_are_sorted_the_last_of_equals_holds_and_empty_ones_go(tmp_path):
     folder = write_run(tmp_path)
     lines = ["time_s,t1,t2", "0.00,1500,1500", "0.04,1520,1500", "0.02,1510,1500", "0.06,1530,1500",
-             "0.06,1540,1500", "0.08,,1500", "0.10,nan,1500", "0.12,1560,1500"]  # fmt: skip
+             "0.06,1540,1500", "0.08,,", "0.10,nan,nan", "0.12,1560,1500"]  # fmt: skip
     write_lines(folder / "commands.csv", lines)
     recording, anomalies = read_run(load_campaign(folder), "one")
     np.testing.assert_allclose(recording.commands.time, [0, 0.02, 0.04, 0.06, 0.12])
@@ -91,6 +91,23 @@ def test_command_lines_are_sorted_the_last_of_equals_holds_and_empty_ones_go(tmp
     remarks = " ".join(assess(recording, anomalies).remarks)
     assert "2 command lines without a value" in remarks
     assert "held over them" in remarks
+
+
+def test_an_empty_cell_of_a_log_of_changes_means_the_value_before(tmp_path):
+    lines = ["time_s,t1,t2", "0.00,,1600", "0.02,1500,", "0.06,1580,", "0.04,,1700", "0.08,,",
+             "0.10,nan,1500", "0.12,1540,"]  # fmt: skip
+    log = commands(tmp_path, lines)
+    np.testing.assert_allclose(log.time, [0.02, 0.06, 0.04, 0.10, 0.12])
+    pulses = [[1500, 1600], [1580, 1700], [1500, 1700], [1580, 1500], [1540, 1500]]
+    np.testing.assert_allclose(1500 + 400 * log.value, pulses)
+    assert log.counts["dropped"] == 2  # before t1 had a value, and a line without any
+    assert log.notes[0].startswith("5 cells of the commands are empty beside others")
+
+
+def test_an_input_that_was_not_given_is_not_the_value_before(tmp_path):
+    log, lines = radio(["surge", "yaw"], rows=("1500,1900", "65535,1100", ",1300", "1600,"))
+    found = read_commands(write_lines(tmp_path / "rc.csv", lines), log)
+    np.testing.assert_allclose(found.value[:, [0, 5]], [[0, 1], [0.25, -0.5]])
 
 
 def test_poses_and_commands_may_share_a_file_with_words_in_it(tmp_path):

@@ -19,9 +19,10 @@ HEAVE = AXES.index("heave")
 
 
 def read_commands(path: Path, log: CommandLog) -> CommandExport:
-    """Read commands; lines with an empty or NaN cell are left out and counted.
+    """Read commands; lines without any value are left out and counted.
 
-    Demands that are pulses of a radio, in us, are seen by their size.
+    In other lines the value before holds in an empty or NaN cell. Demands that are pulses of a
+    radio, in us, are seen by their size.
 
     Raises:
         BadInput: not such a file, or values no such command can have.
@@ -34,8 +35,31 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
         return f"{path}, line {table.numbers[line]}, column '{log.names[column]}'"
 
     time, value = times(table, places[0]), numbers(table, places[1:])
-    value, notes = _of_a_radio(value, log)
-    return as_commands(time, value, log, place, {"cut_lines": cut}, pulses=bool(notes), notes=notes)
+    own = slice(len(log.names))
+    value[:, own], held = _held(time, value[:, own])
+    value, radio = _of_a_radio(value, log)
+    notes = (*radio, *held)
+    return as_commands(time, value, log, place, {"cut_lines": cut}, pulses=bool(radio), notes=notes)
+
+
+def _held(time: Array, value: Array) -> tuple[Array, tuple[str, ...]]:
+    """Values (m, c) where a log tells changes only, and what to say about it.
+
+    Each column holds from one value to the next; lines without any value stay without.
+    """
+    order = np.argsort(time, kind="stable")
+    given = ~np.isnan(value[order])
+    some = given.any(axis=1)[:, None]
+    last = np.maximum.accumulate(np.where(given, np.arange(len(time))[:, None], -1), axis=0)
+    taken = some & ~given & (last >= 0)
+    if not taken.any():
+        return value, ()
+    held = value.copy()
+    held[order] = np.where(taken, np.take_along_axis(value[order], last, axis=0), value[order])
+    return held, (
+        f"{taken.sum()} cells of the commands are empty beside others that are not: the value "
+        "before holds on.",
+    )
 
 
 def _of_a_radio(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
