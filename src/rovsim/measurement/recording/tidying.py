@@ -10,12 +10,15 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, Logged
 from rovsim.measurement.recording.channels import Channels, tidy
 from rovsim.measurement.recording.readers import CommandExport, Export
+from rovsim.measurement.recording.repeated import without_repeated
 
 RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
 
 
 def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
     """Sort by time, keep the first of equal times, and check the rate; count what was wrong.
+
+    Poses that only repeat the one before are no measurements.
 
     Raises:
         BadInput: neither poses nor a channel of two samples.
@@ -44,7 +47,7 @@ def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
         nu=None if export.nu is None else export.nu[keep],
         channels=channels,
     )
-    return tidied, counts
+    return without_repeated(tidied), counts
 
 
 def _nothing(export: Export, frames: int, path: Path) -> BadInput:

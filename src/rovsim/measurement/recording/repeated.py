@@ -1,0 +1,152 @@
+"""Poses that are those of the line before, bit by bit: a slow camera, or a body out of sight.
+
+A vehicle at rest repeats its pose as well where nothing is noisy or few digits are written. So what
+counts is how the repetition begins and ends: a vehicle stops and sets off slowly, while one that
+moved on unseen jumps.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import conjugate, continuous, log, multiply
+from rovsim.measurement.recording.readers import Export
+
+# A camera slower than its log: nearly all poses stand in several lines, most of them in as many.
+FEWEST, NEARLY_ALL, MOST = 20, 0.9, 0.8  # poses; shares
+UNEVEN = 0.2  # of the lines of a pose; one line at least
+NEARBY = 3  # steps to either side that tell how fast the vehicle moves
+# The step after a repetition, in the fastest steps nearby: of one line, which a steady motion
+# doubles, and of more. It makes up for the time, and is more than a change of the last digit.
+JUMP, JUMP_OF_MORE = 1.5, 2.0
+MAKES_UP = 3.0
+SLOWED = 1 / 3  # of the steps nearby: the last one before a halt is a fifth, if it brakes evenly
+DIGITS = 3.0
+SMALLEST = 1.0  # percentile of the steps that are any: the last digit, or less than the noise
+ROUNDING = 1e-9  # m, rad: no step
+SEVERAL = 4  # frames: what moves until then and from then on does not rest for so long
+
+
+def without_repeated(export: Export) -> Export:
+    """Poses in order of time, without those that nobody measured at their time.
+
+    A camera slower than its log: the first line of each pose is left. Poses that are repeated while
+    the vehicle moves count as not found. Not of poses with means of velocities.
+    """
+    seen = _Seen.of(export)
+    if export.nu is not None or not seen.same.any():
+        return export
+    lines = _lines_of_a_pose(seen)
+    if lines > 1:
+        export = _slower(export, seen, lines)
+        seen = _Seen.of(export)
+    frozen = seen.frame[_find_frozen(seen)]
+    if not len(frozen):
+        return export
+    found = export.found.copy()
+    found[frozen] = False
+    said = (
+        f"{len(frozen)} frames repeat the pose before them to the last digit while the vehicle "
+        "moves: they count as not found."
+    )
+    return replace(export, found=found, notes=(*export.notes, said))
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """The frames (n,) in which the body was found, and which are the `same` (n - 1,) as before."""
+
+    frame: Array
+    time: Array
+    position: Array
+    attitude: Array
+    same: Array
+
+    @staticmethod
+    def of(export: Export) -> "_Seen":
+        frame = np.flatnonzero(export.found)
+        position, attitude = export.position[frame], export.attitude[frame]
+        pose = np.hstack([position, attitude])
+        same = (pose[1:] == pose[:-1]).all(axis=1)
+        return _Seen(frame, export.time[frame], position, attitude, same)
+
+    def runs(self) -> Iterator[tuple[int, int]]:
+        """First frame and number of frames of each pose."""
+        first = np.concatenate([[0], np.flatnonzero(~self.same) + 1])
+        count = np.diff(np.append(first, len(self.frame)))
+        return zip(first.tolist(), count.tolist(), strict=True)
+
+    def steps(self) -> tuple[Array, Array]:
+        """How far (n - 1,) m the vehicle moved, and how far (n - 1,) rad it turned."""
+        q = continuous(self.attitude)
+        turns = log(multiply(conjugate(q[:-1]), q[1:]))
+        return np.linalg.norm(np.diff(self.position, axis=0), axis=1), np.linalg.norm(turns, axis=1)
+
+
+def _lines_of_a_pose(seen: _Seen) -> int:
+    """In how many lines each pose stands; 1 where that is not regular."""
+    count = np.array([n for _, n in seen.runs()])
+    usual = int(np.median(count))
+    if usual < 2 or len(count) < FEWEST:
+        return 1
+    near = np.abs(count - usual) <= max(1.0, UNEVEN * usual)
+    return usual if np.mean(count > 1) >= NEARLY_ALL and np.mean(near) >= MOST else 1
+
+
+def _slower(export: Export, seen: _Seen, lines: int) -> Export:
+    """One of so many lines of each pose; a pose that holds longer stays one at the usual times."""
+    kept = ~export.found
+    for first, count in seen.runs():
+        kept[seen.frame[first : first + max(count - lines, 0) + 1 : lines]] = True
+    rows = {n: getattr(export, n)[kept] for n in ("time", "position", "attitude", "found")}
+    said = f"Each pose stands in {lines} lines or so: the camera is slower than the log."
+    return replace(export, **rows, rate=None, notes=(*export.notes, said))
+
+
+def _find_frozen(seen: _Seen) -> Array:
+    """Which of the frames repeat a pose that the vehicle has left."""
+    frozen = np.zeros(len(seen.frame), bool)
+    ways = [_Way(step, np.diff(seen.time)) for step in seen.steps()]
+    for first, count in seen.runs():
+        if count > 1 and any(way.left(first, count) for way in ways):
+            frozen[first + 1 : first + count] = True
+    return np.flatnonzero(frozen)
+
+
+class _Way:
+    """Steps (n - 1,) of a vehicle, in m or rad, that took so many s."""
+
+    def __init__(self, step: Array, took: Array) -> None:
+        self.step, self.took, self.speed = step, took, step / took
+        some = step[step > ROUNDING]
+        self.seen = DIGITS * float(np.percentile(some, SMALLEST)) if len(some) else np.inf
+
+    def left(self, first: int, count: int) -> bool:
+        """Whether the vehicle has left the pose of these frames, and goes on elsewhere."""
+        end = first + count - 1
+        before, after = slice(max(first - NEARBY, 0), first), slice(end + 1, end + 1 + NEARBY)
+        if count >= SEVERAL and self._moves(self.step[before][::-1]):
+            stays = end == len(self.step)
+            if stays or self._moves(self.step[end : end + NEARBY]):
+                return True
+        return self._jumped(before, after, first, end)
+
+    def _moves(self, steps: Array) -> bool:
+        """Whether steps, the one beside a repetition first, are those of a vehicle under way."""
+        return bool(len(steps) and steps.sum() > NEARBY * self.seen
+                    and steps[0] > SLOWED * steps.max())  # fmt: skip
+
+    def _jumped(self, before: slice, after: slice, first: int, end: int) -> bool:
+        """Whether the step that follows makes up for the time."""
+        if end >= len(self.step):
+            return False
+        fastest = max(self.speed[before].max(initial=0.0), self.speed[after].max(initial=0.0))
+        jump = JUMP if end == first + 1 else JUMP_OF_MORE
+        held = float(self.took[first : end + 1].sum())
+        return bool(
+            self.step[end] > self.seen
+            and self.speed[end] > jump * fastest
+            and self.step[end] <= MAKES_UP * fastest * held
+        )
