@@ -296,6 +296,13 @@ def test_forces_and_moments_have_spectra_of_their_own():
         np.testing.assert_array_equal(line.get_ydata(), density[1:, i])
 
 
+def test_runs_without_strong_moments_leave_the_panels_their_room():
+    force = study()["disturbance"]
+    calm = [force.runs[0].model_copy(update={"run": name}) for name in ("calm", "calmer")]
+    quiet = force.model_copy(update={"runs": (*force.runs, *calm)})
+    show(drawn("disturbance", {"disturbance": quiet}))  # it would warn of panels without room
+
+
 def test_a_disturbance_of_an_earlier_version_is_drawn_without_a_spectrum():
     force = study()["disturbance"].model_copy(update={"spectrum": None})
     axes = drawn("disturbance", {"disturbance": force}).axes

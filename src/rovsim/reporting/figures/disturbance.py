@@ -99,11 +99,7 @@ def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Dist
     x, y, _ = np.array(run.place_m).T
     axes.plot(x, y, color="#BBBBBB", linewidth=0.6, zorder=1)
     axes.scatter(x, y, c=np.array(run.force)[:, i], cmap=COLORS, norm=scale, s=8, zorder=2)
-    strong = _list_strong(run, force)
-    axes.plot(
-        [p.place_m[0] for p in strong], [p.place_m[1] for p in strong], "o", fillstyle="none",
-        color=FAMILIES["nominal"].color, markersize=8, zorder=3, clip_on=False,
-    )  # fmt: skip
+    _circle(axes, [p.place_m[:2] for p in _list_strong(run, force)])
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x (m)")
     axes.set_ylabel(f"{short(run.run)}\ny (m)")
@@ -119,9 +115,19 @@ def _draw_time(axes: Any, run: ForceOfRun, i: int, most: float, force: Disturban
     values = np.array(run.force)[:, i]
     axes.plot(run.time_s, values, **FAMILIES["measured"].line())
     strong = [p for p in _list_strong(run, force) if p.axis == AXES[i]]
-    axes.plot(
-        [p.time_s for p in strong], [p.force for p in strong], "o", fillstyle="none",
-        color=FAMILIES["nominal"].color, markersize=8, clip_on=False,
-    )  # fmt: skip
+    _circle(axes, [(p.time_s, p.force) for p in strong])
     axes.set_ylim(-1.1 * most, 1.1 * most)
     axes.set_ylabel(f"{AXES[i]} ({FORCE_UNITS[i]})")
+
+
+def _circle(axes: Any, places: Sequence[Sequence[float]]) -> None:
+    """Circles around points; none at all where there is no point.
+
+    matplotlib counts a line without points, if it is not clipped, to the corner of the figure.
+    """
+    if places:
+        x, y = zip(*places, strict=True)
+        axes.plot(
+            x, y, "o", fillstyle="none",
+            color=FAMILIES["nominal"].color, markersize=8, zorder=3, clip_on=False,
+        )  # fmt: skip
