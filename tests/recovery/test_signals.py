@@ -32,12 +32,12 @@ def noisy(eta, rng):
     return np.concatenate([position, rotations.multiply(eta[:, 3:], turn)], axis=1)
 
 
-def record(time, eta, found=None, nu=None):
+def record(time, eta, found=None, nu=None, rate=RATE):
     found = np.ones(len(time), bool) if found is None else found
     eta = np.where(found[:, None], eta, np.nan)
     commands = Commands(time[:1], np.zeros((1, 8)), "thruster")
     run = RunInfo("3dof-1", "3dof", "train")
-    return Recording(run, Site.unknown(), time, eta[:, :3], eta[:, 3:], found, commands, RATE, nu)
+    return Recording(run, Site.unknown(), time, eta[:, :3], eta[:, 3:], found, commands, rate, nu)
 
 
 def swap_markers(eta, at, length, size, turn, rng):
@@ -99,6 +99,52 @@ def test_fast_honest_motion_is_kept(method, seed, speed, rate, hz, dropped):
     found = rng.random(len(t)) >= dropped
     mask = find_outliers(record(t, noisy(truth(t, speed, rate, hz)[0], rng), found), method)
     assert not mask.any()
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    camera=st.sampled_from([8.0, 10.0, 20.0, 25.0]),
+    speed=st.floats(0, 1.2),
+    rate=st.floats(0, 4.0),
+    hz=st.floats(0.1, 0.8),
+    jitter=st.floats(0, 0.1),
+    dropped=st.floats(0, 0.2),
+)
+def test_fast_honest_motion_is_kept_of_slow_cameras(seed, camera, speed, rate, hz, jitter, dropped):
+    rng = np.random.default_rng(seed)
+    t = (np.arange(600) + jitter * rng.uniform(-1, 1, 600)) / camera
+    found = rng.random(len(t)) >= dropped
+    eta = noisy(truth(t, speed, rate, hz)[0], rng)
+    assert not find_outliers(record(t, eta, found, rate=camera), VelocityGate()).any()
+
+
+@pytest.mark.parametrize("camera", [10.0, 20.0])
+def test_a_vehicle_that_is_stopped_dead_is_kept(camera):
+    t = np.arange(400) / camera
+    eta = noisy(truth(t, speed=0.0, rate=0.0)[0], np.random.default_rng(3))
+    for shift in (0.0, 0.3, 0.7):
+        eta[:, 0] = np.minimum(1.4 * t, 1.4 * (10.0 + shift / camera))
+        assert not find_outliers(record(t, eta, rate=camera), VelocityGate()).any()
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    size=st.floats(0.08, 1.0),
+    turn=st.floats(0.0, 1.0),
+    hz=st.floats(0.1, 0.4),
+)
+def test_a_jump_of_one_frame_is_found_of_slow_cameras(seed, size, turn, hz):
+    """Below what the vehicle could travel in a step of 0.1 s, too."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(400) / 10.0
+    eta = noisy(truth(t, hz=hz)[0], rng)
+    places = np.sort(rng.choice(np.arange(2, 66), 4, replace=False)) * 6
+    for at in places:
+        swap_markers(eta, at, 1, size, turn, rng)
+    mask = find_outliers(record(t, eta, rate=10.0), VelocityGate())
+    np.testing.assert_array_equal(np.flatnonzero(mask), places)
 
 
 @settings(deadline=None, max_examples=10)

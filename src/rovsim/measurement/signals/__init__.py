@@ -2,6 +2,7 @@
 
 clock            uniform clocks, and the usable stretches on them
 outliers         frames that cannot be true
+neighbours       single ones that are not where their neighbours have them
 resample         poses on a uniform clock; long gaps stay gaps
 chosen_channels  which channels tell how a vehicle turned and moved
 on_clock         channels on a uniform clock

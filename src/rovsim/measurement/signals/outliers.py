@@ -10,6 +10,7 @@ from rovsim.core import rotations
 from rovsim.core.normal import STD_PER_MAD
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.neighbours import beside_cubic, find_far
 
 # How far back the gate looks for a stretch to continue from; bounds the work on hopeless runs.
 LOOK_BACK = 1000
@@ -18,6 +19,10 @@ LOOK_BACK = 1000
 DETOUR = 3.0
 # Likewise for leaving out an end of the run, where a swap can be judged from one side only.
 CUT_END = 1.0
+# s: from such steps on, frames are compared with their neighbours; of faster cameras the filter
+# takes away what the gate lets pass.
+SLOW = 0.04
+DEAD_STOP = 1.0 / 3.0  # of a step: how far a cubic through the neighbours misses a sudden stop
 
 
 class VelocityGate(Section):
@@ -27,6 +32,11 @@ class VelocityGate(Section):
     together when the second is within reach of the first. A jump that stays below `max_speed` x
     step + `tolerance` passes, and so does a lone frame between dropouts that is within reach. One
     or two good frames between a swap and the end of the run are rejected with the swap.
+
+    Steps of a slow camera are long, and jumps that pass are far. There a frame is rejected, too,
+    that is not where a cubic through two frames to either side has it: by more than a third of the
+    longest step, as far as a vehicle at full speed deviates that stops dead, and by far more than
+    frames nearby.
     """
 
     kind: Literal["velocity_gate"] = "velocity_gate"
@@ -41,11 +51,36 @@ class VelocityGate(Section):
 
     def rejected(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
         """Mask (n,) of the found frames, `step` s apart, that are not in the chain."""
+        if step < SLOW:
+            return ~self._chained(time, position, attitude, step)
+        kept, before = np.arange(len(time)), -1
+        while len(kept) != before:
+            before = len(kept)
+            jumps = self._there_and_back(time[kept], position[kept], attitude[kept], step)
+            kept = kept[~jumps]
+            if not jumps.any():  # one that is within reach of one side alone would part the chain
+                kept = kept[self._chained(time[kept], position[kept], attitude[kept], step)]
+        return ~np.isin(np.arange(len(time)), kept)
+
+    def _chained(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
+        """Mask (n,) of the frames in the chain."""
         starts, ends = _stretches(self, time, position, attitude, step)
-        mask = np.ones(len(time), bool)
+        mask = np.zeros(len(time), bool)
         for piece in _longest_chain(self, time, position, attitude, step, starts, ends):
-            mask[starts[piece] : ends[piece] + 1] = False
+            mask[starts[piece] : ends[piece] + 1] = True
         return mask
+
+    def _there_and_back(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
+        """Mask (n,) of single frames of a slow camera that are far from where others have them."""
+        if len(time) < 5:
+            return np.zeros(len(time), bool)
+        off = beside_cubic(time, position, step)
+        turned = beside_cubic(time, rotations.continuous(attitude), step)
+        turned = 4.0 * np.arcsin(np.clip(turned / 2.0, 0.0, 1.0))
+        share = DEAD_STOP * step
+        return find_far(off, self.max_speed * share + self.tolerance) | find_far(
+            turned, self.max_rate * share + self.angle_tolerance
+        )
 
 
 class Hampel(Section):
