@@ -9,6 +9,7 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.normal import STD_PER_MAD
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
+from rovsim.measurement.means import doubt_means
 from rovsim.measurement.recording.channels import KINDS
 from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
@@ -76,7 +77,8 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         channels=_describe_channels(recording),
     )
     others = (*remark(report), *anomalies.notes)
-    return report.model_copy(update={"remarks": others}).doubted(*doubt(report))
+    doubts = (*doubt(report), *doubt_means(recording))
+    return report.model_copy(update={"remarks": others}).doubted(*doubts)
 
 
 def usable_reason(recording: Recording) -> str | None:

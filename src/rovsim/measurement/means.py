@@ -1,0 +1,73 @@
+"""Whether body velocities beside poses are means from line to line: the poses may tell."""
+
+from typing import Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import conjugate, continuous, exp, log, multiply, unrotate
+from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.binned import LONG_BIN
+
+FEWEST = 50  # steps
+NEARER = 0.85  # of the differences, over the axes: noise alone comes to 1
+UNEVEN = 0.1  # of a step, standard deviation: then means of poses and velocities can be told apart
+APART = 1.1  # of the differences
+
+
+def doubt_means(recording: Recording) -> Iterator[str]:
+    """Say so where velocities that are read as means hold at the times of the poses.
+
+    Means over the same times as poses that are means are as near to those: with even steps nobody
+    can tell, with others that fits better or not.
+    """
+    differences = _differences(recording)
+    if differences is None:
+        return
+    to_next, at_times, both_means, even = differences
+    if _ratio(at_times, to_next) < NEARER and (even or _ratio(both_means, at_times) > APART):
+        yield (
+            "The body velocities fit the poses as values at their times, not as means from line to "
+            "line: write 'velocity: instant' below 'mocap'. Only where the poses are means over "
+            "the same times as the velocities, leave it: the two look alike."
+        )
+
+
+def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | None:
+    """How far (6,) motion from pose to pose is from three readings of the velocities.
+
+    Means to the next line, values at the lines, and means of poses as well; whether steps are even.
+    None where there are too few steps.
+    """
+    time, nu = recording.time, recording.nu
+    if nu is None:
+        return None
+    step = np.diff(time)
+    moved = _moved(recording) / step[:, None]
+    length = np.append(step, np.median(step))[:, None]
+    passed = length * nu
+    readings = (
+        nu[:-1],
+        0.5 * (nu[:-1] + nu[1:]),
+        0.5 * (passed[:-1] + passed[1:]) / step[:, None],
+    )
+    good = np.isfinite(np.hstack([moved, *readings])).all(axis=1)
+    good &= step < LONG_BIN * np.median(step)
+    if good.sum() < FEWEST:
+        return None
+    to_next, at_times, both = (np.median(np.abs(moved - x)[good], axis=0) for x in readings)
+    return to_next, at_times, both, bool(np.std(step[good]) < UNEVEN * np.mean(step[good]))
+
+
+def _moved(recording: Recording) -> Array:
+    """Way and turn (n - 1, 6) from pose to pose, along the body's axes halfway."""
+    q = continuous(recording.attitude)
+    turn = log(multiply(conjugate(q[:-1]), q[1:]))
+    halfway = multiply(q[:-1], exp(0.5 * turn))
+    return np.hstack([unrotate(halfway, np.diff(recording.position, axis=0)), turn])
+
+
+def _ratio(one: Array, other: Array) -> float:
+    """How much nearer one is than the other, as a mean over the axes that moved at all."""
+    known = (one > 0.0) & (other > 0.0)
+    return float(np.exp(np.mean(np.log(one[known] / other[known])))) if known.any() else 1.0
