@@ -284,3 +284,16 @@ def test_percent_beside_poses_and_of_axes_are_told(tmp_path):
     write_lines(axes / "poses_commands.csv", percent("surge,yaw"))
     main(["init", str(axes), "-q"])
     assert "beyond -1 and 1 (-80 to 80). If these are percent, divide them by 100" in told(axes)
+
+
+def test_columns_that_nothing_uses_are_named(tmp_path, capsys):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    lines = (tmp_path / "poses.csv").read_text().splitlines()
+    own = [f"{line},{k % 7 if k else 'altitude'},{0.1 * k if k else 'gyro_x'}"
+           for k, line in enumerate(lines)]  # fmt: skip
+    write_lines(tmp_path / "poses.csv", own)
+    write_lines(tmp_path / "poses_commands.csv", command_lines(12.0))
+    main(["init", str(tmp_path)])
+    assert "not used: altitude, gyro_x (in poses.csv)" in unfolded(capsys.readouterr().out)
+    assert "poses.csv: not used: altitude, gyro_x" in told(tmp_path)
+    assert "poses_commands.csv: not used" not in told(tmp_path)

@@ -280,3 +280,19 @@ def flat(content, place="") -> dict:
         here = f"{place}.{key}"
         found |= flat(value, here) if isinstance(value, dict | list) else {here: value}
     return found
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("dropped", [["x_m", "y_m", "z_m"], ["z_m"]])
+def test_axes_that_nobody_measured_raise_no_alarm(flown, tmp_path, dropped):
+    for run, swim in flown.swims.items():
+        lines = write_poses(tmp_path, "csv", swim).read_text().splitlines()
+        kept = [k for k, name in enumerate(lines[0].split(",")) if name not in dropped]
+        rows = (line.split(",") for line in lines)
+        write_lines(tmp_path / f"{run}.csv", [",".join(row[k] for k in kept) for row in rows])
+    (tmp_path / "poses.csv").unlink()
+    logs(flown, tmp_path)
+    _, text = init(tmp_path)
+    assert "likeness nan" not in text
+    assert "hardly follows" not in text
+    assert "CHECK" not in text

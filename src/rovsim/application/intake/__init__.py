@@ -15,6 +15,7 @@ draft          a proposal in the making: content, comments and questions by plac
 runs           the runs of a proposal: names, control, split and files
 sections       the other sections: what is known, what is guessed, what is asked
 proposal       what is known, and what is left to ask
+unread         columns of their files that nothing uses
 places         where the recordings lie beside the file
 compose        from files to a proposal
 yaml_file      the proposal as a commented campaign.yaml

@@ -75,10 +75,15 @@ def _told(mirror: Array) -> str:
 
 
 def _alike(a: Array, b: Array) -> Array:
-    """Correlations (c,) of columns, where all are known."""
+    """Correlations (c,) of columns, where all that were measured are known; else NaN."""
+    here = np.isfinite(a).any(axis=0) & np.isfinite(b).any(axis=0)
+    found = np.full(a.shape[1], np.nan)
+    a, b = a[:, here], b[:, here]
     known = np.isfinite(a).all(axis=1) & np.isfinite(b).all(axis=1)
-    a, b = (x[known] - x[known].mean(axis=0) for x in (a, b))
-    return (a * b).mean(axis=0) / np.maximum(a.std(axis=0) * b.std(axis=0), 1e-12)
+    if known.any() and here.any():
+        a, b = (x[known] - x[known].mean(axis=0) for x in (a, b))
+        found[here] = (a * b).mean(axis=0) / np.maximum(a.std(axis=0) * b.std(axis=0), 1e-12)
+    return found
 
 
 def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag: float) -> str:
@@ -88,7 +93,7 @@ def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag
         return ""
     if commands.kind != "thruster":
         return ""
-    nu = measured.nu @ np.kron(np.eye(2), axes)
+    nu = _turned(measured.nu, axes)
     scores = {
         label: _score(nu, measured.time - lag, Commands(commands.time, value, "thruster"), fit)
         for label, value in _orders(commands.value, fit.columns)
@@ -103,12 +108,21 @@ def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag
     )
 
 
+def _turned(nu: Array, axes: Array) -> Array:
+    """Velocities (n, 6) along FRD, of those along a file's axes; NaN stays with its axis."""
+    place = np.argmax(np.abs(axes), axis=0)
+    sign = axes[place, np.arange(3)]
+    return np.hstack([nu[:, place] * sign, nu[:, 3 + place] * sign])
+
+
 def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
     """How alike body velocities (n, 6) FRD and those that commands cause are."""
     push = held(commands.time, wrench(fit.vehicle, commands), time)
     caused = respond(fit.vehicle, push, time_step(time))
     excited = caused.std(axis=0) > EXCITED
-    return float(_alike(nu, caused)[excited].mean()) if excited.any() else 0.0
+    alike = _alike(nu, caused)[excited]
+    measured = np.isfinite(alike)
+    return float(alike[measured].mean()) if measured.any() else 0.0
 
 
 def _orders(value: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:

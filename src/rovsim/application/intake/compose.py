@@ -11,6 +11,7 @@ from rovsim.application.intake.facts import Facts, find_facts
 from rovsim.application.intake.places import Places
 from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.intake.runs import missing, runs
+from rovsim.application.intake.unread import list_unread, tell_unread
 from rovsim.measurement.survey.timing import Timing
 
 
@@ -32,12 +33,13 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal
     sections.mocap(facts, draft)
     sections.commands(facts, draft)
     runs(facts, places, draft)
+    tell_unread(facts, draft)
     notes = dict.fromkeys(note for one in (*found.motions, *found.logs) for note in one.notes)
     return CampaignProposal(
         draft.content,
         {place: tuple(lines) for place, lines in draft.comments.items()},
         tuple(draft.questions),
-        (*_lines(facts), *notes, *found.left_out),
+        (*_lines(facts), *notes, *list_unread(facts, draft), *found.left_out),
         (*found.apart, *_checked(facts)),
         places.copies,
     )

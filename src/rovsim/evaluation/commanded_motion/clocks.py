@@ -17,9 +17,12 @@ FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
 def tell_following(found: CrossCorrelation, axes: Array) -> str:
     """That a motion hardly follows its commands, or too late or too early; else nothing.
 
-    Body axes being `axes` (3, 3).
+    Body axes being `axes` (3, 3). Where commanded axes were not measured, a low likeness of the
+    others tells nothing.
     """
     score, lag = found.best(axes)
+    if score < MIN_CORRELATION and found.unseen:
+        return ""
     if score < MIN_CORRELATION:
         return (
             f"the motion hardly follows its commands (likeness {score:.2f}): another log, another "

@@ -29,13 +29,15 @@ class CrossCorrelation:
     """Correlations (l, 6, 6) of measured along file axes with commanded along FRD, by lag (l,) s.
 
     A positive lag: the motion comes after its commands. `excited` (6,): the axes that the commands
-    move enough to be seen. `strength`: measured over commanded speed, 1 for the right vehicle.
+    move enough to be seen; `unseen`: whether they move others that nobody measured.
+    `strength`: measured over commanded speed, 1 for the right vehicle.
     """
 
     lag: Array
     correlation: Array
     excited: Array
     strength: float
+    unseen: bool = False
 
     def along(self, axes: Array) -> Array:
         """Mean correlation (l,) over the excited axes, the file's body axes being `axes` (3, 3).
@@ -103,11 +105,11 @@ def cross_correlate(
     # the measured stands `k` steps into the commanded: lag = (count - k) * step
     lags = step * (count - np.arange(len(table)))
     known = np.isfinite(table).all(axis=(1, 2))
-    excited = here & (commanded.std(axis=0) > EXCITED)
+    moved = commanded.std(axis=0) > EXCITED
+    excited = here & moved
     table = np.where(known[:, None, None], table, 0.0)
-    return CrossCorrelation(
-        lags[::-1] + shift, table[::-1], excited, _strength(nu, commanded, excited)
-    )
+    strength, unseen = _strength(nu, commanded, excited), bool((moved & ~here).any())
+    return CrossCorrelation(lags[::-1] + shift, table[::-1], excited, strength, unseen)
 
 
 def _strength(nu: Array, commanded: Array, excited: Array) -> float:

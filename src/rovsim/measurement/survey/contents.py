@@ -97,7 +97,8 @@ class Contents:
     `path` is what the readers open; `original` the file that was named, another one where only a
     copy with other column names can be read. `notes` are sentences for its owner. `beside`: other
     files of the same run, whose sensors are joined in the track. `unknown`: columns of numbers that
-    are nothing that is known, where there are no commands.
+    are nothing that is known, where there are no commands. `unread`: columns that are no channel;
+    some may be commands.
     """
 
     path: Path
@@ -108,6 +109,7 @@ class Contents:
     notes: tuple[str, ...] = ()
     beside: tuple["Contents", ...] = ()
     unknown: str = ""
+    unread: tuple[str, ...] = ()
 
     @property
     def files(self) -> tuple["Contents", ...]:

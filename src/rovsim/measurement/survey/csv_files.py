@@ -13,6 +13,7 @@ from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.commands import ALLOWED, PERCENT, guess_unit
 from rovsim.measurement.recording.csv import KNOWN, read_csv
 from rovsim.measurement.recording.table import (
+    TIME,
     Lines,
     column_places,
     csv_lines,
@@ -72,7 +73,8 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     tracks = (_track(place),) if known else ()
     drives = () if drive is None else (drive,)
     own = None if place == path else path
-    return Contents(place, "csv", tracks, drives, own, notes, unknown=unknown)
+    unread = tuple(name for name in lines.names if name and name not in (*KNOWN, TIME))
+    return Contents(place, "csv", tracks, drives, own, notes, unknown=unknown, unread=unread)
 
 
 def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
