@@ -297,3 +297,30 @@ def test_columns_that_nothing_uses_are_named(tmp_path, capsys):
     assert "not used: altitude, gyro_x (in poses.csv)" in unfolded(capsys.readouterr().out)
     assert "poses.csv: not used: altitude, gyro_x" in told(tmp_path)
     assert "poses_commands.csv: not used" not in told(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("size", "said"), [(80.0, "percent, divide them by 100"), (800.0, "divide them by 1000")]
+)
+def test_a_wrench_or_percent_is_asked_and_not_taken(tmp_path, capsys, size, said):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    rows = [
+        f"{t:.1f},{size * np.sin(t):.1f},{-size * np.cos(t):.1f}" for t in np.arange(0, 12, 0.1)
+    ]
+    write_lines(tmp_path / "poses_commands.csv", ["time_s,surge,yaw", *rows])
+    main(["init", str(tmp_path)])
+    out = unfolded(capsys.readouterr().out)
+    content = YAML(typ="safe", pure=True).load((tmp_path / "campaign.yaml").read_text())
+    assert content["commands"]["kind"] == content["vehicle"] == ANSWER
+    assert said in told(tmp_path)
+    assert said in out
+    assert "columns of commands: surge, yaw" in out
+
+
+def test_what_was_taken_and_every_guess_is_printed(tmp_path, capsys):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    main(["init", str(tmp_path)])
+    out = unfolded(capsys.readouterr().out)
+    guesses = re.findall(r"guess: ([^,;(]{20,40})", told(tmp_path))
+    assert guesses
+    assert all(guess in out for guess in guesses)

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from rovsim.application.intake.guesses import list_guesses
 from rovsim.application.intake.proposal import ANSWER, CampaignProposal, Question
-from rovsim.apps.workbench.new_campaign import list_guesses, tell_unanswered
+from rovsim.apps.workbench.new_campaign import TOPICS, tell_unanswered
 from rovsim.measurement.survey.timing import Timing
 
 NO_LOG = "guess: no log of commands was among the files"
@@ -18,7 +19,7 @@ def test_a_guess_says_which_run_it_is_of_and_what_a_key_means():
         "runs": ("guess: kept for the test is none",),
         "mocap.velocity": ("guess: a line's velocity is the mean up to the next line",),
     }
-    assert list_guesses(CampaignProposal(content, comments)) == [
+    assert list_guesses(CampaignProposal(content, comments), TOPICS) == [
         "Runs: kept for the test is none",
         "Velocities: mean; a line's velocity is the mean up to the next line",
         "Run run_1: 3dof, by how much its commands turn it",

@@ -18,6 +18,7 @@ proposal       what is known, and what is left to ask
 unread         columns of their files that nothing uses
 places         where the recordings lie beside the file
 compose        from files to a proposal
+guesses        what was taken, and what of it is a guess, for the terminal and the workbench
 yaml_file      the proposal as a commented campaign.yaml
 write          that file, beside the copies it needs
 """

@@ -1,6 +1,6 @@
 """What files tell about a campaign, taken together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Sequence
 
@@ -43,6 +43,11 @@ class Facts:
         paired = [one.log for one in self.pairs if one.log is not None]
         return next(iter([*paired, *self.logs]), None)
 
+    @property
+    def kind_asked(self) -> bool:
+        """Whether only a person can say what kind of commands these are."""
+        return any(log.drive.asked for log in self.logs)
+
 
 def find_facts(found: CollectedFiles) -> Facts:
     """All that the files tell.
@@ -62,7 +67,7 @@ def find_facts(found: CollectedFiles) -> Facts:
         for one in found.motions
     ]
     pairs = pair(motions, logs, score)
-    choice = choose(fits, pairs) if fits else _no_choice(logs)
+    choice = _supposing(logs, choose(fits, pairs) if fits else _no_choice(logs))
     known = body.name or body.choices == ("",)
     own = mocap_readers()[found.motions[0].format].axes
     axes = find_axes(own, [m.track for m in motions], choice.turned if known else ())
@@ -109,6 +114,13 @@ def _check_same(first: CommandFile, log: CommandFile) -> None:
             expected="the same columns in every log of commands",
             remedy="Run init for each kind of log, with another out=.",
         )
+
+
+def _supposing(logs: Sequence[CommandFile], choice: Choice) -> Choice:
+    """No vehicle, where it was compared with commands whose kind has to be asked."""
+    if not any(log.drive.asked for log in logs):
+        return choice
+    return replace(choice, fit=None, said=f"if the commands are N and N m, {choice.said}")
 
 
 def _no_choice(logs: Sequence[CommandFile]) -> Choice:

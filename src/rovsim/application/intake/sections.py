@@ -9,6 +9,7 @@ from rovsim.application.intake.draft import Draft
 from rovsim.application.intake.facts import Facts
 from rovsim.core.shipped import conf_names
 from rovsim.measurement.recording.readers import mocap_readers
+from rovsim.measurement.survey.contents import CommandCandidate
 
 MEANING = {
     "z_up": "right-handed, z up",
@@ -96,8 +97,9 @@ def commands(facts: Facts, draft: Draft) -> None:
     drive, fit = facts.log.drive, facts.choice.fit
     section: dict[str, Any] = {"format": drive.format}
     section |= {"topic": drive.topic} if drive.topic else {}
-    kind = fit.kind if fit else drive.kind
-    section["kind"] = kind or draft.ask("commands.kind", f"What are these ({drive.said})?", KINDS)
+    kind = None if facts.kind_asked else fit.kind if fit else drive.kind
+    asks = f"What are these ({_first_asked(facts).said})?"
+    section["kind"] = kind or draft.ask("commands.kind", asks, _kinds(facts))
     draft.say("commands.kind", drive.said if kind else "")
     section["columns"] = list(fit.columns) if fit else _columns(facts, draft)
     section |= {"axes": list(drive.axes)} if drive.axes else {}
@@ -108,6 +110,19 @@ def commands(facts: Facts, draft: Draft) -> None:
     if others:
         draft.say("commands.topic", f"other commands there: {', '.join(sorted(map(str, others)))}")
     draft.content["commands"] = section
+
+
+def _first_asked(facts: Facts) -> CommandCandidate:
+    """The log whose kind has to be asked, if there is one, else that which stands for all."""
+    assert facts.log is not None
+    asked = (log.drive for log in facts.logs if log.drive.asked)
+    return next(asked, facts.log.drive)
+
+
+def _kinds(facts: Facts) -> dict[str, str]:
+    """Kinds to choose from: columns that are named after axes are one of two."""
+    of_axes = ("demand", "wrench")
+    return {name: KINDS[name] for name in (of_axes if facts.kind_asked else KINDS)}
 
 
 def _columns(facts: Facts, draft: Draft) -> list[str] | str:

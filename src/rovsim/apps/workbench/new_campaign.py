@@ -1,10 +1,11 @@
 """Open, where nobody has described the recordings: what is in them, and what has to be asked."""
 
 from pathlib import Path
-from typing import Any, Callable, Mapping, Sequence
+from typing import Callable, Mapping, Sequence
 
 from nicegui import ui
 
+from rovsim.application.intake.guesses import list_guesses
 from rovsim.application.intake.proposal import CampaignProposal, Question
 from rovsim.apps.workbench.folders import DESCRIPTION, shown
 from rovsim.apps.workbench.parts import Failure, heading, section, text
@@ -12,7 +13,6 @@ from rovsim.core.errors import RovsimError
 from rovsim.reporting.wording import listed
 
 TITLE, QUESTION = "New campaign", "What is in these recordings?"
-GUESS = "guess: "
 TOPICS = {
     "vehicle": "Vehicle",
     "mocap.body": "Body",
@@ -69,7 +69,7 @@ def show(
 
 def _guesses(proposal: CampaignProposal) -> None:
     """What was taken for a reason that may be wrong."""
-    told = list_guesses(proposal)
+    told = list_guesses(proposal, TOPICS)
     if not told:
         return
     section("Taken, and why")
@@ -78,49 +78,11 @@ def _guesses(proposal: CampaignProposal) -> None:
             text(line)
 
 
-def list_guesses(proposal: CampaignProposal) -> list[str]:
-    """What was taken and why, a line each: of the campaign, then of runs, alike ones together."""
-    told: list[str] = []
-    runs: dict[str, list[str]] = {}  # that a reason is of
-    for place, lines in proposal.comments.items():
-        for line in lines:
-            why = line.removeprefix(GUESS)
-            if line == why:
-                continue
-            if place.startswith("runs."):
-                runs.setdefault(why, []).append(_run(proposal, place))
-            else:
-                told.append(f"{TOPICS.get(place, place)}: {_value(proposal, place)}{why}")
-    for why, names in runs.items():
-        told.append(f"Run{'s' if len(names) > 1 else ''} {listed(names)}: {why}")
-    return told
-
-
 def tell_unanswered(questions: Sequence[Question], answers: Mapping[str, str]) -> str:
     """Which questions have no answer by place yet, by what their fields are called."""
     left = [q.place for q in questions if not answers.get(q.place, "").strip()]
     names = listed([TOPICS.get(place, place) for place in left])
     return f"No answer yet: {names}. Answer every question; no file does." if left else ""
-
-
-def _run(proposal: CampaignProposal, place: str) -> str:
-    """Id of the run that a key is of."""
-    return _find(proposal, ".".join(place.split(".")[:2]))["id"]
-
-
-def _find(proposal: CampaignProposal, place: str) -> Any:
-    """What campaign.yaml would hold at a place."""
-    value: Any = proposal.content
-    for part in place.split("."):
-        value = value[int(part)] if isinstance(value, list) else value[part]
-    return value
-
-
-def _value(proposal: CampaignProposal, place: str) -> str:
-    value = _find(proposal, place)
-    is_list = isinstance(value, list) and value and isinstance(value[0], str)
-    told = ", ".join(value) if is_list else value
-    return f"{told}; " if isinstance(told, str) else ""
 
 
 def _field(question: Question) -> Callable[[], str]:

@@ -45,8 +45,9 @@ class Track:
 class CommandCandidate:
     """What looks like commands: `time` (m,) s and `value` (m, c) as logged.
 
-    `kind` None: their size does not say. `said` is how the rest is known. `axes` and `topic` as in
-    the section `commands`; `rest` are other columns of numbers (m,), such as angles of fins.
+    `kind` None: their size does not say; `asked`: it is only the likeliest. `said` is how the rest
+    is known. `axes` and `topic` as in the section `commands`; `rest` are other columns of numbers
+    (m,), such as angles of fins.
     """
 
     format: str
@@ -59,6 +60,7 @@ class CommandCandidate:
     axes: tuple[str, ...] = ()
     auxiliary: tuple[str, ...] = ()
     rest: Mapping[str, Array] = field(default_factory=dict)
+    asked: bool = False
 
     def of(self, names: Sequence[str]) -> Array:
         """Columns (m, len(names)) by their names, of all that there are."""

@@ -33,6 +33,7 @@ WATCHED = re.compile(
     re.IGNORECASE,
 )
 RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
+THOUSANDTHS = 1050.0  # how far shares of a full stick reach that were multiplied by 1000
 SOME = 0.5  # share of the lines in which a column of commands has a value
 
 
@@ -159,8 +160,9 @@ def _drive(lines: Lines) -> CommandCandidate | None:
     value = np.stack([columns[name] for name in chosen], axis=1)
     rest = {name: column for name, column in columns.items() if name not in chosen}
     return CommandCandidate(
-        "csv", tuple(chosen), time, value, kind, said, auxiliary=voltage, rest=rest
-    )
+        "csv", tuple(chosen), time, value, kind, said, auxiliary=voltage, rest=rest,
+        asked=kind == "wrench",
+    )  # fmt: skip
 
 
 def _numbers(table: Lines, place: int) -> Array | None:
@@ -223,12 +225,14 @@ def _range(values: list[Array]) -> tuple[float, float]:
 
 
 def _wrench(values: list[Array]) -> str:
-    """How columns of axes are known to be forces and moments, and what speaks against it."""
+    """What columns of axes beyond shares may be: their size does not tell forces from percent."""
     low, high = _range(values)
     said = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
-    if max(-low, high) > PERCENT:
-        return said
-    return f"guess: {said}. If these are percent, divide them by 100 and write demand"
+    if max(-low, high) <= PERCENT:
+        return f"{said}. If these are percent, divide them by 100 and write demand"
+    if max(-low, high) <= THOUSANDTHS:
+        return f"{said}. If these are thousandths, divide them by 1000 and write demand"
+    return said
 
 
 def _sizes(values: list[Array]) -> str:

@@ -16,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 from rovsim.application.intake.compose import propose
+from rovsim.application.intake.guesses import list_guesses, list_taken
 from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.intake.write import check_place, write_proposal
 from rovsim.application.settings import CommandSettings
@@ -63,6 +64,8 @@ def _bag(path: Path) -> bool:
 
 def _told(proposal: CampaignProposal, file: Path) -> str:
     parts = ["\n".join(f"  {line}" for line in proposal.found)]
+    taken = [*list_taken(proposal), *(f"guess: {line}" for line in list_guesses(proposal))]
+    parts.append("\n".join(f"  {line}" for line in taken))
     if proposal.checks:
         parts.append("\n".join(f"CHECK  {line}" for line in proposal.checks))
     if proposal.questions:
@@ -79,6 +82,8 @@ def _content(proposal: CampaignProposal, file: Path) -> dict:
     return {
         "campaign": str(file),
         "found": proposal.found,
+        "taken": list_taken(proposal),
+        "guesses": list_guesses(proposal),
         "checks": proposal.checks,
         "questions": [
             {"key": q.place, "asks": q.asks, "answers": [v for v, _ in q.answers]}
