@@ -324,3 +324,49 @@ def test_what_was_taken_and_every_guess_is_printed(tmp_path, capsys):
     guesses = re.findall(r"guess: ([^,;(]{20,40})", told(tmp_path))
     assert guesses
     assert all(guess in out for guess in guesses)
+
+
+def free_columns(folder: Path, scales: dict[str, tuple[float, float, float]], turns=0.0) -> None:
+    """Files with columns without a unit: metres, tilt and yaw times these."""
+    time = np.arange(0.0, 30.0, 0.05)
+    for name, (metres, tilt, yaw) in scales.items():
+        place = metres * np.stack([0.8 * np.sin(0.7 * time), np.cos(0.5 * time), 0.1 * time])
+        heading = 0.4 * np.sin(time) + 2.0 * np.pi * turns * time / 30.0
+        angles = [0.1 * tilt * np.sin(time), 0.1 * tilt * np.cos(time), yaw * heading]
+        rows = np.column_stack([time, *place, *angles])
+        lines = (",".join(f"{v:.5f}" for v in row) for row in rows)
+        write_lines(folder / name, ["t,x,y,z,roll,pitch,yaw", *lines])
+
+
+def test_radians_that_count_their_turns_are_asked_for_in_a_folder_too(tmp_path, capsys):
+    free_columns(tmp_path, {"a.csv": (1, 1, 1), "b.csv": (1, 1, 1)}, turns=2.5)
+    said = refused(capsys, tmp_path)
+    assert said.count("rad or degrees?") == 2
+    assert not (tmp_path / "campaign.yaml").exists()
+
+
+def test_a_unit_that_one_file_tells_holds_in_all(tmp_path, capsys):
+    (tmp_path / "raw").mkdir()
+    wide = (1.0, 50.0, 57.3)  # a roll of five degrees is no roll of five rad
+    free_columns(tmp_path / "raw", {"a.csv": wide, "b.csv": (1.0, 10.0, 3.0)})
+    main(["init", str(tmp_path / "raw")])
+    out = unfolded(capsys.readouterr().out)
+    assert "'yaw' is yaw in degrees, by its size" in out
+    assert "'yaw' is yaw in degrees, as in a.csv" in out
+
+
+def test_a_heading_in_degrees_beside_tilts_in_radians_is_asked_for(tmp_path, capsys):
+    free_columns(tmp_path, {"a.csv": (1, 1, 57.3)}, turns=8)
+    text = (tmp_path / "a.csv").read_text().replace("roll,pitch,yaw", "roll_rad,pitch_rad,yaw_rad")
+    (tmp_path / "a.csv").write_text(text)
+    assert "are all of them of one unit?" in refused(capsys, tmp_path)
+
+
+@pytest.mark.parametrize(("scale", "asked"), [(100.0, True), (1000.0, False)])
+def test_centimetres_are_no_millimetres(tmp_path, capsys, scale, asked):
+    free_columns(tmp_path, {"a.csv": (scale, 1, 1), "b.csv": (scale, 1, 1)}, turns=0.4)
+    if asked:
+        assert refused(capsys, tmp_path).count("mm or cm?") == 2
+        return
+    main(["init", str(tmp_path)])
+    assert "'x' is x in mm, by its size" in unfolded(capsys.readouterr().out)

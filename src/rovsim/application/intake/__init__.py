@@ -1,6 +1,7 @@
 """From files that nobody has described to a `campaign.yaml` that a person can finish.
 
 collect_files  all files: what they hold, or one message for each that cannot be used
+one_unit       columns of one name have one unit in all files
 names          what their names say: runs, and which files belong together
 together       files of one run that hold different sensors
 bodies         which body or topic is the vehicle, where a file holds several

@@ -2,13 +2,15 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Sequence
+from typing import Mapping, Sequence
 
+from rovsim.application.intake.one_unit import list_others
 from rovsim.application.intake.together import put_together
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.progress import counted
 from rovsim.measurement.survey import Contents, gather, look
 from rovsim.measurement.survey.csv_files import UnknownColumns
+from rovsim.measurement.survey.sizes import Key, Unit, UnknownUnit
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,18 +36,12 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
         BadInput: no motion in any, or motions of several formats.
     """
     named, inside = gather(paths)
-    found: list[Contents] = []
-    refused: dict[Path, BadInput] = {}
-    for k, path in enumerate(counted([*named, *inside], "looking into the files")):
-        place = scratch / str(k)
-        place.mkdir(parents=True)
-        try:
-            found.append(look(path, place))
-        except BadInput as error:
-            refused[path] = error
-    bad = [str(refused[path]) for path in named if path in refused]
+    every, refused = _look_into_all([*named, *inside], scratch)
+    asked = [path for path in inside if isinstance(refused.get(path), UnknownUnit)]
+    bad = [str(refused[path]) for path in (*named, *asked) if path in refused]
     if bad:
         raise RovsimError("\n".join(bad))
+    found = list(every.values())
     left_out = tuple(
         f"{path.name} is left out: {refused[path].found}." for path in inside if path in refused
     )
@@ -60,6 +56,30 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
         if isinstance(refused.get(path), UnknownColumns)
     ]
     return CollectedFiles(runs, logs, left_out, apart, tuple(unknown))
+
+
+def _look_into_all(
+    paths: Sequence[Path], scratch: Path
+) -> tuple[dict[Path, Contents], dict[Path, BadInput]]:
+    """What each file holds, in their order, or why it cannot be used."""
+    found: dict[Path, Contents] = {}
+    refused: dict[Path, BadInput] = {}
+
+    def look_into(path: Path, units: Mapping[Key, Unit]) -> None:
+        place = scratch / str(paths.index(path))
+        place.mkdir(parents=True, exist_ok=True)
+        try:
+            found[path] = look(path, place, units)
+            refused.pop(path, None)
+        except BadInput as error:
+            refused[path] = error
+            found.pop(path, None)
+
+    for path in counted(paths, "looking into the files"):
+        look_into(path, {})
+    for path, units in list_others(found, refused).items():
+        look_into(path, units)
+    return {path: found[path] for path in paths if path in found}, refused
 
 
 def _check(

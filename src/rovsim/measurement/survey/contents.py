@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.survey.sizes import Key, Unit
 
 LoggedKind = Literal["pwm", "normalized", "demand", "wrench"]
 
@@ -100,7 +101,7 @@ class Contents:
     copy with other column names can be read. `notes` are sentences for its owner. `beside`: other
     files of the same run, whose sensors are joined in the track. `unknown`: columns of numbers that
     are nothing that is known, where there are no commands. `unread`: columns that are no channel;
-    some may be commands.
+    some may be commands. `units`: those that the size of its numbers tells, by names of columns.
     """
 
     path: Path
@@ -112,6 +113,7 @@ class Contents:
     beside: tuple["Contents", ...] = ()
     unknown: str = ""
     unread: tuple[str, ...] = ()
+    units: Mapping[Key, Unit] = field(default_factory=dict)
 
     @property
     def files(self) -> tuple["Contents", ...]:

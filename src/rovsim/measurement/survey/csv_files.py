@@ -1,7 +1,9 @@
 """Motions and commands in csv files."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
+from typing import Mapping
 
 import numpy as np
 from numpy import ndarray as Array
@@ -25,6 +27,7 @@ from rovsim.measurement.recording.tidying import tidy_export
 from rovsim.measurement.recording.times import times
 from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.headings import rewritten
+from rovsim.measurement.survey.sizes import Key, Unit, Units
 
 # Columns that count or watch something, whatever their size.
 WATCHED = re.compile(
@@ -44,15 +47,18 @@ class UnknownColumns(BadInput):
     """Columns of numbers that are neither a measured channel nor commands of a known kind."""
 
 
-def look_into_csv(path: Path, scratch: Path) -> Contents:
+def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = None) -> Contents:
     """Read what a csv file holds, of a copy in `scratch` where its columns have other names.
+
+    `known`: units that other files tell.
 
     Raises:
         BadInput: neither a measured channel nor what looks like commands.
     """
-    place, notes = rewritten(path, scratch)
+    units = Units(known or {})
+    place, notes = rewritten(path, scratch, units)
     try:
-        return _look(path, place, notes)
+        return replace(_look(path, place, notes), units=units.found)
     except UnknownColumns:
         raise
     except BadInput as error:  # of a copy that is gone when its owner reads this

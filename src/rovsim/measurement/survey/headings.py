@@ -25,7 +25,7 @@ from rovsim.measurement.recording.table import (
 from rovsim.measurement.recording.times import LATEST, dates, times
 from rovsim.measurement.survey.column_names import FORMS, UNITS, split_unit
 from rovsim.measurement.survey.quaternions import check_quaternion
-from rovsim.measurement.survey.sizes import find_by_size
+from rovsim.measurement.survey.sizes import Units, find_by_size
 
 SHORTEST_STEP = 2e-4  # s between two lines of any recording
 
@@ -40,15 +40,17 @@ class Column:
     said: str
 
 
-def rewritten(path: Path, scratch: Path) -> tuple[Path, tuple[str, ...]]:
+def rewritten(path: Path, scratch: Path, units: Units) -> tuple[Path, tuple[str, ...]]:
     """The file to read: itself, or a copy in `scratch` with our names and units, and what changed.
+
+    `units`: those that other files tell; it keeps those that are found by size.
 
     Raises:
         BadInput: not a csv file, or its units cannot be told.
     """
     lines = csv_lines(path)
     check_quaternion(lines)
-    found = _columns(lines)
+    found = _columns(lines, units)
     changed = [c for c in found if c.factor != 1.0 or lines.names[c.place] != c.ours]
     if not changed or not any(c.ours == "time_s" for c in found):
         return path, ()
@@ -86,7 +88,7 @@ def _cell(text: str, column: Column | None, filler: float | None) -> str:
     return text if column.factor == 1.0 else repr(value * column.factor)
 
 
-def _columns(lines: Lines) -> list[Column]:
+def _columns(lines: Lines, units: Units) -> list[Column]:
     """Columns that are ours under another name or unit."""
     plain = {k: split_unit(name) for k, name in enumerate(lines.names)}
     places = {
@@ -105,7 +107,7 @@ def _columns(lines: Lines) -> list[Column]:
     seconds = _values(lines, place) * time if dated is None else dated
     for group in (POSITION, EULER, QUATERNION, LINEAR, ANGULAR, ["depth_m"]):
         here = {ours: places[ours] for ours in group if ours in places}
-        columns += _group(lines, here, {k: plain[k][1] for k in here.values()}, seconds)
+        columns += _group(lines, here, {k: plain[k][1] for k in here.values()}, seconds, units)
     return columns
 
 
@@ -158,7 +160,9 @@ def _time(lines: Lines, place: int, unit: str) -> tuple[float, str]:
     return UNITS[name], f" in {name}, by its steps"
 
 
-def _group(lines: Lines, here: dict[str, int], units: dict[int, str], time: Array) -> list[Column]:
+def _group(
+    lines: Lines, here: dict[str, int], units: dict[int, str], time: Array, told: Units
+) -> list[Column]:
     """Columns of one kind; those without a unit in their name get one by their size."""
     if not here:
         return []
@@ -169,7 +173,7 @@ def _group(lines: Lines, here: dict[str, int], units: dict[int, str], time: Arra
         return [Column(n, p, 1.0, "") for n, p in here.items()]
     if names[0] == "depth_m" and is_height(value[:, 0]):
         return _turned(lines, here, units)
-    factor, said = find_by_size(lines, names, value, time)
+    factor, said = find_by_size(lines, here, value, time, told)
     return [
         Column(n, p, UNITS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
         for n, p in here.items()

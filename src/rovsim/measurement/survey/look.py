@@ -1,7 +1,8 @@
 """What a file holds, by the reader of its format."""
 
 from pathlib import Path
-from typing import Callable, Iterator, Sequence
+from types import MappingProxyType
+from typing import Callable, Iterator, Mapping, Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.campaign_file import Mocap
@@ -11,18 +12,21 @@ from rovsim.measurement.survey.bags import look_into_bag
 from rovsim.measurement.survey.contents import Contents, Track
 from rovsim.measurement.survey.csv_files import look_into_csv
 from rovsim.measurement.survey.logs import look_into_log
+from rovsim.measurement.survey.sizes import Key, Unit
 from rovsim.measurement.survey.sniff import sniff
 
 # Formats whose files may hold commands, or sensors to choose from; of others a reader says enough.
-WITH_COMMANDS: dict[str, Callable[[Path, Path], Contents]] = {
+WITH_COMMANDS: dict[str, Callable[[Path, Path, Mapping[Key, Unit]], Contents]] = {
     "csv": look_into_csv,
-    "rosbag2": lambda path, scratch: look_into_bag(path),
-    "ardupilot": lambda path, scratch: look_into_log(path),
+    "rosbag2": lambda path, scratch, units: look_into_bag(path),
+    "ardupilot": lambda path, scratch, units: look_into_log(path),
 }
 
 
-def look(path: Path, scratch: Path) -> Contents:
+def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType({})) -> Contents:
     """What a file or bag holds; a copy that only rovsim can read is put into `scratch`.
+
+    `units`: those that other files tell for columns of the same names.
 
     Raises:
         BadInput: it is no recording, and neither a log of commands.
@@ -30,7 +34,7 @@ def look(path: Path, scratch: Path) -> Contents:
     try:
         name = sniff(path)
         if name in WITH_COMMANDS:
-            return WITH_COMMANDS[name](path, scratch)
+            return WITH_COMMANDS[name](path, scratch, units)
         return _of_bodies(path, mocap_readers()[name])
     except OSError as error:
         raise BadInput(

@@ -1,5 +1,8 @@
 """Units that the size of the numbers tells, where no name does."""
 
+from dataclasses import dataclass, field
+from typing import Callable, Mapping
+
 import numpy as np
 from numpy import ndarray as Array
 
@@ -14,67 +17,151 @@ from rovsim.measurement.survey.column_names import DEGREE, find_unit, split_unit
 FARTHEST = 1000.0  # m
 FASTEST_TURN = 10.0  # rad/s, usual over a recording
 SLOW_ENOUGH = 10.0  # m/s in which a unit of metres is believed
+# Usual speeds in mm/s below this may be cm/s as well: a vehicle at 1.2 m/s, or one that creeps.
+CREEPING = 120.0
+MANY_TURNS = 20.0 * np.pi  # rad: a heading that has turned ten times
+WRAPPED = 5.5  # rad from one line to the next: a heading that begins anew after a turn
+ANGLES = "roll_rad, pitch_rad, yaw_rad or roll_deg, pitch_deg, yaw_deg"
+
+Key = tuple[str, ...]  # names of columns in a file
 
 
-def find_by_size(lines: Lines, names: list[str], value: Array, time: Array) -> tuple[float, str]:
+@dataclass(frozen=True)
+class Unit:
+    """A unit that the size of numbers tells: the factor to ours, and how it is known.
+
+    `sure`: no numbers of another unit would look like these; small ones may be of either.
+    """
+
+    factor: float
+    said: str
+    sure: bool
+
+
+@dataclass(frozen=True)
+class Units:
+    """Units that other files tell for columns of these names, and those that are found here."""
+
+    known: Mapping[Key, Unit] = field(default_factory=dict)
+    found: dict[Key, Unit] = field(default_factory=dict)
+
+    def settle(self, key: Key, decide: Callable[[], Unit]) -> Unit:
+        """The unit of columns: that of the other files, else what their own size tells."""
+        if key not in self.known:
+            self.found[key] = decide()
+        return self.known.get(key) or self.found[key]
+
+
+class UnknownUnit(BadInput):
+    """Columns without a unit whose numbers allow two.
+
+    `key`: their names; `large`: the numbers are no small ones, of which those of other files tell.
+    """
+
+    def __init__(
+        self, found: str, lines: Lines, key: Key, expected: str, *, large: bool = False
+    ) -> None:
+        super().__init__(found, where=lines.path, expected=expected, remedy="Rename these columns.")
+        self.key, self.large = key, large
+
+
+def find_by_size(
+    lines: Lines, here: Mapping[str, int], value: Array, time: Array, units: Units
+) -> tuple[float, str]:
     """Factor to our unit where the size of the numbers says one, and how; else 1 and nothing.
 
+    `here`: our names and the places of these columns (n, c).
+
     Raises:
-        BadInput: the columns name no unit, and their numbers allow two.
+        UnknownUnit: the columns name no unit, or a wrong one, and their numbers allow two.
     """
+    names, own = list(here), [lines.names[place] for place in here.values()]
     named = all(name in lines.names or find_unit(lines, name) for name in names)
     if names[0] in POSITION:
-        return _metres(lines, value, time, named)
-    if names[0] in EULER:
-        return _radians(lines, names, value, time, named)
-    return 1.0, ""
+        said, judge = ("mm", "cm"), _metres
+    elif names[0] in EULER:
+        said, judge = ("deg", "degrees"), _radians
+    else:
+        return 1.0, ""
+    if named and any(split_unit(name)[1] in said for name in own):
+        return 1.0, ""
+    key = tuple(own)
+
+    def decide() -> Unit:
+        return judge(_Columns(lines, key, names, value, time, named))
+
+    unit = units.settle(key, decide)
+    return unit.factor, unit.said
 
 
-def _metres(lines: Lines, value: Array, time: Array, named: bool) -> tuple[float, str]:
-    far = float(np.nanmax(np.nanpercentile(value, 99, axis=0) - np.nanpercentile(value, 1, axis=0)))
-    fast = usual_speed(value, time)
-    unit = any(split_unit(name)[1] in ("mm", "cm") for name in lines.names)
-    if unit and named:
-        return 1.0, ""
-    if fast > FASTEST or far > FARTHEST:
-        return 1e-3, f" in mm, by its size ({fast:.0f} m/s if it were m)"
-    if named:
-        return 1.0, ""
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """Columns (n, c) of one kind, by our names and their own, at the times (n,) s."""
+
+    lines: Lines
+    key: Key
+    names: list[str]
+    value: Array
+    time: Array
+    named: bool
+
+    def asked(self, found: str, expected: str, *, large: bool = False) -> UnknownUnit:
+        """The error that asks for the unit of these columns."""
+        return UnknownUnit(found, self.lines, self.key, expected, large=large)
+
+
+def _metres(of: _Columns) -> Unit:
+    low, high = np.nanpercentile(of.value, [1, 99], axis=0)
+    far, fast = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
+    if fast > CREEPING:
+        return Unit(1e-3, f" in mm, by its size ({fast:.0f} m/s if it were m)", True)
+    if of.named and fast <= FASTEST:
+        return Unit(1.0, "", False)
     if fast < SLOW_ENOUGH and far < 0.1 * FARTHEST:
-        return 1.0, " in m, by its size"
-    raise BadInput(
-        f"positions over {far:.3g}, {fast:.3g} per second, without a unit",
-        where=lines.path,
-        expected="x_m, y_m, z_m or x_mm, y_mm, z_mm",
-        remedy="Rename these columns.",
+        return Unit(1.0, " in m, by its size", False)
+    raise of.asked(
+        f"positions ({', '.join(of.key)}) over {far:.3g}, {fast:.3g} per second, without a unit "
+        f"({'mm or cm' if fast > FASTEST else 'm, cm or mm'}?)",
+        "x_m, y_m, z_m, or x_cm, y_cm, z_cm, or x_mm, y_mm, z_mm",
+        large=True,
     )
 
 
-def _radians(
-    lines: Lines, names: list[str], value: Array, time: Array, named: bool
-) -> tuple[float, str]:
-    unit = any(split_unit(name)[1] in ("deg", "degrees") for name in lines.names)
-    if named and unit:
-        return 1.0, ""
-    if named:  # angles that count on may be large: only what no vehicle does speaks against a name
-        fast = usual_speed(unwrapped(value), time)
-        absurd = fast > FASTEST_TURN
-        return (DEGREE, f" in degrees, by its size ({fast:.0f} rad/s)") if absurd else (1.0, "")
-    size = np.nanmax(np.abs(value), axis=0)
-    turns = [s for n, s in zip(names, size, strict=True) if n != "yaw_rad"]
+def _radians(of: _Columns) -> Unit:
+    size = np.nanmax(np.abs(of.value), axis=0)
+    turns = [s for n, s in zip(of.names, size, strict=True) if n != "yaw_rad"]
+    tilted = max(turns, default=0.0)
     # a pitch lies within a quarter turn, a roll within half a turn; a heading may count its turns
-    degrees = max(turns, default=0.0) > 1.02 * np.pi or (not turns and size.max() > 6 * np.pi)
-    if degrees:
-        return DEGREE, " in degrees, by its size"
-    heading = value[:, names.index("yaw_rad")] if "yaw_rad" in names else value[:, 0]
+    degrees = tilted > 1.02 * np.pi
+    return _named_radians(of, tilted, degrees) if of.named else _free_radians(of, size, degrees)
+
+
+def _named_radians(of: _Columns, tilted: float, degrees: bool) -> Unit:
+    """Angles that count on may be large: only what no vehicle does speaks against a name."""
+    fast = usual_speed(unwrapped(of.value), of.time)
+    if fast <= FASTEST_TURN:
+        return Unit(1.0, "", False)
+    if degrees or tilted == 0.0:
+        return Unit(DEGREE, f" in degrees, by its size ({fast:.0f} rad/s)", True)
+    raise of.asked(
+        f"angles ({', '.join(of.key)}) that turn by {fast:.0f} rad/s, but roll and pitch up to "
+        f"{tilted:.3g} (rad or degrees, and are all of them of one unit?)",
+        ANGLES,
+        large=True,
+    )
+
+
+def _free_radians(of: _Columns, size: Array, degrees: bool) -> Unit:
+    heading = of.value[:, of.names.index("yaw_rad") if "yaw_rad" in of.names else 0]
     spread = float(np.nanmax(heading) - np.nanmin(heading))
+    fast = usual_speed(of.value, of.time) > FASTEST_TURN and spread > 2.02 * np.pi
+    if degrees or fast or size.max() > MANY_TURNS:
+        return Unit(DEGREE, " in degrees, by its size", True)
     if 1.0 < spread < 2.02 * np.pi:
-        return 1.0, " in rad, by its size"
-    if spread >= 2.02 * np.pi:
-        return DEGREE, " in degrees, by its size"
-    raise BadInput(
-        f"angles up to {size.max():.3g} without a unit: rad or degrees?",
-        where=lines.path,
-        expected="roll_rad, pitch_rad, yaw_rad or roll_deg, pitch_deg, yaw_deg",
-        remedy="Rename these columns.",
+        sure = bool(np.nanmax(np.abs(np.diff(heading)), initial=0.0) > WRAPPED)
+        return Unit(1.0, " in rad, by its size", sure)
+    raise of.asked(
+        f"angles ({', '.join(of.key)}) up to {size.max():.3g} without a unit (rad or degrees?)",
+        ANGLES,
+        large=spread > 1.0,
     )
