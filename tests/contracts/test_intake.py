@@ -370,3 +370,26 @@ def test_centimetres_are_no_millimetres(tmp_path, capsys, scale, asked):
         return
     main(["init", str(tmp_path)])
     assert "'x' is x in mm, by its size" in unfolded(capsys.readouterr().out)
+
+
+def test_several_runs_in_one_file_are_refused(tmp_path, capsys):
+    write_poses(tmp_path, "csv", Swim.ned(frames=600))
+    head, *rows = (tmp_path / "poses.csv").read_text().splitlines()
+    lines = [f"run,{head}", *(f"{run},{row}" for run in ("dive-1", "dive-2") for row in rows)]
+    write_lines(tmp_path / "poses.csv", lines)
+    said = refused(capsys, tmp_path)
+    assert "2 runs in one file: its times begin anew where 'run' changes (dive-1, dive-2)" in said
+    assert "Split it by 'run'" in said
+
+
+def test_lines_that_share_a_time_are_counted(tmp_path):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    head, *rows = (tmp_path / "poses.csv").read_text().splitlines()
+    cut = [f"{float(row.partition(',')[0]):.0f},{row.partition(',')[2]}" for row in rows]
+    write_lines(tmp_path / "poses.csv", [head, *cut])
+    main(["init", str(tmp_path), "-q"])
+    assert re.search(
+        r"CHECK: poses.csv: \d+ of 1200 lines have the time of another and are not used. They are "
+        "whole seconds",
+        told(tmp_path),
+    )

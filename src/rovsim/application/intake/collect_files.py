@@ -10,7 +10,10 @@ from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.progress import counted
 from rovsim.measurement.survey import Contents, gather, look
 from rovsim.measurement.survey.csv_files import UnknownColumns
+from rovsim.measurement.survey.repeats import SeveralRuns
 from rovsim.measurement.survey.sizes import Key, Unit, UnknownUnit
+
+ASKED = (UnknownUnit, SeveralRuns)  # errors that stop init for a file of a folder, too
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +40,7 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
     """
     named, inside = gather(paths)
     every, refused = _look_into_all([*named, *inside], scratch)
-    asked = [path for path in inside if isinstance(refused.get(path), UnknownUnit)]
+    asked = [path for path in inside if isinstance(refused.get(path), ASKED)]
     bad = [str(refused[path]) for path in (*named, *asked) if path in refused]
     if bad:
         raise RovsimError("\n".join(bad))

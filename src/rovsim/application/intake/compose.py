@@ -68,6 +68,10 @@ def _checked(facts: Facts) -> Iterator[str]:
     for name, one in zip(facts.ids, facts.pairs, strict=True):
         if reason := checks.unusable(one.motion):
             yield f"{name} will not be used: {reason}"
+    every = (*facts.motions, *facts.collected.logs)
+    yield from (
+        f"{file.named.name}: {d}" for one in every for file in one.files for d in file.doubts
+    )
     yield from _unused(facts)
     if facts.choice.fit is None or not facts.choice.runs:
         return

@@ -10,6 +10,7 @@ csv_files     in csv files
 headings      csv files whose columns have other names or units: a copy with ours
 column_names  our channels in other words, and units behind them
 sizes         units that the size of the numbers tells
+repeats       times that repeat: several runs in one file, stamps that are too coarse
 quaternions   numbered columns that may be one
 grid          rough velocities on an even clock, to compare recordings with
 timing        rates, jitter, gaps

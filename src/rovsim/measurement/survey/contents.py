@@ -102,6 +102,7 @@ class Contents:
     files of the same run, whose sensors are joined in the track. `unknown`: columns of numbers that
     are nothing that is known, where there are no commands. `unread`: columns that are no channel;
     some may be commands. `units`: those that the size of its numbers tells, by names of columns.
+    `doubts`: what looks wrong in the file.
     """
 
     path: Path
@@ -114,6 +115,7 @@ class Contents:
     unknown: str = ""
     unread: tuple[str, ...] = ()
     units: Mapping[Key, Unit] = field(default_factory=dict)
+    doubts: tuple[str, ...] = ()
 
     @property
     def files(self) -> tuple["Contents", ...]:

@@ -27,6 +27,7 @@ from rovsim.measurement.recording.tidying import tidy_export
 from rovsim.measurement.recording.times import times
 from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.headings import rewritten
+from rovsim.measurement.survey.repeats import SeveralRuns, check_one_run, tell_repeats
 from rovsim.measurement.survey.sizes import Key, Unit, Units
 
 # Columns that count or watch something, whatever their size.
@@ -59,7 +60,7 @@ def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = 
     place, notes = rewritten(path, scratch, units)
     try:
         return replace(_look(path, place, notes), units=units.found)
-    except UnknownColumns:
+    except (UnknownColumns, SeveralRuns):
         raise
     except BadInput as error:  # of a copy that is gone when its owner reads this
         where = error.where.replace(str(place), f"{path}, read as a copy with other columns")
@@ -72,6 +73,7 @@ def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = 
 def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     """What `place` holds, which is `path` or a copy of it."""
     lines = csv_lines(place)
+    check_one_run(replace(lines, path=path))
     known = [name for name in lines.names if name in KNOWN]
     drive = _drive(lines)
     unknown = "" if drive else _unknown(lines)
@@ -81,7 +83,10 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     drives = () if drive is None else (drive,)
     own = None if place == path else path
     unread = tuple(name for name in lines.names if name and name not in (*KNOWN, TIME))
-    return Contents(place, "csv", tracks, drives, own, notes, unknown=unknown, unread=unread)
+    doubts = tell_repeats(lines, [*known, *(drive.bare if drive else ())])
+    return Contents(
+        place, "csv", tracks, drives, own, notes, unknown=unknown, unread=unread, doubts=doubts
+    )
 
 
 def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
