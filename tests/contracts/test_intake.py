@@ -22,6 +22,7 @@ from rovsim.apps.cli.main import main
 from rovsim.core.errors import RovsimError
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording.readers import mocap_readers
+from rovsim.measurement.survey.csv_files import look_into_csv
 from said import unfolded
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), min_size=1)
@@ -393,3 +394,44 @@ def test_lines_that_share_a_time_are_counted(tmp_path):
         "whole seconds",
         told(tmp_path),
     )
+
+
+@pytest.mark.parametrize("names", ["Fx,Mz", "wrench.force.x,wrench.torque.z", "surge [N],yaw_Nm"])
+def test_forces_and_moments_by_their_names_are_a_wrench(tmp_path, names):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    write_lines(tmp_path / "poses_commands.csv", percent(names))
+    main(["init", str(tmp_path), "-q"])
+    content = YAML(typ="safe", pure=True).load((tmp_path / "campaign.yaml").read_text())
+    assert content["commands"]["kind"] == "wrench"
+    assert content["commands"]["columns"] == names.split(",")
+    assert content["commands"]["axes"] == ["surge", "yaw"]
+    assert "guess: forces and moments by their names" in told(tmp_path)
+
+
+STICK = [f"{0.1 * k:.1f},{k % 7 * 90},{-k % 5 * 100},{400 + k % 9},{k % 3},0" for k in range(120)]
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (percent("T1_N,T2_N"), "forces in N by their names: add them up"),
+        (percent("field.pose.position.x,field.pose.position.y"), "may be a pose: name them x_m"),
+        (["time_s,x,y,z,r,s", *STICK], "may be MANUAL_CONTROL: write surge = x / 1000"),
+    ],
+)
+def test_what_names_say_is_not_called_percent(tmp_path, lines, said):
+    write_poses(tmp_path, "csv", Swim.ned(frames=1200))
+    write_lines(tmp_path / "poses_commands.csv", lines)
+    main(["init", str(tmp_path), "-q"])
+    assert f"CHECK: not used as commands: {tmp_path}/poses_commands.csv" in told(tmp_path)
+    assert said in told(tmp_path)
+    assert "percent" not in told(tmp_path)
+
+
+def test_a_magnetic_field_and_a_load_cell_beside_thrusters_are_no_wrench(tmp_path):
+    field = write_lines(tmp_path / "a.csv", percent("mx,my"))
+    with pytest.raises(RovsimError, match="no commands that rovsim knows"):
+        look_into_csv(field, tmp_path / "copy")
+    rows = [f"{0.1 * k:.1f},{1500 + k},{1500 - k},{k},{-k}" for k in range(90)]
+    both = write_lines(tmp_path / "b.csv", ["time_s,t1,t2,Fx,Fy", *rows])
+    assert look_into_csv(both, tmp_path / "copy").drives[0].columns == ("t1", "t2")

@@ -8,6 +8,7 @@ bags          in ROS 2 bags
 logs          in ArduPilot logs
 csv_files     in csv files
 headings      csv files whose columns have other names or units: a copy with ours
+command_names what names say of commands: forces and moments, sticks, other units
 column_names  our channels in other words, and units behind them
 sizes         units that the size of the numbers tells
 repeats       times that repeat: several runs in one file, stamps that are too coarse

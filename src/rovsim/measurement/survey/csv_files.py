@@ -25,6 +25,7 @@ from rovsim.measurement.recording.table import (
 )
 from rovsim.measurement.recording.tidying import tidy_export
 from rovsim.measurement.recording.times import times
+from rovsim.measurement.survey.command_names import find_wrench, has_other_unit, hint
 from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.headings import rewritten
 from rovsim.measurement.survey.repeats import SeveralRuns, check_one_run, tell_repeats
@@ -141,8 +142,8 @@ def _unknown(lines: Lines) -> str:
     if not moving:
         return ""
     told = [f"{n} ({np.nanmin(v):.4g} to {np.nanmax(v):.4g})" for n, v in moving.items()]
-    unit = guess_unit(*_range(list(moving.values())))
-    return _some(told) + (f". They may be {unit}" if unit else "")
+    said = hint(moving)
+    return _some(told) + (f". {said}" if said else "")
 
 
 def _drive(lines: Lines) -> CommandCandidate | None:
@@ -166,6 +167,14 @@ def _drive(lines: Lines) -> CommandCandidate | None:
             auxiliary=voltage,
         )
     kind, chosen, said = _kind(columns)
+    forces = find_wrench(columns) if kind not in ("pwm", "demand") else {}
+    if forces:
+        value = np.stack([columns[name] for name in forces.values()], axis=1)
+        said = "guess: forces and moments by their names, N and N m: x forward, y right, z down"
+        return CommandCandidate(
+            "csv", tuple(forces.values()), time, value, "wrench", said, axes=tuple(forces),
+            auxiliary=voltage, asked=within(value.ravel(), "demand"),
+        )  # fmt: skip
     if not chosen:
         return None
     value = np.stack([columns[name] for name in chosen], axis=1)
@@ -205,11 +214,12 @@ def _kind(columns: dict[str, Array]) -> tuple[LoggedKind | None, list[str], str]
                 "named after axes, pulses in us (-heave where long is up)",
             )
         return "wrench", axes, _wrench([columns[name] for name in axes])
-    pulses = [name for name in columns if within(columns[name], "pwm")]
+    plain = {name: value for name, value in columns.items() if not has_other_unit(name)}
+    pulses = [name for name in plain if within(columns[name], "pwm")]
     if pulses:
         low, high = _range([columns[name] for name in pulses])
         return "pwm", ordered(pulses), f"all from {low:.0f} to {high:.0f}: pulses in us"
-    shares = [name for name in columns if within(columns[name], "normalized")]
+    shares = [name for name in plain if within(columns[name], "normalized")]
     if shares and len(shares) == len(columns):
         return "normalized", ordered(shares), "all within -1 and 1"
     numbered = [name for name in columns if re.search(r"\d$", name)]

@@ -24,6 +24,7 @@ from rovsim.measurement.recording.table import (
 )
 from rovsim.measurement.recording.times import LATEST, dates, times
 from rovsim.measurement.survey.column_names import FORMS, UNITS, split_unit
+from rovsim.measurement.survey.command_names import STICKS, are_sticks
 from rovsim.measurement.survey.quaternions import check_quaternion
 from rovsim.measurement.survey.sizes import Units, find_by_size
 
@@ -121,8 +122,19 @@ def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
     dropped |= renamed & set(EULER) if whole else bare if demanded else set()
     for group in (LINEAR, ANGULAR):
         dropped |= set() if all(name in places for name in group) else renamed & set(group)
+    if set(POSITION) <= renamed and _of_a_stick(lines, places):
+        dropped |= set(POSITION)
     for name in dropped & set(places):
         del places[name]
+
+
+def _of_a_stick(lines: Lines, places: dict[str, int]) -> bool:
+    """Whether x, y, z are those of a stick, beside an r and no angle."""
+    turned = any(name in places for name in (*EULER, *QUATERNION))
+    named = {n: k for k, n in enumerate(lines.names) if n.lower() in STICKS}
+    if turned or len(named) < len(STICKS):
+        return False
+    return are_sticks({name: _values(lines, place) for name, place in named.items()})
 
 
 def _values(lines: Lines, place: int) -> Array:

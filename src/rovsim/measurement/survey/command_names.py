@@ -1,0 +1,84 @@
+"""What the names of columns say of commands: forces and moments, sticks, units that are none."""
+
+import re
+from typing import Iterable, Mapping, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.measurement.recording.commands import guess_unit
+
+# Names in lower case with underscores, without their units.
+WRENCH = dict(
+    zip(
+        AXES,
+        [rf"(.*_)?({word})_?{axis}" for word in ("f|force", "m|moment|torque") for axis in "xyz"],
+        strict=True,
+    )
+)
+FORCE = r"_?(n|nm|n_m|n\*m)"
+NO_SHARE = re.compile(r".*[\W_](n|nm|n_m|%|percent|pct|rpm)\W*", re.IGNORECASE)
+OF_A_FORCE = re.compile(r".*[\W_]n\W*", re.IGNORECASE)
+POSE = re.compile(
+    r"(^|[^a-z])(p?[xyz]|q[wxyz]|roll|pitch|yaw|heading|lat|lon|alt(itude)?|depth|position|"
+    r"orientation|east|north|up)([^a-z]|$)",
+    re.IGNORECASE,
+)
+STICKS = ("x", "y", "z", "r")  # of MAVLink's MANUAL_CONTROL
+FULL_STICK = 1000.0
+
+
+def find_wrench(names: Iterable[str]) -> dict[str, str]:
+    """Columns by the axis along or about which they push: Fx, Mz, wrench.force.x, surge [N].
+
+    Nothing without two of them, one a force: mx, my, mz alone may be a magnetic field.
+    """
+    found: dict[str, str] = {}
+    for name in names:
+        text = re.sub(r"[\s.\[\](){}/]+", "_", name.strip().lower()).strip("_")
+        stem = re.sub(rf"{FORCE}$", "", text) if re.search(rf"_{FORCE[2:]}$", text) else text
+        axis = stem if stem in AXES and stem != text else None
+        axis = axis or next((a for a, form in WRENCH.items() if re.fullmatch(form, stem)), None)
+        if axis:
+            found.setdefault(axis, name)
+    if len(found) < 2 or not set(AXES[:3]) & found.keys():
+        return {}
+    return {axis: found[axis] for axis in AXES if axis in found}
+
+
+def has_other_unit(name: str) -> bool:
+    """Whether a name says a unit that is that of no pulse and of no share."""
+    return bool(NO_SHARE.fullmatch(name))
+
+
+def are_sticks(columns: Mapping[str, Array]) -> bool:
+    """Whether x, y, z and r are whole numbers within 1000, as MAVLink's MANUAL_CONTROL has them."""
+    own = {name.lower(): value for name, value in columns.items()}
+    if not set(STICKS) <= own.keys():
+        return False
+    value = np.concatenate([own[name][np.isfinite(own[name])] for name in STICKS])
+    small = np.abs(value) <= FULL_STICK
+    return bool(len(value) and small.all() and np.array_equal(value, np.round(value)))
+
+
+def hint(columns: Mapping[str, Array]) -> str:
+    """What columns of numbers may be, and what to do with them, in a sentence; else nothing."""
+    if are_sticks(columns):
+        return (
+            "They may be MANUAL_CONTROL: write surge = x / 1000, sway = y / 1000, heave = "
+            "(500 - z) / 500 where 500 is neutral, and yaw = r / 1000"
+        )
+    if any(POSE.search(name) for name in columns):
+        return "They may be a pose: name them x_m, y_m, … as docs/formats.md does"
+    if all(OF_A_FORCE.fullmatch(name) for name in columns):
+        return (
+            "They are forces in N by their names: add them up to the wrench on the vehicle, with "
+            "columns surge … yaw in N and N m, kind wrench"
+        )
+    unit = guess_unit(*_range(list(columns.values())))
+    return f"They may be {unit}" if unit else ""
+
+
+def _range(values: Sequence[Array]) -> tuple[float, float]:
+    return min(float(np.nanmin(v)) for v in values), max(float(np.nanmax(v)) for v in values)
