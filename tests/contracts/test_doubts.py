@@ -2,15 +2,23 @@
 
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from rovsim.application.pipeline.reading import judge_recording, read_recording
+from rovsim.application.pipeline.reading import (
+    judge_recording,
+    load_campaign_vehicle,
+    read_recording,
+)
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
+from rovsim.core.rotations import conjugate, from_euler, to_euler
 from rovsim.core.yaml_files import read_yaml, write_yaml
+from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.signals.outliers import KeepAll
 from said import unfolded
@@ -71,6 +79,61 @@ def test_both_axes_wrong_leave_it_upright_and_moving_the_other_way(campaign):
     said = described(campaign, lambda c: c["mocap"].update(body_axes="frd", world_axes="ned"))
     assert "upside down" not in said
     assert "sway shows as −sway" in said
+
+
+def other_signs(attitude, *signs):
+    """Attitudes (n, 4) whose roll, pitch and yaw count the other way."""
+    return from_euler(*(to_euler(attitude) * signs).T)
+
+
+def other_order(attitude):
+    """Attitudes (n, 4) whose angles are written for R = Rx(roll) Ry(pitch) Rz(yaw)."""
+    return from_euler(*Rotation.from_quat(attitude, scalar_first=True).as_euler("XYZ").T)
+
+
+KEPT = np.eye(3)
+CONVENTIONS = {
+    "the inverse of the attitudes": (conjugate, KEPT),
+    "the sign of yaw turned": (lambda q: other_signs(q, 1, 1, -1), KEPT),
+    "the sign of pitch turned": (lambda q: other_signs(q, 1, -1, 1), KEPT),
+    "R = Rx(roll) Ry(pitch) Rz(yaw)": (other_order, KEPT),
+    "y, x, −z in place of x, y, z": (
+        np.array,
+        np.array([[0, -1, 0], [-1, 0, 0], [0, 0, -1]]),
+    ),
+}
+
+
+def spoiled(recording, change, turn=KEPT):
+    """A recording with attitudes and positions of another convention."""
+    attitude = recording.attitude.copy()
+    attitude[recording.found] = change(attitude[recording.found])
+    return replace(recording, attitude=attitude, position=recording.position @ turn)
+
+
+@pytest.mark.parametrize("told", CONVENTIONS)
+def test_attitudes_by_another_convention_are_told(sound, told):
+    campaign = load_campaign(sound)
+    recording, _ = read_recording(campaign, "6dof-2")
+    doubt, *_ = find_doubts(spoiled(recording, *CONVENTIONS[told]), load_campaign_vehicle(campaign))
+    assert doubt.startswith("Positions and attitudes do not go together")
+    assert told in doubt
+
+
+def test_init_tells_of_inverse_quaternions(sound, tmp_path, capsys):
+    campaign = load_campaign(sound)
+    for run in campaign.runs:
+        recording = spoiled(read_recording(campaign, run.id)[0], conjugate)
+        table = np.column_stack([recording.time, recording.position, recording.attitude])
+        head = "time_s,x_m,y_m,z_m,qw,qx,qy,qz"
+        path = tmp_path / f"{run.id}_poses.csv"
+        np.savetxt(path, table[recording.found], delimiter=",", header=head, comments="")
+        shutil.copy(sound / run.commands, tmp_path / f"{run.id}_commands.csv")
+    main(["init", str(tmp_path)])
+    said = unfolded(capsys.readouterr().out)
+    assert "6dof-1: positions and attitudes do not go together" in said
+    assert "with the inverse of the attitudes" in said
+    assert "turn the signs of qx, qy and qz" in said
 
 
 def test_the_log_of_another_run_is_not_followed(campaign):

@@ -172,7 +172,7 @@ def test_a_mirrored_axis_is_told(flown, tmp_path):
         write_poses(tmp_path, "csv", wrong).rename(tmp_path / f"{run}.csv")
     logs(flown, tmp_path)
     _, text = init(tmp_path)
-    assert "with x, y, -z in place of x, y, z" in re.sub(r"\n#\s*", " ", text)
+    assert "with x, y, −z in place of x, y, z" in re.sub(r"\n#\s*", " ", text)
 
 
 def test_swapped_columns_are_told(flown, tmp_path):

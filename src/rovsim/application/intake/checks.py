@@ -1,7 +1,7 @@
-"""What looks wrong in recordings that are beside their commands: clocks, axes, thrusters."""
+"""What looks wrong in recordings that are beside their commands: clocks, attitudes, thrusters."""
 
 from itertools import combinations
-from typing import Iterator, Sequence
+from typing import Container, Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -9,18 +9,16 @@ from numpy import ndarray as Array
 from rovsim.application.intake.choice import Choice
 from rovsim.application.intake.motions import CommandFile, MotionFile
 from rovsim.application.intake.vehicles import Fit, as_logged
-from rovsim.core.rotations import unrotate
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.commanded_motion.clocks import tell_following
-from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, orientations
+from rovsim.evaluation.commanded_motion.conventions import BETTER, find_convention
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION
 from rovsim.evaluation.commanded_motion.predicted import held, respond, wrench
 from rovsim.measurement.quality import EXCITED, usable_reason
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.signals.clock import time_step
-from rovsim.measurement.survey.grid import even_poses, slopes
-
-BETTER = 0.12  # correlation by which another order or sign must be better to be told
+from rovsim.measurement.survey.grid import even_poses
 
 
 def unusable(motion: MotionFile) -> str | None:
@@ -35,43 +33,24 @@ def unusable(motion: MotionFile) -> str | None:
     return usable_reason(recording)
 
 
-def check_clocks(choice: Choice, axes: Array, names: Sequence[str]) -> Iterator[str]:
-    """Runs in which the motion does not follow its commands, or too late or too early."""
+def check_clocks(
+    choice: Choice, axes: Array, names: Sequence[str], told: Container[int] = ()
+) -> Iterator[str]:
+    """Runs, but those `told` of, whose motion does not follow its commands, or not in time."""
     for k, one in choice.runs.items():
-        if said := tell_following(one, axes):
+        if k not in told and (said := tell_following(one, axes)):
             yield f"{names[k]}: {said}"
 
 
-def check_mirror(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag: float) -> str:
-    """Whether the commanded motion shows better with the position's axes swapped or mirrored."""
+def check_attitudes(
+    motion: MotionFile, log: CommandFile, fit: Fit, axes: Sequence[Array], lag: float, angles: bool
+) -> str:
+    """Whether the commanded motion shows better with attitudes or positions read otherwise."""
     caused = log.caused(fit)
-    if caused is None or not motion.track.posed:
+    if caused is None or not motion.track.posed or motion.track.export.nu is not None:
         return ""
-    poses = even_poses(motion.track.export)
-    fast = slopes(poses.time, poses.position)
-    other = np.stack([np.interp(poses.time - lag, caused[0], c) for c in caused[1].T], axis=1)
-    excited = (caused[1].std(axis=0) > EXCITED)[:3]
-    if excited.sum() < 2:
-        return ""
-    scores = []
-    for mirror in orientations():
-        seen = unrotate(poses.attitude, fast @ np.array(mirror).T)
-        scores.append((_alike(seen @ axes, other[:, :3])[excited].mean(), mirror))
-    own = next(score for score, mirror in scores if np.array_equal(mirror, np.eye(3)))
-    best, mirror = max(scores)
-    if best < max(own + BETTER, MIN_CORRELATION):
-        return ""
-    return (
-        f"positions and attitudes do not go together: with {_told(np.array(mirror))} in place of "
-        f"x, y, z the commanded motion shows better (likeness {best:.2f} against {own:.2f}). Check "
-        "how the axes were exported: some are swapped or mirrored"
-    )
-
-
-def _told(mirror: Array) -> str:
-    return ", ".join(
-        f"{'-' if row[k := int(np.argmax(np.abs(row)))] < 0 else ''}{'xyz'[k]}" for row in mirror
-    )
+    found = find_convention(even_poses(motion.track.export), caused, axes, lag, angles)
+    return "" if found is None else str(found)
 
 
 def _alike(a: Array, b: Array) -> Array:

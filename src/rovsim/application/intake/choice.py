@@ -21,13 +21,17 @@ SAME = 0.03  # correlation by which vehicles of one hull differ
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """The vehicle, None where nobody can tell; the correlation of its runs along each body axes."""
+    """The vehicle, None where nobody can tell; the correlation of its runs along each body axes.
+
+    `likeliest`: the vehicle whose correlations these are, where there are any.
+    """
 
     fit: Fit | None
     said: str
     fits: tuple[Fit, ...]
     turned: tuple[tuple[float, Array], ...]
     runs: dict[int, CrossCorrelation]
+    likeliest: Fit | None = None
 
 
 def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
@@ -40,7 +44,7 @@ def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
     ordered = sorted(fits, key=lambda fit: -scores.get(fit.name, 0.0))
     first = _first(ordered, scores)
     told = Choice(None, _told(ordered, scores), tuple(ordered), tuple(turns.get(first.name, [])),
-                  compared[first.name])  # fmt: skip
+                  compared[first.name], first)  # fmt: skip
     rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, first)]
     known = scores.get(first.name, 0.0) >= MIN_CORRELATION
     alone = scores.get(first.name, 0.0) >= AHEAD * max(rivals, default=0.0)

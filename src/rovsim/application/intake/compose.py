@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Iterator, Sequence
 
+from numpy import ndarray as Array
+
 from rovsim.application.intake import checks, sections
 from rovsim.application.intake.axes import BODY
 from rovsim.application.intake.collect_files import collect_files
@@ -12,6 +14,9 @@ from rovsim.application.intake.places import Places
 from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.intake.runs import missing, runs
 from rovsim.application.intake.unread import list_unread, tell_unread
+from rovsim.application.intake.vehicles import Fit
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, rotations
+from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.survey.timing import Timing
 
 
@@ -73,18 +78,34 @@ def _checked(facts: Facts) -> Iterator[str]:
         f"{file.named.name}: {d}" for one in every for file in one.files for d in file.doubts
     )
     yield from _unused(facts)
-    if facts.choice.fit is None or not facts.choice.runs:
-        return
-    body = facts.axes.body
+    if facts.choice.likeliest is not None and facts.choice.runs:
+        yield from _against_commands(facts, facts.choice.likeliest)
+
+
+def _against_commands(facts: Facts, fit: Fit) -> Iterator[str]:
+    """What looks wrong in runs beside their commands."""
+    runs, body = facts.choice.runs, facts.axes.body
     axes = BODY[body] if body else facts.choice.turned[0][1]
-    if body:
-        yield from checks.check_clocks(facts.choice, axes, facts.ids)
-    k = max(facts.choice.runs, key=lambda n: int(facts.choice.runs[n].excited.sum()))
-    one = facts.pairs[k]
-    log = one.shown
-    assert log is not None
-    lag = facts.choice.runs[k].best(axes)[1]
-    said = checks.check_mirror(one.motion, log, facts.choice.fit, axes, lag)
-    said = said or checks.check_order(one.motion, log, facts.choice.fit, axes, lag)
-    if said:
-        yield f"{facts.ids[k]}: {said}"
+    most = max(runs, key=lambda n: int(runs[n].excited.sum()))
+    told = dict(_by_convention(facts, fit, axes, most))
+    if body and facts.choice.fit:
+        yield from checks.check_clocks(facts.choice, axes, facts.ids, told)
+    log = facts.pairs[most].shown
+    if log and facts.choice.fit and not told:
+        lag = runs[most].best(axes)[1]
+        told[most] = checks.check_order(facts.pairs[most].motion, log, fit, axes, lag)
+    yield from (f"{facts.ids[k]}: {said}" for k, said in told.items() if said)
+
+
+def _by_convention(facts: Facts, fit: Fit, axes: Array, most: int) -> Iterator[tuple[int, str]]:
+    """Runs whose attitudes look like those of another convention: `most`, and what is unlike."""
+    possible = [axes] if facts.axes.body else rotations()
+    angles = "y_up" not in mocap_readers()[facts.motions[0].format].axes.world
+    for k, found in facts.choice.runs.items():
+        score, lag = found.best(axes)
+        one, unlike = facts.pairs[k], score < MIN_CORRELATION
+        if one.shown and (k == most or unlike):
+            late = 0.0 if unlike else lag
+            said = checks.check_attitudes(one.motion, one.shown, fit, possible, late, angles)
+            if said:
+                yield k, said

@@ -1,25 +1,25 @@
-"""What speaks against a run as its campaign describes it: axes, tank, commands, clocks."""
+"""What speaks against a run as its campaign describes it: axes, conventions, tank, clocks."""
 
 from typing import Iterator
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.rotations import matrix
+from rovsim.core.rotations import half_turn, matrix, multiply
 from rovsim.core.signs import minus
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.evaluation.commanded_motion.clocks import tell_following
+from rovsim.evaluation.commanded_motion.clocks import CLEARER, tell_following
+from rovsim.evaluation.commanded_motion.conventions import find_convention
 from rovsim.evaluation.commanded_motion.cross_correlation import (
     AHEAD,
     MIN_CORRELATION,
     SHORTEST,
-    CrossCorrelation,
     cross_correlate,
     orientations,
 )
 from rovsim.evaluation.commanded_motion.predicted import cause, righting
 from rovsim.measurement.recording import Recording
-from rovsim.measurement.survey.grid import velocities
+from rovsim.measurement.survey.grid import ResampledPoses, even_poses, velocities
 
 LONGEST = 120.0  # s of commands that are looked at
 HANGS = -0.5  # cosine of the tilt: 120 degrees
@@ -47,12 +47,18 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
 
 
 def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
-    found = _compared(recording, vehicle)
-    if found is None or not found.excited.any():
+    caused = _caused(recording, vehicle)
+    measured = None if caused is None else velocities(recording)
+    if caused is None or measured is None or not np.isfinite(measured.nu).any():
         return
-    own = found.best(np.eye(3))[0]
+    found = cross_correlate(measured, *caused)
+    if not found.excited.any():
+        return
+    own, lag = found.best(np.eye(3))
     best, axes = max(((found.best(a := np.array(o))[0], a) for o in orientations()), key=_first)
-    if best >= MIN_CORRELATION and best > AHEAD * own:
+    if said := _read_otherwise(recording, caused, lag if own >= MIN_CORRELATION else 0.0, best):
+        yield said[0].upper() + said[1:]
+    elif best >= MIN_CORRELATION and best > AHEAD * own:
         yield (
             f"The vehicle moves along other axes than those commanded: {_told(axes)} (likeness "
             f"{best:.2f}; as described {own:.2f}). Check 'mocap.body_axes', 'mocap.world_axes' and "
@@ -62,20 +68,33 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
         yield said[0].upper() + said[1:]
 
 
+def _read_otherwise(
+    recording: Recording, caused: tuple[Array, Array], lag: float, best: float
+) -> str:
+    """Another convention of attitudes, where it tells more than other axes (`best`) do."""
+    if not recording.found.any() or recording.nu is not None:
+        return ""
+    poses, signs = even_poses(recording), recording.site.axes
+    turn = half_turn(signs)
+    # back along the axes of the file, where its columns are
+    own = ResampledPoses(
+        poses.time, poses.position * signs, multiply(turn, multiply(poses.attitude, turn))
+    )
+    found = find_convention(own, caused, [np.diag(signs)], lag)
+    return str(found) if found is not None and found.score > best + CLEARER else ""
+
+
 def _first(pair: tuple[float, Array]) -> float:
     return pair[0]
 
 
-def _compared(recording: Recording, vehicle: Vehicle) -> CrossCorrelation | None:
-    """The run and what its commands would cause, correlated; None where there is too little."""
+def _caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | None:
+    """Times and the body velocities that the commands would cause; None where there are few."""
     commands = recording.commands
     if len(commands.time) < 2 or np.ptp(recording.time) < SHORTEST:
         return None
-    measured = velocities(recording)
-    if not np.isfinite(measured.nu).any():
-        return None
-    begin = max(float(commands.time[0]), float(measured.time[0]))
-    return cross_correlate(measured, *cause(vehicle, commands, begin, LONGEST))
+    begin = max(float(commands.time[0]), float(recording.time[0]))
+    return cause(vehicle, commands, begin, LONGEST)
 
 
 def _told(axes: Array) -> str:

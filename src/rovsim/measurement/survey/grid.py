@@ -82,7 +82,11 @@ def velocities(export: Export | Recording) -> Velocities:
         return _exported(export)
     if not export.found.any():
         return _of_channels(export.channels)
-    poses = even_poses(export)
+    return of_poses(even_poses(export))
+
+
+def of_poses(poses: ResampledPoses) -> Velocities:
+    """Body velocities by slopes of poses."""
     linear = unrotate(poses.attitude, slopes(poses.time, poses.position))
     return Velocities(poses.time, np.hstack([linear, _rates(poses.time, poses.attitude)]))
 

@@ -1,0 +1,184 @@
+"""Attitudes that were written by other rules than they are read by, beside the positions.
+
+Each other reading (inverse rotations, angles of another sign or order, positions along swapped
+axes) gives another motion of the body; what was commanded shows best in the right one.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Iterator, NamedTuple, Sequence
+
+import numpy as np
+import scipy
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import conjugate, continuous, to_euler
+from rovsim.core.signs import minus
+from rovsim.evaluation.commanded_motion.clocks import EARLIEST, LATEST
+from rovsim.evaluation.commanded_motion.cross_correlation import (
+    MIN_CORRELATION,
+    cross_correlate,
+    orientations,
+)
+from rovsim.measurement.survey.grid import ResampledPoses, of_poses
+
+# Correlations by which another reading must be better: in all, and of the speeds by themselves. Of
+# the 52 right runs of the practice campaigns no reading is better in the speeds by 0.03.
+BETTER, FASTER = 0.12, 0.05
+AS_GOOD, AS_FAST = 0.1, 0.02  # within which two readings are both told
+ANGLES = ("roll", "pitch", "yaw")
+OWN = "Rz(yaw) Ry(pitch) Rx(roll)"
+ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY")  # turns one after the other, each about the new axis
+UNTURNED = tuple(map(tuple, np.eye(3).tolist()))
+EAST_NORTH_UP = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))  # of north, east, down
+LINEAR = np.arange(6) < 3
+
+
+@dataclass(frozen=True)
+class OtherReading:
+    """What would make the motion more like its commands: `score` against `own` as it was read."""
+
+    score: float
+    own: float
+    said: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return (
+            "positions and attitudes do not go together: the motion follows its commands better "
+            f"with {self.said} (likeness {self.score:.2f} against {minus(f'{self.own:.2f}')}). "
+            f"{self.remedy}"
+        )
+
+
+class _Reading(NamedTuple):
+    """Poses read otherwise: with what, and what to do about the file."""
+
+    attitude: Array
+    position: Array
+    said: str = ""
+    remedy: str = ""
+
+
+class _Likeness(NamedTuple):
+    """Correlation over all excited axes, and over those of the speeds alone."""
+
+    whole: float
+    linear: float
+
+
+def find_convention(
+    poses: ResampledPoses,
+    caused: tuple[Array, Array],
+    axes: Sequence[Array],
+    lag: float = 0.0,
+    angles: bool = True,
+) -> OtherReading | None:
+    """A reading of poses in which what is `caused` (times, FRD velocities) shows clearly better.
+
+    `axes`: the body axes (3, 3) that are possible; `lag` s by which the motion comes later;
+    `angles`: whether the file's z is vertical, so that roll, pitch and yaw mean something.
+    """
+    shift = 0.0 if EARLIEST <= lag <= LATEST else lag
+
+    def likeness(reading: _Reading) -> _Likeness:
+        measured = of_poses(ResampledPoses(poses.time, reading.position, reading.attitude))
+        found = cross_correlate(measured, *caused, shift, LATEST)
+        whole, best = max(((found.best(one)[0], k) for k, one in enumerate(axes)))
+        linear = replace(found, excited=found.excited & LINEAR)
+        return _Likeness(whole, linear.best(axes[best])[0])
+
+    own = likeness(_Reading(poses.attitude, poses.position))
+    if own.whole > 1.0 - BETTER:
+        return None
+    return _told(own, [(likeness(one), one) for one in _readings(poses, angles)])
+
+
+def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherReading | None:
+    """The best of those that are clearly better, and the simplest one that does as well."""
+    enough = max(own.whole + BETTER, MIN_CORRELATION)
+    better = [
+        (found, reading) for found, reading in scored
+        if found.whole >= enough and found.linear >= own.linear + FASTER
+    ]  # fmt: skip
+    if not better:
+        return None
+    best = max(found for found, _ in better)
+    alike = [
+        reading for found, reading in better
+        if found.whole >= best.whole - AS_GOOD and found.linear >= best.linear - AS_FAST
+    ][:2]  # fmt: skip
+    said = ", or with ".join(reading.said for reading in alike)
+    remedy = " Or: ".join(dict.fromkeys(reading.remedy for reading in alike))
+    return OtherReading(best.whole, own.whole, said, remedy)
+
+
+def _readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
+    """Other readings, simple ones first."""
+    yield _Reading(
+        conjugate(poses.attitude),
+        poses.position,
+        "the inverse of the attitudes",
+        "If they turn the world into the body, turn the signs of qx, qy and qz.",
+    )
+    yield _of_positions(poses, EAST_NORTH_UP)
+    if angles:
+        yield from _of_angles(poses)
+    for axes in orientations():
+        if axes not in (UNTURNED, EAST_NORTH_UP):
+            yield _of_positions(poses, axes)
+
+
+def _of_positions(poses: ResampledPoses, axes: tuple[tuple[float, ...], ...]) -> _Reading:
+    told = ", ".join(
+        minus(f"{'-' if row[k := int(np.argmax(np.abs(row)))] < 0 else ''}{'xyz'[k]}")
+        for row in axes
+    )
+    usual = " (north, east, down for east, north, up, or back)" if axes == EAST_NORTH_UP else ""
+    return _Reading(
+        poses.attitude,
+        poses.position @ np.array(axes).T,
+        f"{told} in place of x, y, z of the positions{usual}",
+        "Check how the axes of the positions were exported: some are swapped or mirrored.",
+    )
+
+
+def _of_angles(poses: ResampledPoses) -> Iterator[_Reading]:
+    angles = to_euler(poses.attitude)
+    signs = [(np.array(s), turns) for s in product((1.0, -1.0), repeat=3) for turns in range(4)]
+    for sign, turns in sorted(signs, key=lambda pair: (pair[1] > 0, -pair[0].sum())):
+        if np.any(sign < 0.0):
+            read = angles * sign + [0.0, 0.0, 0.5 * np.pi * turns]
+            yield _Reading(_composed("ZYX", read), poses.position, *_of_signs(sign, turns))
+    for order in ORDERS:
+        rule = " ".join(f"R{axis.lower()}({ANGLES['XYZ'.index(axis)]})" for axis in order)
+        yield _Reading(
+            _composed(order, angles),
+            poses.position,
+            f"angles of the order R = {rule}",
+            f"Angles are read as R = {OWN}: export such, or quaternions.",
+        )
+
+
+def _of_signs(sign: Array, turns: int) -> tuple[str, str]:
+    turned = [name for name, s in zip(ANGLES, sign, strict=True) if s < 0.0]
+    names = " and ".join(filter(None, [", ".join(turned[:-1]), turned[-1]]))
+    said = f"the sign{'s' * (len(turned) > 1)} of {names} turned"
+    remedy = f"Turn {'these signs' if len(turned) > 1 else 'that sign'} in the columns of angles"
+    if turns:
+        from_zero = {1: "90°", 2: "180°", 3: "−90°"}[turns]
+        said += f", and {from_zero} added to yaw"
+        remedy += f", and add {from_zero} to yaw, as a compass counts from north"
+    if turned == ["pitch", "yaw"]:
+        remedy += " (attitudes of axes with z down beside positions with z up, or the reverse)"
+    return said, f"{remedy}: roll, pitch and yaw are right-handed about x, y and z."
+
+
+def _composed(order: str, angles: Array) -> Array:
+    """Attitudes (n, 4) of roll, pitch and yaw (n, 3), turned in another order."""
+    known = np.isfinite(angles).all(axis=1)
+    found = np.full((len(angles), 4), np.nan)
+    chosen = angles[known][:, ["XYZ".index(axis) for axis in order]]
+    turns = scipy.spatial.transform.Rotation.from_euler(order, chosen)
+    found[known] = continuous(turns.as_quat(scalar_first=True))
+    return found
