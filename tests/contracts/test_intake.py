@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
+import bags
 from damage import damaged
 from recordings import FORMATS, Swim, command_lines, write_lines, write_poses
 from rovsim.application.intake.compose import propose
@@ -114,6 +115,12 @@ def test_recordings_elsewhere_stay_there(tmp_path):
         ("poses.dat", b"SQLite format 3\0" + bytes(99), "whose name ends in '.dat'"),
         ("notes.txt", b"Dear diary", "text that starts with 'Dear diary'"),
         ("walk.csv", b"Trajectories\n100\n,,A\n", "an export of markers"),
+        ("rov.csv", b"Objects\n100\n,,ROV\nFrame,Sub Frame,RX,RY,RZ,TX,TY,TZ\n", "rotation vector"),
+        ("path.txt", b"# time x\n" + b"0.0 1 2 3 0 0 0 1\n" * 9, "time_s,x_m,y_m,z_m,qx,qy,qz,qw"),
+        ("log.ulg", b"ULog\x01\x125\x01" + bytes(99), "`ulog2csv`"),
+        ("run.npz", b"PK\x03\x04" + bytes(22) + b"\5\0\0\0t.npy" + bytes(9), "numpy.savetxt"),
+        ("run.lvm", b"LabVIEW Measurement\t\nSeparator\tTab\n", "***End_of_Header***"),
+        ("bare.csv", b"0.0,1500,1500\n0.1,1510,1500\n", "no line of column names"),
         ("table.csv", b"time_s,colour\n0,red\n1,blue\n", "no measured channel"),
         ("timeless.csv", b"Unnamed: 0,t1,t2\n0,1500,1500\n1,1510,1600\n",
          "Did you mean 'Unnamed: 0'? If it holds the times, name it time_s"),
@@ -132,6 +139,40 @@ def test_what_cannot_be_used_is_one_message_and_nothing_is_written(
     assert said in told
     assert told.count("rovsim: ") == 1
     assert not out.exists()
+
+
+def test_a_folder_says_what_to_do_about_each_of_its_files(tmp_path, capsys):
+    (tmp_path / "pwm.csv").write_text("\n".join(command_lines()))
+    for name in ("one.mat", "two.mat"):
+        (tmp_path / name).write_bytes(b"MATLAB 5.0 MAT-file" + bytes(99))
+    (tmp_path / "run.bag").write_bytes(b"#ROSBAG V2.0" + bytes(99))
+    told = refused(capsys, tmp_path)
+    assert "one.mat, two.mat: a MATLAB file" in told
+    assert "Save its signals as csv" in told
+    assert "rosbags-convert" in told
+    assert "Name the export" not in told
+
+
+def test_transforms_that_are_not_read_are_named(tmp_path, capsys):
+    kind = "tf2_msgs/msg/TFMessage"
+    wrench = "geometry_msgs/msg/WrenchStamped"
+    topics = {
+        "/tf": (kind, [(bags.START + t, bags.message(kind)) for t in range(9)]),
+        "/push": (wrench, [(bags.START + t, bags.message(wrench)) for t in range(9)]),
+    }
+    told = refused(capsys, bags.write_bag(tmp_path / "bag", topics), f"out={tmp_path / 'out'}")
+    assert "commands alone" in told
+    assert "/tf are not read" in told
+
+
+def test_wished_velocities_are_no_commands_and_are_named(tmp_path, capsys):
+    kind = "geometry_msgs/msg/Twist"
+    topics = {
+        "/pose": bags.poses(Swim.ned(frames=1200)),
+        "/cmd_vel": (kind, [(bags.START + t, bags.message(kind)) for t in range(9)]),
+    }
+    main(["init", str(bags.write_bag(tmp_path / "bag", topics)), f"out={tmp_path / 'out'}"])
+    assert "/cmd_vel says how fast the vehicle should be" in unfolded(capsys.readouterr().out)
 
 
 def test_each_bad_file_has_its_own_message(tmp_path, capsys):

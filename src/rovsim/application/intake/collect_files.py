@@ -15,6 +15,8 @@ from rovsim.measurement.survey.sizes import Key, Unit, UnknownUnit
 
 ASKED = (UnknownUnit, SeveralRuns)  # errors that stop init for a file of a folder, too
 
+MOST_TOLD = 5  # files and reasons in one message
+
 
 @dataclass(frozen=True, eq=False)
 class CollectedFiles:
@@ -46,7 +48,9 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
         raise RovsimError("\n".join(bad))
     found = list(every.values())
     left_out = tuple(
-        f"{path.name} is left out: {refused[path].found}." for path in inside if path in refused
+        f"{path.name} is left out: {refused[path].found}. {refused[path].remedy}".rstrip()
+        for path in inside
+        if path in refused
     )
     motions = tuple(one for one in found if one.tracks)
     logs = tuple(one for one in found if not one.tracks)
@@ -93,18 +97,7 @@ def _check(
 ) -> None:
     where = paths[0] if len(paths) == 1 else "the files"
     if not motions:
-        reasons = "; ".join(f"{Path(e.where.split(',')[0]).name}: {e.found}" for e in refused[:5])
-        held = (
-            f"commands alone ({', '.join(c.named.name for c in logs[:5])})"
-            if logs
-            else "no recording"
-        )
-        raise BadInput(
-            held + (f" ({reasons})" if reasons else ""),
-            where=where,
-            expected="at least one file that tells how the vehicle moved",
-            remedy="Name the export of the motion capture, the bag or the log as well.",
-        )
+        raise _no_motion(logs, refused, where)
     formats: dict[str, list[str]] = {}
     for one in motions:
         formats.setdefault(one.format, []).append(one.named.name)
@@ -116,3 +109,28 @@ def _check(
             expected="one format of motions in a campaign",
             remedy="Run init for each of them, with another out=.",
         )
+
+
+def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: object) -> BadInput:
+    """The error of files without a motion: why each was refused, and what may be done about it."""
+    held = "no recording"
+    if logs:
+        held = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"
+    alike: dict[tuple[str, str], list[str]] = {}
+    for error in refused:
+        name = Path(error.where.split(",")[0]).name
+        alike.setdefault((error.found, error.remedy), []).append(name)
+    told = [
+        f"{', '.join(names[:MOST_TOLD])}: {found}"
+        for (found, _), names in [*alike.items()][:MOST_TOLD]
+    ]
+    remedies = [remedy for _, remedy in alike if remedy]
+    remedies += [note for log in logs for note in log.notes]
+    if not remedies:
+        remedies = ["Name the export of the motion capture, the bag or the log as well."]
+    return BadInput(
+        held + (f" ({'; '.join(told)})" if told else ""),
+        where=where,
+        expected="at least one file that tells how the vehicle moved",
+        remedy=" ".join([*dict.fromkeys(remedies)][:MOST_TOLD]),
+    )

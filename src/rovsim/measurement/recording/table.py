@@ -155,6 +155,14 @@ def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
 
 def no_time(path: Path, names: list[str]) -> BadInput:
     """The error of a file without a column of times: which one may be it, by its name."""
+    if all(_is_number(name) for name in names):
+        return BadInput(
+            f"no line of column names above the numbers {', '.join(names[:4])}, …",
+            where=path,
+            expected=f"names in the first line, among them {TIME}",
+            remedy="Put one above them: time_s,x_m,y_m,z_m,qw,qx,qy,qz or time_s,t1,t2,… for what "
+            "the columns hold (docs/formats.md).",
+        )
     told = [f"'{name}'" if name else f"one without a name (the {k + 1}.)" for k, name in
             enumerate(names)]  # fmt: skip
     likely = [one for one, name in zip(told, names, strict=True) if LIKE_TIME.fullmatch(name)]

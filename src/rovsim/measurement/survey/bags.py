@@ -42,6 +42,15 @@ OUTPUTS = (
     "RCIn",
 )
 
+NOT_POSES = (
+    "Transforms on {} are not read: write the vehicle's to a topic of PoseStamped or "
+    "TransformStamped, and record that."
+)
+NOT_COMMANDS = (
+    "{} says how fast the vehicle should be, and not what was sent to its thrusters: record RCOut, "
+    "a MultiArray, a Wrench or ManualControl as well"
+)
+
 
 def look_into_bag(path: Path) -> Contents:
     """Read which topics tell of motion and of commands, and try each.
@@ -61,14 +70,29 @@ def look_into_bag(path: Path) -> Contents:
     elif beside:
         listed = ", ".join(f"{key}: {topic}" for key, topic in beside.items())
         notes.append(f"{path.name}: the bag also holds {listed}; 'mocap.topics' would read them.")
+    if not tracks:
+        notes += _unread(topics, "", "TFMessage", NOT_POSES)
+    wished = () if drives else _unread(topics, "cmd|command|teleop", "Twist.*", NOT_COMMANDS)
     if tracks or drives:
-        return Contents(path, "rosbag2", tracks, drives, notes=tuple(notes))
+        return Contents(
+            path, "rosbag2", tracks, drives, notes=tuple(notes), unknown=" ".join(wished)
+        )
+    notes += wished
     raise BadInput(
         f"no topic of motion or of commands among {len(topics)}",
         where=path,
         expected=f"{', '.join(POSES)}, Imu, pressure, or outputs to thrusters",
         remedy=" ".join(notes) or "Record these topics as well.",
     )
+
+
+def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[str, ...]:
+    """A sentence on topics of such names and types that rovsim does not read, if there are any."""
+    found = [
+        topic for topic, name in topics.items()
+        if re.search(named, topic, re.I) and re.fullmatch(kind, _short(name))
+    ]  # fmt: skip
+    return (said.format(", ".join(found)),) if found else ()
 
 
 def _pose_topics(topics: dict[str, str]) -> list[str]:

@@ -6,17 +6,40 @@ from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.recording.signature import HEAD, Signature, decoded, head_lines
 
+AS_CSV = "docs/formats.md lists the columns"
 # First bytes of files that people take for recordings, and what to do about them.
 KNOWN = {
     b"#ROSBAG V": ("a ROS 1 bag", "Turn it into a ROS 2 bag with `rosbags-convert`."),
-    b"PK\x03\x04": ("a zip archive or a spreadsheet", "Unpack it, or save the sheet as csv."),
-    b"MATLAB 5.0": ("a MATLAB file", "Save its signals as csv: docs/formats.md lists the columns."),
-    b"\x89HDF": ("an HDF5 file", "Save its signals as csv: docs/formats.md lists the columns."),
+    b"MATLAB 5.0": ("a MATLAB file", f"Save its signals as csv: {AS_CSV}."),
+    b"\x89HDF": ("an HDF5 file", f"Save its signals as csv: {AS_CSV}."),
     b"\x1f\x8b": ("a gzip archive", "Unpack it."),
-    b"\x93NUMPY": ("a NumPy array", "Save it as csv: docs/formats.md lists the columns."),
+    b"\x93NUMPY": ("a NumPy array", f"Save it as csv: {AS_CSV}."),
     b"\x89PNG": ("a picture", "Name a recording."),
     b"%PDF": ("a PDF", "Name a recording."),
+    b"ULog": (
+        "a log of PX4",
+        "Turn it into csv with `ulog2csv` of pyulog, and join what was measured and what was sent "
+        f"to the thrusters under our names of columns: {AS_CSV}. timestamp is time_us, q[0] is qw.",
+    ),
+    b"LabVIEW Measurement": (
+        "a LabVIEW measurement file",
+        "Save the table below its last ***End_of_Header*** as csv, with our names of columns "
+        f"(X_Value is time_s): {AS_CSV}.",
+    ),
 }
+ZIP, MEMBER = b"PK\x03\x04", 30  # where the name of its first member starts
+ZIPPED = {
+    b".npy": (
+        "NumPy arrays (.npz)",
+        "Save them as csv: numpy.savetxt(file, table, delimiter=',', header='time_s,x_m,…', "
+        f"comments=''); {AS_CSV}.",
+    ),
+    b"": ("a zip archive or a spreadsheet", "Unpack it, or save the sheet as csv."),
+}
+# First lines of exports of Vicon, by what follows.
+MARKERS = ("Trajectories", "PathFileType")
+VICON = ("Objects", "Segments", "Devices", "Joints", "Model Outputs")
+TUM = 8  # numbers a line: time, position, quaternion (x, y, z, w)
 FORMATS = "a QTM, Motive, C3D or csv export, a ROS 2 bag or an ArduPilot log"
 
 
@@ -52,20 +75,46 @@ def _check_ending(path: Path, signature: Signature) -> None:
 
 
 def _refuse_known(path: Path, head: bytes) -> None:
-    for magic, (what, remedy) in KNOWN.items():
-        if head.startswith(magic):
-            raise BadInput(what, where=path, expected=FORMATS, remedy=remedy)
-    if "".join(head_lines(head)[:1]).startswith(("Trajectories", "PathFileType")):
-        raise BadInput(
+    known = [told for magic, told in KNOWN.items() if head.startswith(magic)]
+    if head.startswith(ZIP):
+        size = int.from_bytes(head[26:28], "little")
+        known = [ZIPPED[b".npy" if head[MEMBER : MEMBER + size].endswith(b".npy") else b""]]
+    if told := known[0] if known else _known_text(head_lines(head)):
+        raise BadInput(told[0], where=path, expected=FORMATS, remedy=told[1])
+
+
+def _known_text(lines: list[str]) -> tuple[str, str] | None:
+    """What a text is by its first line, and what to do about it."""
+    first = lines[0].strip() if lines else ""
+    if first.startswith(MARKERS):
+        return (
             "an export of markers (Vicon or TRC), not of rigid bodies",
-            where=path,
-            expected=FORMATS,
-            remedy="Export the rigid body (segment): position and attitude, as csv.",
+            "Export the rigid body (segment): position and attitude, as csv.",
         )
+    if first.rstrip(",;") in VICON:
+        return (
+            f"a csv export of Vicon that starts with {first.rstrip(',;')}",
+            "Export the object (segment) and save it as csv with our columns: time_s is (Frame − "
+            "1) over the rate in its second line, x_m, y_m, z_m are TX, TY, TZ / 1000, and qx, qy, "
+            "qz, qw are scipy's Rotation.from_rotvec of RX, RY, RZ, a rotation vector.",
+        )
+    if _is_tum(first):
+        return (
+            "text of eight numbers a line (a trajectory as TUM writes it)",
+            "Put the line time_s,x_m,y_m,z_m,qx,qy,qz,qw above, and commas for the spaces.",
+        )
+    return None
+
+
+def _is_tum(line: str) -> bool:
+    try:
+        return len([float(cell) for cell in line.split()]) == TUM
+    except ValueError:
+        return False
 
 
 def _unknown(path: Path, head: bytes) -> BadInput:
-    lines, remedy = head_lines(head), "Export the run again in one of these formats."
+    lines, remedy = head_lines(head), "Export the run in one of these formats."
     if decoded(head) is None:
         found = "binary data of no known kind"
     elif lines:
