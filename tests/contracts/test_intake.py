@@ -15,14 +15,17 @@ import bags
 from damage import damaged
 from recordings import FORMATS, Swim, command_lines, write_lines, write_poses
 from rovsim.application.intake.compose import propose
+from rovsim.application.intake.motions import CommandFile, MotionFile
 from rovsim.application.intake.names import run_ids, run_key
+from rovsim.application.intake.pairing import pair
 from rovsim.application.intake.proposal import ANSWER, CampaignProposal, Question
 from rovsim.application.intake.write import write_proposal
 from rovsim.application.intake.yaml_file import as_yaml
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import RovsimError
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.recording.readers import mocap_readers
+from rovsim.measurement.recording.readers import Export, mocap_readers
+from rovsim.measurement.survey import CommandCandidate, Track
 from rovsim.measurement.survey.csv_files import look_into_csv
 from said import unfolded
 
@@ -74,6 +77,26 @@ def test_runs_get_names_that_can_be_file_names_and_differ(stems):
 )
 def test_names_that_differ_in_their_role_alone_go_together(motion, commands):
     assert run_key(motion) == run_key(commands)
+
+
+def paired(motions, logs):
+    """Which log each motion gets where the motions tell nothing."""
+    time = np.arange(0.0, 20.0, 0.1)
+    drive = CommandCandidate("csv", ("t1",), time, np.zeros((200, 1)), "pwm", "")
+    track = Track("", Export(time, *(np.zeros((200, n)) for n in (3, 4)), np.ones(200, bool)))
+    found = pair(
+        [MotionFile(Path(f"{name}.csv"), track) for name in motions],
+        [CommandFile(Path(f"{name}.csv"), drive) for name in logs],
+        lambda motion, log: 0.0,
+    )
+    return [one.log.path.stem if one.log else None for one in found]
+
+
+def test_names_in_any_language_that_start_alike_go_together():
+    logs = ["3dof-2_Stellgroessen", "6dof-1_Stellgroessen", "3dof-1_Stellgroessen"]
+    motions = ["3dof-1_Messung", "3dof-2_Messung", "6dof-1_Messung"]
+    assert paired(motions, logs) == [logs[2], logs[0], logs[1]]
+    assert paired(["run_2_weg", "run_3_weg"], ["run_1_kraft", "run_4_kraft"]) == [None, None]
 
 
 def test_a_campaign_that_is_there_is_kept_unless_it_is_forced(tmp_path, capsys):

@@ -206,7 +206,7 @@ def test_propeller_torque_and_advance_loss_by_hand():
 
 
 def test_columns_that_do_not_fit_are_refused():
-    with pytest.raises(BadInput, match=r"7 command columns.*8"):
+    with pytest.raises(BadInput, match=r"7 command columns.*8 for commands of the kind pwm"):
         force(commands=log(np.zeros((3, 7))))
 
 

@@ -142,10 +142,11 @@ class ThrustPath:
     def _refuse(self, value: Array, kind: CommandKind) -> None:
         expected = self.columns(kind)
         if value.shape[1] != expected:
+            kinds = "pwm or normalized" if kind == "thruster" else kind
             raise BadInput(
                 f"{value.shape[1]} command columns",
                 where="commands.columns in campaign.yaml",
-                expected=f"{expected} for commands of the kind '{kind}' on this vehicle",
+                expected=f"{expected} for commands of the kind {kinds} on this vehicle",
                 remedy="Name one column per thruster (two where it turns) and surface, or the six "
                 "axes for demands.",
             )

@@ -1,8 +1,10 @@
 """Which log of commands belongs to which motion: by file, by what they cause, by name, by clock."""
 
+import re
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
-from typing import Callable, Sequence
+from typing import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -66,15 +68,50 @@ def _by_content(table: Array) -> list[int | None]:
 def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
     """The log whose name differs only in the words for motion, sensor and commands.
 
-    Where that tells nothing, the only log in the folder of a motion that is alone there.
+    Where that tells nothing, the one that starts with the same words, else the only log in the
+    folder of a motion that is alone there.
     """
     found: list[int | None] = [None] * len(motions)
-    for key in (_by_role, _by_sensor, _by_folder):
-        ours, theirs = ([key(x.path) for x in group] for group in (motions, logs))
-        for k, one in enumerate(ours):
-            if found[k] is None and one and ours.count(one) == theirs.count(one) == 1:
-                found[k] = theirs.index(one)
+    for key in (_by_role, _by_sensor):
+        _add_by(key, motions, logs, found)
+    for k, log in _by_first_words(motions, logs):
+        found[k] = log if found[k] is None else found[k]
+    _add_by(_by_folder, motions, logs, found)
     return found
+
+
+def _add_by(
+    key: Callable[[Path], str],
+    motions: Sequence[MotionFile],
+    logs: Sequence[CommandFile],
+    found: list[int | None],
+) -> None:
+    """Pairs that share a key with no other file, where none was found."""
+    ours, theirs = ([key(x.path) for x in group] for group in (motions, logs))
+    for k, one in enumerate(ours):
+        if found[k] is None and one and ours.count(one) == theirs.count(one) == 1:
+            found[k] = theirs.index(one)
+
+
+def _by_first_words(
+    motions: Sequence[MotionFile], logs: Sequence[CommandFile]
+) -> Iterator[tuple[int, int]]:
+    """Pairs whose names start with more words alike than with any other, and end without number."""
+    table = np.array([[_alike(m.path.stem, log.path.stem) for log in logs] for m in motions])
+    for k, row in enumerate(table):
+        best = int(np.argmax(row))
+        rivals = [*np.delete(row, best), *np.delete(table[:, best], k)]
+        if row[best] > max(rivals, default=0):
+            yield k, best
+
+
+def _alike(one: str, other: str) -> int:
+    """How many words two names start with alike; none where what is left has a number."""
+    ours, theirs = (re.split(r"[\W_]+", stem.casefold()) for stem in (one, other))
+    pairs = zip(ours, theirs, strict=False)
+    count = len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
+    left = "".join(ours[count:] + theirs[count:])
+    return 0 if re.search(r"\d", left) else count
 
 
 def _by_role(path: Path) -> str:
