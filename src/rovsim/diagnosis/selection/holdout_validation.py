@@ -29,9 +29,7 @@ Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 HOLDOUT_SHARE = 0.2  # of each run's time
 MIN_RUN_SECONDS = 60.0  # a fifth of less shows too few windows of 2 s
 WORSE_SHARE = 0.02  # of the error: less is within what the windows happen to hold
-SLIGHT_SHARE = (
-    0.005  # of the error: what is let go one after the other adds up to about WORSE_SHARE
-)
+SLIGHT_SHARE = 0.005  # of the error: what is let go one by one adds up to about WORSE_SHARE
 CERTAIN_STANDARD_ERRORS = 2.0  # over many windows
 MIN_WINDOWS = 2  # one tells nothing of chance
 REFIT_SHARE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
