@@ -147,6 +147,16 @@ def test_a_jump_of_one_frame_is_found_of_slow_cameras(seed, size, turn, hz):
     np.testing.assert_array_equal(np.flatnonzero(mask), places)
 
 
+@pytest.mark.parametrize("lost", [3, 2, 1])
+def test_a_good_frame_before_a_jump_and_a_dropout_is_kept(lost):
+    t = np.arange(400) / 10.0
+    eta = noisy(truth(t)[0], np.random.default_rng(4))
+    eta[200, :3] += [0.0, 0.12, 0.0]
+    found = np.arange(400) != 200 + lost
+    mask = find_outliers(record(t, eta, found, rate=10.0), VelocityGate())
+    assert set(np.flatnonzero(mask)) <= {200}
+
+
 @settings(deadline=None, max_examples=10)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_the_velocity_comes_back_to_within_the_noise_that_theory_leaves(seed):

@@ -1,32 +1,55 @@
 """Single frames that are not where their neighbours have them."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy import ndarray as Array
 
 OTHERS, FAR_MORE = 7, 6.0  # frames to either side, and how much more than their median is far
+BRIDGED = 3.5  # steps: neighbours may be as far apart, two frames being lost between them
 
 
-def beside_cubic(time: Array, x: Array, step: float) -> Array:
-    """How far (n,) each of `x` (n, c) is from the cubic through two neighbours to either side.
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """Two frames to either side of each of `time` (n,), and `weights` of the cubic through them.
 
-    NaN at both ends, and where a neighbour is not there.
+    `stop` (n,) s: that cubic misses a vehicle that stops dead at the frame by its speed times this.
+    Both are NaN at the ends of `time`, and beside gaps.
     """
-    off = np.full(len(time), np.nan)
-    nodes = [slice(0, -4), slice(1, -3), slice(3, -1), slice(4, None)]
-    ago = [time[own] - time[2:-2] for own in nodes]
-    expected = np.zeros_like(x[2:-2])
-    for own, t in zip(nodes, ago, strict=True):
-        weight = np.prod([other / (other - t) for other in ago if other is not t], axis=0)
-        expected += weight[:, None] * x[own]
-    whole = np.maximum.reduce(np.diff([*ago[:2], np.zeros(len(ago[0])), *ago[2:]], axis=0))
-    off[2:-2] = np.where(whole < 1.5 * step, np.linalg.norm(x[2:-2] - expected, axis=1), np.nan)
-    return off
+
+    time: Array
+    weights: Array
+    stop: Array
+
+    @staticmethod
+    def of(time: Array, step: float) -> "Neighbours":
+        """Neighbours of frames that are usually `step` s apart."""
+        ago = np.stack([time[own] - time[2:-2] for own in _NODES])
+        weights = np.ones_like(ago)
+        for k, j in np.argwhere(~np.eye(4, dtype=bool)):
+            weights[k] *= ago[j] / (ago[j] - ago[k])
+        apart = np.diff(np.insert(ago, 2, 0.0, axis=0), axis=0).max(axis=0)
+        weights[:, apart >= BRIDGED * step] = np.nan
+        return Neighbours(time, weights, _padded(np.abs(np.sum((weights * ago)[2:], axis=0))))
+
+    def beside(self, x: Array) -> Array:
+        """How far (n,) each of `x` (n, c) is from the cubic."""
+        expected = sum(w[:, None] * x[own] for w, own in zip(self.weights, _NODES, strict=True))
+        return _padded(np.linalg.norm(x[2:-2] - expected, axis=1))
 
 
-def find_far(off: Array, limit: float) -> Array:
-    """Where (n,) frames are further `off` (n,) than `limit`, and far more so than those nearby.
+_NODES = [slice(0, -4), slice(1, -3), slice(3, -1), slice(4, None)]
+
+
+def _padded(inner: Array) -> Array:
+    return np.pad(inner, 2, constant_values=np.nan)
+
+
+def find_far(off: Array, limit: Array) -> Array:
+    """Where (n,) frames are further `off` (n,) than `limit` (n,), and far more than those nearby.
 
     An outlier shifts what is expected of two frames to either side, too: of these, the furthest.
+    Where nothing was expected of the next frame, it may be the outlier, and nobody can tell.
     """
     padded = np.pad(off, OTHERS, constant_values=np.nan)
     nearby = np.lib.stride_tricks.sliding_window_view(padded, 2 * OTHERS + 1)
@@ -35,5 +58,6 @@ def find_far(off: Array, limit: float) -> Array:
         own = nearby[k, OTHERS - 2 : OTHERS + 3]
         others = np.delete(nearby[k], slice(OTHERS - 2, OTHERS + 3))
         usual = np.median(others[~np.isnan(others)]) if not np.isnan(others).all() else np.inf
-        far[k] = off[k] >= np.nanmax(own) and off[k] > FAR_MORE * usual
+        sure = np.isfinite(own[1:4]).all() and off[k] >= np.nanmax(own)
+        far[k] = sure and off[k] > FAR_MORE * usual
     return far

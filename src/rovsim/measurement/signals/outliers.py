@@ -10,7 +10,7 @@ from rovsim.core import rotations
 from rovsim.core.normal import STD_PER_MAD
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
-from rovsim.measurement.signals.neighbours import beside_cubic, find_far
+from rovsim.measurement.signals.neighbours import Neighbours, find_far
 
 # How far back the gate looks for a stretch to continue from; bounds the work on hopeless runs.
 LOOK_BACK = 1000
@@ -22,7 +22,6 @@ CUT_END = 1.0
 # s: from such steps on, frames are compared with their neighbours; of faster cameras the filter
 # takes away what the gate lets pass.
 SLOW = 0.04
-DEAD_STOP = 1.0 / 3.0  # of a step: how far a cubic through the neighbours misses a sudden stop
 
 
 class VelocityGate(Section):
@@ -34,9 +33,8 @@ class VelocityGate(Section):
     or two good frames between a swap and the end of the run are rejected with the swap.
 
     Steps of a slow camera are long, and jumps that pass are far. There a frame is rejected, too,
-    that is not where a cubic through two frames to either side has it: by more than a third of the
-    longest step, as far as a vehicle at full speed deviates that stops dead, and by far more than
-    frames nearby.
+    that is not where a cubic through two frames to either side has it: by more than a vehicle at
+    full speed that stops dead (a third of a step), and by far more than frames nearby.
     """
 
     kind: Literal["velocity_gate"] = "velocity_gate"
@@ -74,12 +72,11 @@ class VelocityGate(Section):
         """Mask (n,) of single frames of a slow camera that are far from where others have them."""
         if len(time) < 5:
             return np.zeros(len(time), bool)
-        off = beside_cubic(time, position, step)
-        turned = beside_cubic(time, rotations.continuous(attitude), step)
+        beside = Neighbours.of(time, step)
+        off, turned = beside.beside(position), beside.beside(rotations.continuous(attitude))
         turned = 4.0 * np.arcsin(np.clip(turned / 2.0, 0.0, 1.0))
-        share = DEAD_STOP * step
-        return find_far(off, self.max_speed * share + self.tolerance) | find_far(
-            turned, self.max_rate * share + self.angle_tolerance
+        return find_far(off, self.max_speed * beside.stop + self.tolerance) | find_far(
+            turned, self.max_rate * beside.stop + self.angle_tolerance
         )
 
 
