@@ -27,6 +27,7 @@ from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording.readers import Export, mocap_readers
 from rovsim.measurement.survey import CommandCandidate, Track
 from rovsim.measurement.survey.csv_files import look_into_csv
+from rovsim.measurement.survey.starts import find_start
 from said import unfolded
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), min_size=1)
@@ -77,6 +78,21 @@ def test_runs_get_names_that_can_be_file_names_and_differ(stems):
 )
 def test_names_that_differ_in_their_role_alone_go_together(motion, commands):
     assert run_key(motion) == run_key(commands)
+
+
+@pytest.mark.parametrize(
+    ("header", "start"),
+    [
+        ("NO_OF_FRAMES\t6000\nTIME_STAMP\t2026-05-12, 20:14:07.250\t812.5\n", 1778616847.25),
+        ("Format Version,1.23,Capture Start Time,2026-05-12 08.14.07.250 PM,x\n", 1778616847.25),
+        ("TIME_STAMP\t2026-05-12, 20:14:07\n", 1778616847.0),
+        ("TIME_STAMP\t2026-15-12, 20:14:07\n", None),
+        ("time_s,x_m\n", None),
+    ],
+)
+def test_the_start_of_a_recording_stands_in_its_header(tmp_path, header, start):
+    (tmp_path / "take").write_text(header)
+    assert find_start(tmp_path / "take") == start
 
 
 def paired(motions, logs):

@@ -6,11 +6,11 @@ from typing import Container, Iterator, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.intake.choice import Choice
+from rovsim.application.intake.facts import Facts
 from rovsim.application.intake.motions import CommandFile, MotionFile
 from rovsim.application.intake.vehicles import Fit, as_logged
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.evaluation.commanded_motion.clocks import tell_following
+from rovsim.evaluation.commanded_motion.clocks import tell_following, tell_together
 from rovsim.evaluation.commanded_motion.conventions import BETTER, find_convention
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION
 from rovsim.evaluation.commanded_motion.predicted import held, respond, wrench
@@ -19,6 +19,7 @@ from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.survey.grid import even_poses
+from rovsim.measurement.survey.starts import find_start
 
 
 def unusable(motion: MotionFile) -> str | None:
@@ -33,13 +34,16 @@ def unusable(motion: MotionFile) -> str | None:
     return usable_reason(recording)
 
 
-def check_clocks(
-    choice: Choice, axes: Array, names: Sequence[str], told: Container[int] = ()
-) -> Iterator[str]:
+def check_clocks(facts: Facts, axes: Array, told: Container[int] = ()) -> Iterator[str]:
     """Runs, but those `told` of, whose motion does not follow its commands, or not in time."""
-    for k, one in choice.runs.items():
-        if k not in told and (said := tell_following(one, axes)):
-            yield f"{names[k]}: {said}"
+    runs = {k: one for k, one in facts.choice.runs.items() if k not in told}
+    starts = {k: find_start(facts.pairs[k].motion.path) for k in runs}
+    if said := tell_together([*runs.values()], axes, next(iter(starts.values()), None)):
+        yield f"all runs: {said}"
+        return
+    for k, one in runs.items():
+        if said := tell_following(one, axes, starts[k]):
+            yield f"{facts.ids[k]}: {said}"
 
 
 def check_attitudes(

@@ -89,7 +89,7 @@ def _against_commands(facts: Facts, fit: Fit) -> Iterator[str]:
     most = max(runs, key=lambda n: int(runs[n].excited.sum()))
     told = dict(_by_convention(facts, fit, axes, most))
     if body and facts.choice.fit:
-        yield from checks.check_clocks(facts.choice, axes, facts.ids, told)
+        yield from checks.check_clocks(facts, axes, told)
     log = facts.pairs[most].shown
     if log and facts.choice.fit and not told:
         lag = runs[most].best(axes)[1]

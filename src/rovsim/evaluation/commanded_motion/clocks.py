@@ -1,5 +1,8 @@
 """A motion that does not follow its commands, or too late or too early."""
 
+from typing import Sequence
+
+import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, CrossCorrelation
@@ -11,14 +14,20 @@ EARLIEST, LATEST = -0.25, 0.6  # s
 CLEARER, AWAY = 0.03, 1.0  # correlation by which it must be higher, s beyond the usual lags
 QUARTER = 900.0  # s: time zones differ by whole quarters of an hour
 LOOSE = 60.0  # s by which clocks that were set by hand differ beside it
+DAY = 86400.0  # s: no time zones are further apart
 FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
 
 
-def tell_following(found: CrossCorrelation, axes: Array) -> str:
+# Of runs with one offset of their clocks, the lags of the best correlation lie within this.
+SCATTER = 0.4  # s
+
+
+def tell_following(found: CrossCorrelation, axes: Array, start: float | None = None) -> str:
     """That a motion hardly follows its commands, or too late or too early; else nothing.
 
     Body axes being `axes` (3, 3). Where commanded axes were not measured, a low likeness of the
-    others tells nothing.
+    others tells nothing. `start`: when the motion's own file says that it began, local time as s
+    since 1970.
     """
     score, lag = found.best(axes)
     if score < MIN_CORRELATION and found.unseen:
@@ -28,14 +37,55 @@ def tell_following(found: CrossCorrelation, axes: Array) -> str:
             f"the motion hardly follows its commands (likeness {score:.2f}): another log, another "
             "vehicle, a tether that pulls?"
         )
+    if not is_off(found, axes):
+        return ""
+    return _tell(score, lag, start)
+
+
+def tell_together(
+    found: Sequence[CrossCorrelation], axes: Array, start: float | None = None
+) -> str:
+    """That the clocks of all runs differ by the same, within what a correlation leaves open.
+
+    `start` as in `tell_following`, of any of them.
+    """
+    if len(found) < 2:
+        return ""
+    scores, lags = np.array([one.best(axes) for one in found]).reshape(-1, 2).T
+    alike = min(scores) >= MIN_CORRELATION and np.ptp(lags) < SCATTER
+    if not alike or not all(is_off(one, axes) for one in found):
+        return ""
+    return _tell(float(np.mean(scores)), float(np.median(lags)), start)
+
+
+def is_off(found: CrossCorrelation, axes: Array) -> bool:
+    """Whether a motion comes clearly later or earlier than thrusters answer."""
+    score, lag = found.best(axes)
     beyond = max(EARLIEST - lag, lag - LATEST)
     usual = (found.lag >= EARLIEST) & (found.lag <= LATEST)
     near = found.along(axes)[usual].max(initial=-1.0)
-    if beyond <= 0.0 or (beyond > AWAY and score < near + CLEARER):
+    return bool(beyond > 0.0 and (beyond <= AWAY or score >= near + CLEARER))
+
+
+def _by_start(lag: float, start: float) -> str:
+    """A clock since 1970 beside one since the start, by when that was; nothing where it is not."""
+    zone = QUARTER * round((start + lag) / QUARTER)
+    if abs(lag) < DAY or abs(zone) > DAY or not EARLIEST <= lag + start - zone <= LATEST:
         return ""
+    less = f", less {zone / 3600.0:+g} h for its time zone" if zone else ""
+    return (
+        "the times of the commands count from 1970, those of the motion from its start: add "
+        f"{zone - start:+.3f} s to the times of the commands. That is the start in the header of "
+        f"the motion{less}; an `input_delay` that a diagnosis then finds is what is left of it."
+    )
+
+
+def _tell(score: float, lag: float, start: float | None) -> str:
+    if start is not None and (told := _by_start(lag, start)):
+        return told
     how = "after" if lag > 0 else "before"
     zone = QUARTER * round(lag / QUARTER)
-    if zone and abs(lag - zone) < LOOSE:
+    if zone and abs(lag) < DAY and abs(lag - zone) < LOOSE:
         rest = f" first, and look at the {lag - zone:+.1f} s that remain" if lag != zone else ""
         told = f"a time zone? Add {zone:+.0f} s to the times of the commands{rest}"
     else:
