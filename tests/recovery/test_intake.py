@@ -317,3 +317,22 @@ def test_axes_that_nobody_measured_raise_no_alarm(flown, tmp_path, dropped):
     assert "likeness nan" not in text
     assert "hardly follows" not in text
     assert "CHECK" not in text
+
+
+@pytest.mark.parametrize("name", ["t{}", "/mavros/rc/out/channels[{}]"])
+def test_poses_and_commands_on_lines_of_their_own_in_one_file(flown, tmp_path, name):
+    for run, swim in flown.swims.items():
+        poses = write_poses(tmp_path, "csv", swim.along("z_up", "flu")).read_text().splitlines()
+        head = ",".join([poses[0], *(name.format(k) for k in range(1, 9))])
+        rows = [line.split(",", 1) for line in flown.commands[run][1:]]
+        lines = [f"{line}{8 * ','}" for line in poses[1:]]
+        lines += [f"{time}{7 * ','}{rest}" for time, rest in rows]
+        lines.sort(key=lambda line: float(line.partition(",")[0]))
+        write_lines(tmp_path / f"{run}.csv", [head, *lines])
+    (tmp_path / "poses.csv").unlink()
+    content, text = init(tmp_path)
+    assert content["commands"]["columns"] == [name.format(k) for k in range(1, 9)]
+    assert content["vehicle"].startswith("bluerov2_heavy")
+    assert axes_of(content) == ("z_up", "flu")
+    assert all(run["commands"] == run["mocap"] for run in content["runs"])
+    assert "CHECK" not in text

@@ -7,6 +7,7 @@ look          that, by the readers of `recording`
 bags          in ROS 2 bags
 logs          in ArduPilot logs
 csv_files     in csv files
+other_numbers their columns of numbers that are no measured channel
 headings      csv files whose columns have other names or units: a copy with ours
 command_names what names say of commands: forces and moments, sticks, other units
 column_names  our channels in other words, and units behind them

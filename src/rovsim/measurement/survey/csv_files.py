@@ -17,31 +17,19 @@ from rovsim.measurement.recording.csv import KNOWN, read_csv
 from rovsim.measurement.recording.table import (
     TIME,
     Lines,
-    column_places,
     csv_lines,
     no_time,
-    numbers,
-    without_cut_line,
 )
 from rovsim.measurement.recording.tidying import tidy_export
-from rovsim.measurement.recording.times import times
 from rovsim.measurement.survey.command_names import find_wrench, has_other_unit, hint
 from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.headings import rewritten
+from rovsim.measurement.survey.other_numbers import find_numbers, find_sparse
 from rovsim.measurement.survey.repeats import SeveralRuns, check_one_run, tell_repeats
 from rovsim.measurement.survey.sizes import Key, Unit, Units
 
-# Columns that count or watch something, whatever their size.
-WATCHED = re.compile(
-    r"(frame|index|idx|count|seq|id|line|row|unnamed.*|volt.*|battery.*|bat|current.*|amp.*|temp.*|"
-    r"pressure.*|mode|armed|status|quality|residual|sec|nsec|stamp|time.*|)(_.*)?",
-    re.IGNORECASE,
-)
 RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
 THOUSANDTHS = 1050.0  # how far shares of a full stick reach that were multiplied by 1000
-SOME = 0.5  # share of the lines in which a column of commands has a value
-
-
 EXPECTED = "pulses of 800 to 2200 us, shares from -1 to 1, or columns named after axes"
 
 
@@ -92,7 +80,7 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
 
 def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
     """The error of a file without anything that is known; `unknown` as `_unknown` tells it."""
-    if "time_s" not in lines.names:
+    if TIME not in lines.names:
         return no_time(path, lines.names)
     if not unknown:
         return BadInput(
@@ -119,25 +107,11 @@ def _track(path: Path) -> Track:
     return Track("", tidy_export(read_csv(path, mocap), path)[0])
 
 
-def _other_numbers(lines: Lines) -> tuple[Array, dict[str, Array]]:
-    """Times (m,) s, and columns (m,) of numbers that are neither measured nor watched."""
-    kept = [
-        name for name in lines.names
-        if name not in (*KNOWN, "time_s") and lines.names.count(name) == 1
-        and not WATCHED.fullmatch(name)
-    ]  # fmt: skip
-    places = column_places(lines.path, lines.names, ["time_s", *kept])
-    table, _ = without_cut_line(lines, places)
-    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
-               if (v := _numbers(table, p)) is not None}  # fmt: skip
-    return times(table, places[0]), columns
-
-
 def _unknown(lines: Lines) -> str:
     """Columns of numbers that change and are nothing that is known, with their sizes and a hint."""
-    if "time_s" not in lines.names:
+    if TIME not in lines.names:
         return ""
-    _, columns = _other_numbers(lines)
+    _, columns = find_numbers(lines)
     moving = {name: v for name, v in columns.items() if np.nanmin(v) < np.nanmax(v)}
     if not moving:
         return ""
@@ -148,10 +122,19 @@ def _unknown(lines: Lines) -> str:
 
 def _drive(lines: Lines) -> CommandCandidate | None:
     """Columns that look like commands, if there are any."""
-    if "time_s" not in lines.names:
+    if TIME not in lines.names:
         return None
     voltage = ("voltage",) if lines.names.count("voltage") == 1 else ()
-    time, columns = _other_numbers(lines)
+    found = _commands(*find_numbers(lines), voltage)
+    if found is None:
+        found = _commands(*find_sparse(lines), ())
+        return found if found and found.kind else None
+    return found
+
+
+def _commands(
+    time: Array, columns: dict[str, Array], voltage: tuple[str, ...]
+) -> CommandCandidate | None:
     if radio := _radio(columns):
         value = np.stack([columns[name] for name in radio.values()], axis=1)
         signed = tuple("-" * (c[0] == "-") + name for c, name in radio.items())
@@ -183,15 +166,6 @@ def _drive(lines: Lines) -> CommandCandidate | None:
         "csv", tuple(chosen), time, value, kind, said, auxiliary=voltage, rest=rest,
         asked=kind == "wrench",
     )  # fmt: skip
-
-
-def _numbers(table: Lines, place: int) -> Array | None:
-    """A column (n,), None where it is no column of numbers or mostly empty."""
-    try:
-        value = numbers(table, [place])[:, 0]
-    except BadInput:
-        return None
-    return value if np.isfinite(value).mean() >= SOME else None
 
 
 def _radio(columns: dict[str, Array]) -> dict[str, str]:

@@ -1,0 +1,81 @@
+"""Columns of a csv file that hold numbers and are no measured channel: commands may be among them.
+
+On every line, or on lines of their own where several topics share a file.
+"""
+
+import re
+from collections import defaultdict
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.measurement.recording.csv import KNOWN
+from rovsim.measurement.recording.table import (
+    TIME,
+    Lines,
+    column_places,
+    numbers,
+    without_cut_line,
+)
+from rovsim.measurement.recording.times import times
+
+# Columns that count or watch something, whatever their size.
+WATCHED = re.compile(
+    r"(frame|index|idx|count|seq|id|line|row|unnamed.*|volt.*|battery.*|bat|current.*|amp.*|temp.*|"
+    r"pressure.*|mode|armed|status|quality|residual|sec|nsec|stamp|time.*|)(_.*)?",
+    re.IGNORECASE,
+)
+SOME = 0.5  # share of the lines in which a column of commands has a value
+FEWEST = 10  # lines of a series on lines of its own
+Columns = tuple[Array, dict[str, Array]]  # times (m,) s, and columns (m,) by their names
+
+
+def find_numbers(lines: Lines) -> Columns:
+    """Columns that have a value on most lines."""
+    time, columns = _all(lines)
+    return time, {n: v for n, v in columns.items() if np.isfinite(v).mean() >= SOME}
+
+
+def find_sparse(lines: Lines) -> Columns:
+    """Numbered columns, or such named after axes, that share lines of their own: these lines."""
+    time, columns = _all(lines)
+    series: dict[tuple[str, bytes], list[str]] = defaultdict(list)
+    for name, value in columns.items():
+        given = np.isfinite(value)
+        if FEWEST <= given.sum() < SOME * len(value):
+            series[_stem(name), given.tobytes()].append(name)
+    longest = max(series.values(), key=len, default=[])
+    if len(longest) < 2:
+        return time[:0], {}
+    given = np.isfinite(columns[longest[0]])
+    return time[given], {name: columns[name][given] for name in longest}
+
+
+def _stem(name: str) -> str:
+    """What the names of a series share: `t1`, `channels[3]`, or surge to yaw."""
+    return "" if name in AXES else re.sub(r"\d+(?=\D*$)", "#", name)
+
+
+def _all(lines: Lines) -> Columns:
+    """Columns of numbers that are neither measured nor watched."""
+    kept = [
+        name for name in lines.names
+        if name not in (*KNOWN, TIME) and lines.names.count(name) == 1
+        and not WATCHED.fullmatch(name)
+    ]  # fmt: skip
+    places = column_places(lines.path, lines.names, [TIME, *kept])
+    table, _ = without_cut_line(lines, places)
+    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
+               if (v := _numbers(table, p)) is not None}  # fmt: skip
+    return times(table, places[0]), columns
+
+
+def _numbers(table: Lines, place: int) -> Array | None:
+    """A column (n,), None where it is no column of numbers or empty."""
+    try:
+        value = numbers(table, [place])[:, 0]
+    except BadInput:
+        return None
+    return value if np.isfinite(value).any() else None
