@@ -7,6 +7,7 @@ loading        from that file to a checked campaign
 sensors        where sensors sit, and how late they are
 recording      raw exports in, recordings in NED and FRD out
 signals        from poses to velocities and accelerations
+means          are velocities means from line to line? the poses may tell
 quality        how good a recording is
 remarks        the same in sentences
 held_out       test runs that repeat train runs

@@ -20,6 +20,7 @@ commands      logged values become commands
 joined        several files of one run
 tidying       sorted by time, each time once
 reading       from the files of a run to a recording
+repeated      poses that are those of the line before
 recording     a run as it was logged, before any filter
 """
 
