@@ -18,9 +18,13 @@ from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import conjugate, from_euler, to_euler
 from rovsim.core.yaml_files import read_yaml, write_yaml
+from rovsim.evaluation.commanded_motion.clocks import tell_following
+from rovsim.evaluation.commanded_motion.cross_correlation import cross_correlate
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
+from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.signals.outliers import KeepAll
+from rovsim.measurement.survey.grid import velocities
 from said import unfolded
 
 
@@ -156,6 +160,17 @@ def test_a_clock_that_differs_is_put_right_by_what_is_said(campaign, late):
     found = re.search(r"add ([-+]\d+\.\d) s to the times of the commands", said)
     assert float(found.group(1)) == pytest.approx(late, abs=0.25)
     assert "let `input_delay` find it" not in said
+
+
+def test_a_time_zone_is_told_without_a_remainder_of_nothing(campaign):
+    vehicle = load_campaign_vehicle(load_campaign(campaign))
+    recording, _ = read_recording(load_campaign(campaign), "6dof-1")
+    caused = cause(vehicle, recording.commands, 0.0, 120.0)
+    lag = cross_correlate(velocities(recording), *caused).best(np.eye(3))[1]
+    for rest, told in ((0.0, "Add +7200 s to the times of the commands."), (5.0, "the +5.0 s")):
+        late = 7200.0 + rest - lag
+        found = cross_correlate(velocities(recording), caused[0] - late, caused[1], late)
+        assert told in tell_following(found, np.eye(3))
 
 
 def test_times_of_commands_in_ms_are_refused(campaign):

@@ -86,7 +86,8 @@ def _tell(score: float, lag: float, start: float | None) -> str:
     how = "after" if lag > 0 else "before"
     zone = QUARTER * round(lag / QUARTER)
     if zone and abs(lag) < DAY and abs(lag - zone) < LOOSE:
-        rest = f" first, and look at the {lag - zone:+.1f} s that remain" if lag != zone else ""
+        left = f"{lag - zone:+.1f}"
+        rest = f" first, and look at the {left} s that remain" if float(left) else ""
         told = f"a time zone? Add {zone:+.0f} s to the times of the commands{rest}"
     else:
         told = (
