@@ -185,6 +185,7 @@ def test_forces_of_a_search_are_those_of_the_model():
     search.add(run)
     heave = next(f for f in search.found.explanation.findings if f.axis == "heave")
     assert heave.condition == "throughout"
-    mean = search.found.blocks.error.mean(axis=0)
+    samples = sample_run(model(), run, SignalSettings(), ReplaySettings())
+    mean = average_blocks(run, samples).error.mean(axis=0)
     assert heave.push == pytest.approx(model().M[2] @ mean)
     assert heave.push < -50.0
