@@ -159,6 +159,14 @@ def log(q: Array) -> Array:
     return ratio * q[..., 1:]
 
 
+def turns(q: Array) -> Array:
+    """Rotation vectors (n - 1, 3) in rad, body axes, from each of the attitudes (n, 4) to the next.
+
+    The shorter way round, whatever the signs of the quaternions.
+    """
+    return log(multiply(conjugate(q[:-1]), q[1:]))
+
+
 def body_rates(q: Array, q_dot: Array) -> Array:
     """Angular velocity (..., 3) in the body frame: omega = 2 q* q_dot (Fossen 2021, eq. 2.78)."""
     return 2.0 * multiply(conjugate(q), q_dot)[..., 1:]

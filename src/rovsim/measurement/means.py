@@ -5,7 +5,7 @@ from typing import Iterator
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.rotations import conjugate, continuous, exp, log, multiply, unrotate
+from rovsim.core.rotations import exp, multiply, turns, unrotate
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.binned import LONG_BIN
 
@@ -61,9 +61,8 @@ def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | Non
 
 def _moved(recording: Recording) -> Array:
     """Way and turn (n - 1, 6) from pose to pose, along the body's axes halfway."""
-    q = continuous(recording.attitude)
-    turn = log(multiply(conjugate(q[:-1]), q[1:]))
-    halfway = multiply(q[:-1], exp(0.5 * turn))
+    turn = turns(recording.attitude)
+    halfway = multiply(recording.attitude[:-1], exp(0.5 * turn))
     return np.hstack([unrotate(halfway, np.diff(recording.position, axis=0)), turn])
 
 

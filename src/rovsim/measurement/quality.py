@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.normal import STD_PER_MAD
-from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
+from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, turns, unrotate
 from rovsim.measurement.means import doubt_means
 from rovsim.measurement.recording.channels import KINDS
 from rovsim.measurement.recording.reading import Anomalies
@@ -170,10 +170,9 @@ def _differences(
     time, position, attitude = (_blocks(a, size) for a in (time, position, attitude))
     step = np.diff(time[:, 0])
     near = step < 1.5 * size / rate  # no difference across a gap
-    q, dt = attitude[:-1], step[:, None]
-    linear = unrotate(q, np.diff(position, axis=0) / dt)
-    angular = log(multiply(conjugate(q), attitude[1:])) / dt
-    return np.hstack([linear, angular])[near]
+    dt = step[:, None]
+    linear = unrotate(attitude[:-1], np.diff(position, axis=0) / dt)
+    return np.hstack([linear, turns(attitude) / dt])[near]
 
 
 def measure_noise(recording: Recording) -> PoseNoise:
@@ -185,8 +184,7 @@ def measure_noise(recording: Recording) -> PoseNoise:
     """
     _, position, attitude = _seen(recording)
     even = _evenly_spaced(recording)
-    turns = log(multiply(conjugate(attitude[:-1]), attitude[1:]))
-    moved, turned = np.diff(position, 3, axis=0)[even], np.diff(turns, 2, axis=0)[even]
+    moved, turned = np.diff(position, 3, axis=0)[even], np.diff(turns(attitude), 2, axis=0)[even]
     return PoseNoise(position_m=_robust_std(moved), attitude_rad=_robust_std(turned))
 
 

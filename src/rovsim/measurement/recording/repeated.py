@@ -11,7 +11,7 @@ from typing import Iterator
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.rotations import conjugate, continuous, log, multiply
+from rovsim.core.rotations import turns
 from rovsim.measurement.recording.readers import Export
 
 # A camera slower than its log: nearly all poses stand in several lines, most of them in as many.
@@ -80,9 +80,8 @@ class _Seen:
 
     def steps(self) -> tuple[Array, Array]:
         """How far (n - 1,) m the vehicle moved, and how far (n - 1,) rad it turned."""
-        q = continuous(self.attitude)
-        turns = log(multiply(conjugate(q[:-1]), q[1:]))
-        return np.linalg.norm(np.diff(self.position, axis=0), axis=1), np.linalg.norm(turns, axis=1)
+        moved = np.diff(self.position, axis=0), turns(self.attitude)
+        return np.linalg.norm(moved[0], axis=1), np.linalg.norm(moved[1], axis=1)
 
 
 def _lines_of_a_pose(seen: _Seen) -> int:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, unrotate
+from rovsim.core.rotations import continuous, normalized, turns, unrotate
 from rovsim.measurement.recording.channels import Channel, Channels
 from rovsim.measurement.recording.readers import Export
 from rovsim.measurement.recording.recording import Recording
@@ -129,8 +129,8 @@ def _interpolated(clock: Array, time: Array, values: Array) -> Array:
 
 def _rates(time: Array, attitude: Array) -> Array:
     """Angular velocities (n, 3) in the body axes of attitudes (n, 4)."""
-    turns = log(multiply(conjugate(attitude[:-1]), attitude[1:]))
-    return smooth(np.vstack([turns, turns[-1:]]) / time_step(time))
+    turned = turns(attitude)
+    return smooth(np.vstack([turned, turned[-1:]]) / time_step(time))
 
 
 def slopes(time: Array, values: Array) -> Array:
