@@ -102,7 +102,8 @@ def _check(
     for one in motions:
         formats.setdefault(one.format, []).append(one.named.name)
     if len(formats) > 1:
-        listed = "; ".join(f"{name}: {', '.join(files[:5])}" for name, files in formats.items())
+        each = (f"{name}: {', '.join(files[:MOST_TOLD])}" for name, files in formats.items())
+        listed = "; ".join(each)
         raise BadInput(
             f"motions of {len(formats)} formats ({listed})",
             where=where,

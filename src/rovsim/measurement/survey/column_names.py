@@ -37,9 +37,14 @@ UNITS = {
 }  # fmt: skip
 
 
+def in_words(name: str) -> str:
+    """A name in lower case, underscores in place of blanks, dots, slashes and brackets."""
+    return re.sub(r"[\s.\[\](){}/]+", "_", name.strip().lower()).strip("_")
+
+
 def split_unit(name: str) -> tuple[str, str]:
     """A name without its unit, in lower case with underscores, and the unit."""
-    text = re.sub(r"[\s.\[\](){}/]+", "_", name.strip().lower().lstrip("%")).strip("_")
+    text = in_words(name.strip().lstrip("%"))
     for unit in sorted(UNITS, key=len, reverse=True):
         if text.endswith(f"_{unit}"):
             return text.removesuffix(f"_{unit}"), unit

@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.measurement.recording.commands import guess_unit
+from rovsim.measurement.survey.column_names import in_words
 
 # Names in lower case with underscores, without their units.
 WRENCH = dict(
@@ -36,7 +37,7 @@ def find_wrench(names: Iterable[str]) -> dict[str, str]:
     """
     found: dict[str, str] = {}
     for name in names:
-        text = re.sub(r"[\s.\[\](){}/]+", "_", name.strip().lower()).strip("_")
+        text = in_words(name)
         stem = re.sub(rf"{FORCE}$", "", text) if re.search(rf"_{FORCE[2:]}$", text) else text
         axis = stem if stem in AXES and stem != text else None
         axis = axis or next((a for a, form in WRENCH.items() if re.fullmatch(form, stem)), None)
@@ -76,9 +77,10 @@ def hint(columns: Mapping[str, Array]) -> str:
             "They are forces in N by their names: add them up to the wrench on the vehicle, with "
             "columns surge … yaw in N and N m, kind wrench"
         )
-    unit = guess_unit(*_range(list(columns.values())))
+    unit = guess_unit(*find_range(list(columns.values())))
     return f"They may be {unit}" if unit else ""
 
 
-def _range(values: Sequence[Array]) -> tuple[float, float]:
+def find_range(values: Sequence[Array]) -> tuple[float, float]:
+    """The least and the largest number in columns."""
     return min(float(np.nanmin(v)) for v in values), max(float(np.nanmax(v)) for v in values)

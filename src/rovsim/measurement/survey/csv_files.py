@@ -21,10 +21,15 @@ from rovsim.measurement.recording.table import (
     no_time,
 )
 from rovsim.measurement.recording.tidying import tidy_export
-from rovsim.measurement.survey.command_names import find_wrench, has_other_unit, hint
+from rovsim.measurement.survey.command_names import (
+    find_range,
+    find_wrench,
+    has_other_unit,
+    hint,
+)
 from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.headings import rewritten
-from rovsim.measurement.survey.other_numbers import find_numbers, find_sparse
+from rovsim.measurement.survey.other_numbers import Columns, find_numbers, find_sparse, read_others
 from rovsim.measurement.survey.repeats import SeveralRuns, check_one_run, tell_repeats
 from rovsim.measurement.survey.sizes import Key, Unit, Units
 
@@ -64,8 +69,9 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     lines = csv_lines(place)
     check_one_run(replace(lines, path=path))
     known = [name for name in lines.names if name in KNOWN]
-    drive = _drive(lines)
-    unknown = "" if drive else _unknown(lines)
+    others = read_others(lines)
+    drive = _drive(lines, others)
+    unknown = "" if drive else _unknown(others)
     if not known and drive is None:
         raise _nothing(path, lines, unknown)
     tracks = (_track(place),) if known else ()
@@ -107,11 +113,9 @@ def _track(path: Path) -> Track:
     return Track("", tidy_export(read_csv(path, mocap), path)[0])
 
 
-def _unknown(lines: Lines) -> str:
+def _unknown(others: Columns) -> str:
     """Columns of numbers that change and are nothing that is known, with their sizes and a hint."""
-    if TIME not in lines.names:
-        return ""
-    _, columns = find_numbers(lines)
+    _, columns = find_numbers(others)
     moving = {name: v for name, v in columns.items() if np.nanmin(v) < np.nanmax(v)}
     if not moving:
         return ""
@@ -120,14 +124,12 @@ def _unknown(lines: Lines) -> str:
     return _some(told) + (f". {said}" if said else "")
 
 
-def _drive(lines: Lines) -> CommandCandidate | None:
+def _drive(lines: Lines, others: Columns) -> CommandCandidate | None:
     """Columns that look like commands, if there are any."""
-    if TIME not in lines.names:
-        return None
     voltage = ("voltage",) if lines.names.count("voltage") == 1 else ()
-    found = _commands(*find_numbers(lines), voltage)
+    found = _commands(*find_numbers(others), voltage)
     if found is None:
-        found = _commands(*find_sparse(lines), ())
+        found = _commands(*find_sparse(others), ())
         return found if found and found.kind else None
     return found
 
@@ -191,7 +193,7 @@ def _kind(columns: dict[str, Array]) -> tuple[LoggedKind | None, list[str], str]
     plain = {name: value for name, value in columns.items() if not has_other_unit(name)}
     pulses = [name for name in plain if within(columns[name], "pwm")]
     if pulses:
-        low, high = _range([columns[name] for name in pulses])
+        low, high = find_range([columns[name] for name in pulses])
         return "pwm", ordered(pulses), f"all from {low:.0f} to {high:.0f}: pulses in us"
     shares = [name for name in plain if within(columns[name], "normalized")]
     if shares and len(shares) == len(columns):
@@ -215,13 +217,9 @@ def ordered(names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: int(re.sub(r".*?(\d+)$", r"\1", name)))
 
 
-def _range(values: list[Array]) -> tuple[float, float]:
-    return min(float(np.nanmin(v)) for v in values), max(float(np.nanmax(v)) for v in values)
-
-
 def _wrench(values: list[Array]) -> str:
     """What columns of axes beyond shares may be: their size does not tell forces from percent."""
-    low, high = _range(values)
+    low, high = find_range(values)
     said = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
     if max(-low, high) <= PERCENT:
         return f"{said}. If these are percent, divide them by 100 and write demand"
@@ -233,6 +231,6 @@ def _wrench(values: list[Array]) -> str:
 def _sizes(values: list[Array]) -> str:
     if not values:
         return ""
-    low, high = _range(values)
+    low, high = find_range(values)
     unit = guess_unit(low, high)
     return f"numbers from {low:.4g} to {high:.4g}" + (f", perhaps {unit}" if unit else "")

@@ -32,15 +32,31 @@ FEWEST = 10  # lines of a series on lines of its own
 Columns = tuple[Array, dict[str, Array]]  # times (m,) s, and columns (m,) by their names
 
 
-def find_numbers(lines: Lines) -> Columns:
+def read_others(lines: Lines) -> Columns:
+    """Columns of numbers that are neither measured nor watched; none without times."""
+    if TIME not in lines.names:
+        return np.empty(0), {}
+    kept = [
+        name for name in lines.names
+        if name not in (*KNOWN, TIME) and lines.names.count(name) == 1
+        and not WATCHED.fullmatch(name)
+    ]  # fmt: skip
+    places = column_places(lines.path, lines.names, [TIME, *kept])
+    table, _ = without_cut_line(lines, places)
+    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
+               if (v := _numbers(table, p)) is not None}  # fmt: skip
+    return times(table, places[0]), columns
+
+
+def find_numbers(others: Columns) -> Columns:
     """Columns that have a value on most lines."""
-    time, columns = _all(lines)
+    time, columns = others
     return time, {n: v for n, v in columns.items() if np.isfinite(v).mean() >= SOME}
 
 
-def find_sparse(lines: Lines) -> Columns:
+def find_sparse(others: Columns) -> Columns:
     """Numbered columns, or such named after axes, that share lines of their own: these lines."""
-    time, columns = _all(lines)
+    time, columns = others
     series: dict[tuple[str, bytes], list[str]] = defaultdict(list)
     for name, value in columns.items():
         given = np.isfinite(value)
@@ -56,20 +72,6 @@ def find_sparse(lines: Lines) -> Columns:
 def _stem(name: str) -> str:
     """What the names of a series share: `t1`, `channels[3]`, or surge to yaw."""
     return "" if name in AXES else re.sub(r"\d+(?=\D*$)", "#", name)
-
-
-def _all(lines: Lines) -> Columns:
-    """Columns of numbers that are neither measured nor watched."""
-    kept = [
-        name for name in lines.names
-        if name not in (*KNOWN, TIME) and lines.names.count(name) == 1
-        and not WATCHED.fullmatch(name)
-    ]  # fmt: skip
-    places = column_places(lines.path, lines.names, [TIME, *kept])
-    table, _ = without_cut_line(lines, places)
-    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
-               if (v := _numbers(table, p)) is not None}  # fmt: skip
-    return times(table, places[0]), columns
 
 
 def _numbers(table: Lines, place: int) -> Array | None:
