@@ -238,7 +238,6 @@ def was_answered(record: logging.LogRecord) -> bool:
 def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
     sessions = Sessions(settings, catalogue)
-    server.on_startup(sessions.begin)
     server.timer(TIDY, give_back_memory, immediate=False)
     logging.getLogger("uvicorn.error").addFilter(was_answered)
     server.add_middleware(Gate)

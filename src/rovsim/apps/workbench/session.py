@@ -124,15 +124,10 @@ class Session:
     async def opened(self) -> Any:
         """The open campaign, read now if need be; None when there is none, or it cannot be read."""
         while self.unread:
-            self.begin()
-            assert self._reading is not None
+            if self._reading is None:
+                self._reading = asyncio.create_task(self._read(self.settings))
             await asyncio.shield(self._reading)  # a screen that is left does not end it
         return self.bench
-
-    def begin(self) -> None:
-        """Begin to read the campaign that is chosen, unless that was done."""
-        if self.unread and self._reading is None:
-            self._reading = asyncio.create_task(self._read(self.settings))
 
     async def _read(self, settings: WorkbenchSettings) -> None:
         """Read a campaign, unless another one is chosen meanwhile."""
@@ -185,19 +180,14 @@ class Session:
 class Sessions:
     """The tabs by the names that they give themselves; a new one begins with what was opened last.
 
-    The campaign of the settings is read before there is a tab, while the browser loads the page. A
-    campaign stays in memory while a tab shows it, while work on it goes on, or if it is the last.
+    The campaign of the settings is read for the first tab, not before: the browser could not load
+    the page meanwhile. A campaign stays in memory while a tab shows it, while work on it goes on,
+    or if it is the last.
     """
 
     def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue) -> None:
         self._given = settings, catalogue
-        self._ahead: Session | None = Session(settings, catalogue, None)
         self._by_tab: dict[str, Session] = {}
-
-    def begin(self) -> None:
-        """Read the campaign of the settings ahead of the first tab."""
-        if self._ahead is not None:
-            self._ahead.begin()
 
     @property
     def last(self) -> Session | None:
@@ -214,10 +204,10 @@ class Sessions:
         return session
 
     def _new(self) -> Session:
-        """What a new tab looks at: the first one at what is read ahead."""
-        last, ahead, self._ahead = self.last, self._ahead, None
+        """What a new tab looks at."""
+        last = self.last
         if last is None:
-            return ahead or Session(*self._given, None)
+            return Session(*self._given, None)
         session = Session(last.settings, last.catalogue, last.bench)
         session.opened_at = last.opened_at
         return session

@@ -19,7 +19,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 )
 from rovsim.evaluation.commanded_motion.predicted import cause, righting
 from rovsim.measurement.recording import Recording
-from rovsim.measurement.survey.grid import ResampledPoses, even_poses, velocities
+from rovsim.measurement.survey.grid import ResampledPoses, even_poses, of_poses, velocities
 
 LONGEST = 120.0  # s of commands that are looked at
 HANGS = -0.5  # cosine of the tilt: 120 degrees
@@ -48,15 +48,20 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
 
 def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     caused = _caused(recording, vehicle)
-    measured = None if caused is None else velocities(recording)
-    if caused is None or measured is None or not np.isfinite(measured.nu).any():
+    if caused is None:
+        return
+    posed = recording.found.any() and recording.nu is None
+    poses = even_poses(recording) if posed else None
+    measured = velocities(recording) if poses is None else of_poses(poses)
+    if not np.isfinite(measured.nu).any():
         return
     found = cross_correlate(measured, *caused)
     if not found.excited.any():
         return
     own, lag = found.best(np.eye(3))
     best, axes = max(((found.best(a := np.array(o))[0], a) for o in orientations()), key=_first)
-    if said := _read_otherwise(recording, caused, lag if own >= MIN_CORRELATION else 0.0, best):
+    lag = lag if own >= MIN_CORRELATION else 0.0
+    if poses and (said := _read_otherwise(poses, recording.site.axes, caused, lag, best)):
         yield said[0].upper() + said[1:]
     elif best >= MIN_CORRELATION and best > AHEAD * own:
         yield (
@@ -69,12 +74,9 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
 
 
 def _read_otherwise(
-    recording: Recording, caused: tuple[Array, Array], lag: float, best: float
+    poses: ResampledPoses, signs: Array, caused: tuple[Array, Array], lag: float, best: float
 ) -> str:
     """Another convention of attitudes, where it tells more than other axes (`best`) do."""
-    if not recording.found.any() or recording.nu is not None:
-        return ""
-    poses, signs = even_poses(recording), recording.site.axes
     turn = half_turn(signs)
     # back along the axes of the file, where its columns are
     own = ResampledPoses(

@@ -62,10 +62,12 @@ def even_clock(time: Array) -> Array:
 
 def _medians(bins: Array, values: Array) -> Array:
     """Median of the rows of each bin; NaN for those without a row."""
-    starts = np.flatnonzero(np.diff(bins, prepend=-1))
+    own, starts, counts = np.unique(bins, return_index=True, return_counts=True)
     found = np.full((bins[-1] + 1, values.shape[1]), np.nan)
-    for first, last in zip(starts, [*starts[1:], len(bins)], strict=True):
-        found[bins[first]] = np.median(values[first:last], axis=0)
+    for count in np.unique(counts):  # bins of as many rows together
+        alike = counts == count
+        rows = starts[alike][:, None] + np.arange(count)
+        found[own[alike]] = np.median(values[rows], axis=1)
     return found
 
 
