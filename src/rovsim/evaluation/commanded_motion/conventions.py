@@ -17,7 +17,7 @@ from rovsim.core.signs import minus
 from rovsim.evaluation.commanded_motion.clocks import EARLIEST, LATEST
 from rovsim.evaluation.commanded_motion.cross_correlation import (
     MIN_CORRELATION,
-    cross_correlate,
+    Commanded,
     orientations,
 )
 from rovsim.measurement.survey.grid import ResampledPoses, of_poses
@@ -80,10 +80,11 @@ def find_convention(
     `angles`: whether the file's z is vertical, so that roll, pitch and yaw mean something.
     """
     shift = 0.0 if EARLIEST <= lag <= LATEST else lag
+    commanded = Commanded(poses.time, *caused, shift, LATEST)
 
     def likeness(reading: _Reading) -> _Likeness:
         measured = of_poses(ResampledPoses(poses.time, reading.position, reading.attitude))
-        found = cross_correlate(measured, *caused, shift, LATEST)
+        found = commanded.correlate(measured)
         whole, best = max(((found.best(one)[0], k) for k, one in enumerate(axes)))
         linear = replace(found, excited=found.excited & LINEAR)
         return _Likeness(whole, linear.best(axes[best])[0])

@@ -7,6 +7,7 @@ from itertools import permutations, product
 import numpy as np
 import scipy
 from numpy import ndarray as Array
+from numpy.lib.stride_tricks import sliding_window_view
 
 from rovsim.measurement.quality import EXCITED
 from rovsim.measurement.recording.readers import finite_rows
@@ -18,6 +19,7 @@ SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
 OVERLAP = 0.5  # share of the shorter recording that must lie beside the other
 AFTER = 2.0  # s for which a motion goes on after its last command
 SPARSE = 1e-9
+FEW = 64  # lags up to which plain sums are faster than Fourier transforms
 # Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
 # most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).
 MIN_CORRELATION = 0.38
@@ -87,29 +89,60 @@ def rotations() -> list[Array]:
 def cross_correlate(
     measured: Velocities, time: Array, commanded: Array, shift: float = 0.0, reach: float = REACH
 ) -> CrossCorrelation:
-    """Compare measured velocities with commanded ones (m, 6) at times (m,) s, at lags in `reach`.
+    """Compare measured velocities with commanded ones: see `Commanded`."""
+    return Commanded(measured.time, time, commanded, shift, reach).correlate(measured)
 
-    `shift` s is added to the commanded times first.
+
+class Commanded:
+    """Commanded velocities, laid out once for all motions that they are compared with.
+
+    Args:
+        clock: (n,) even times of the measured motions in s.
+        time: (m,) of the commanded velocities in s.
+        commanded: (m, 6) along FRD.
+        shift: added to the commanded times first, in s.
+        reach: the longest lag in s.
     """
-    step = time_step(measured.time)
-    count = max(1, int(reach / step))
-    first, last = measured.time[0] - count * step, measured.time[-1] + count * step
-    clock = first + step * np.arange(round((last - first) / step) + 1)
-    inside = (clock >= time[0] + shift) & (clock <= time[-1] + shift + AFTER)
-    other = np.stack([np.interp(clock, time + shift, c) for c in commanded.T], axis=1)
-    other[~inside] = np.nan
-    here = np.isfinite(measured.nu).any(axis=0)
-    nu = np.where(here, measured.nu, 0.0)
-    whole = np.where(finite_rows(nu)[:, None], nu, np.nan)
-    table = _correlations(whole, other)
-    # the measured stands `k` steps into the commanded: lag = (count - k) * step
-    lags = step * (count - np.arange(len(table)))
-    known = np.isfinite(table).all(axis=(1, 2))
-    moved = commanded.std(axis=0) > EXCITED
-    excited = here & moved
-    table = np.where(known[:, None, None], table, 0.0)
-    strength, unseen = _strength(nu, commanded, excited), bool((moved & ~here).any())
-    return CrossCorrelation(lags[::-1] + shift, table[::-1], excited, strength, unseen)
+
+    def __init__(
+        self, clock: Array, time: Array, commanded: Array, shift: float = 0.0, reach: float = REACH
+    ) -> None:
+        self.commanded, self.step = commanded, time_step(clock)
+        count = max(1, int(reach / self.step))
+        first, last = clock[0] - count * self.step, clock[-1] + count * self.step
+        times = first + self.step * np.arange(round((last - first) / self.step) + 1)
+        inside = (times >= time[0] + shift) & (times <= time[-1] + shift + AFTER)
+        other = np.stack([np.interp(times, time + shift, c) for c in commanded.T], axis=1)
+        other = np.where(inside[:, None], other - _mean(other[inside]), 0.0)
+        # the measured stands `k` steps into the commanded: lag = (count - k) * step
+        lags = len(other) - len(clock) + 1
+        self.lag = self.step * (count - np.arange(lags)) + shift
+        self.seen = inside.sum()
+        laid = _Windows if lags <= FEW else _Spectra
+        self.itself, self.squared, self.known = (
+            laid(x, len(clock)) for x in (other, other**2, inside[:, None].astype(float))
+        )
+
+    def correlate(self, measured: Velocities) -> CrossCorrelation:
+        """Compare them with a motion."""
+        here = np.isfinite(measured.nu).any(axis=0)
+        nu = np.where(here, measured.nu, 0.0)
+        table = self._correlations(nu, finite_rows(nu))
+        known = np.isfinite(table).all(axis=(1, 2))
+        moved = self.commanded.std(axis=0) > EXCITED
+        excited = here & moved
+        table = np.where(known[:, None, None], table, 0.0)
+        strength, unseen = _strength(nu, self.commanded, excited), bool((moved & ~here).any())
+        return CrossCorrelation(self.lag[::-1], table[::-1], excited, strength, unseen)
+
+    def _correlations(self, nu: Array, whole: Array) -> Array:
+        """Correlations (l, 6, 6) at all lags; NaN where few rows overlap."""
+        a = np.where(whole[:, None], nu - _mean(nu[whole]), 0.0)
+        seen = whole[:, None].astype(float)
+        few = self.known.sums(seen)[:, 0, 0] < OVERLAP * min(whole.sum(), self.seen)
+        size = self.known.sums(a**2) * self.squared.sums(seen)
+        found = self.itself.sums(a) / np.sqrt(np.maximum(size, SPARSE))
+        return np.where(few[:, None, None], np.nan, found)
 
 
 def _strength(nu: Array, commanded: Array, excited: Array) -> float:
@@ -120,42 +153,30 @@ def _strength(nu: Array, commanded: Array, excited: Array) -> float:
     return float(measured / max(caused, SPARSE))
 
 
-def _correlations(a: Array, b: Array) -> Array:
-    """Correlations (k, 6, 6) of a (n, 6) with every stretch of b (m, 6); NaN where few overlap."""
-    seen_a, seen_b = (np.isfinite(x).all(axis=1).astype(float) for x in (a, b))
-    a, b = (np.nan_to_num(x - _mean(x)).T for x in (a, b))
-    slide = _Sliding(a.shape[1], b.shape[1])
-    once_a, once_b = slide.transform(seen_a), slide.transform(seen_b)
-    count = slide.sums(once_a, once_b)
-    few = count < OVERLAP * min(seen_a.sum(), seen_b.sum())
-    size_a = slide.sums(slide.transform(a**2), once_b)
-    size_b = slide.sums(once_a, slide.transform(b**2))
-    products = slide.sums(slide.transform(a)[:, None], slide.transform(b)[None])
-    found = products / np.sqrt(np.maximum(size_a[:, None] * size_b[None], SPARSE))
-    return np.where(few[:, None, None], np.nan, np.moveaxis(found, -1, 0))
+class _Windows:
+    """Sums of products with every stretch of the columns `long` (m, c), for few lags."""
+
+    def __init__(self, long: Array, short: int) -> None:
+        self.rows = np.ascontiguousarray(sliding_window_view(long, short, axis=0))
+
+    def sums(self, short: Array) -> Array:
+        """Sums (l, k, c) with the columns of `short` (n, k)."""
+        return np.swapaxes(self.rows @ short, 1, 2)
 
 
-@dataclass(frozen=True)
-class _Sliding:
-    """Sums of products of rows (..., `short`) with every stretch of rows (..., `long`)."""
+class _Spectra:
+    """The same for many lags, by Fourier transforms."""
 
-    short: int
-    long: int
+    def __init__(self, long: Array, short: int) -> None:
+        self.lags, self.length = len(long) - short + 1, scipy.fft.next_fast_len(len(long), True)
+        self.spectra = scipy.fft.rfft(long, self.length, axis=0)
 
-    @property
-    def _length(self) -> int:
-        return int(scipy.fft.next_fast_len(self.short + self.long - 1, real=True))
-
-    def transform(self, x: Array) -> Array:
-        """Fourier transform, made once for all that a row is compared with."""
-        return np.asarray(scipy.fft.rfft(x, self._length))
-
-    def sums(self, short: Array, long: Array) -> Array:
-        """Sums (..., long - short + 1) from the transforms of both."""
-        found = scipy.fft.irfft(np.conj(short) * long, self._length)
-        return np.asarray(found[..., : self.long - self.short + 1])
+    def sums(self, short: Array) -> Array:
+        """Sums (l, k, c) with the columns of `short` (n, k)."""
+        own = np.conj(scipy.fft.rfft(short, self.length, axis=0))
+        both = own[:, :, None] * self.spectra[:, None]
+        return np.asarray(scipy.fft.irfft(both, self.length, axis=0)[: self.lags])
 
 
 def _mean(x: Array) -> Array:
-    known = np.isfinite(x).all(axis=1)
-    return x[known].mean(axis=0) if known.any() else np.zeros(x.shape[1])
+    return x.mean(axis=0) if len(x) else np.zeros(x.shape[1])
