@@ -4,8 +4,11 @@ import copy
 import inspect
 import subprocess
 import sys
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import fields, replace
 from itertools import pairwise
+from multiprocessing import get_context
+from threading import Event, Timer
 
 import numpy as np
 import pytest
@@ -17,6 +20,7 @@ from rovsim.reporting.figures import SECTIONS, kind, kinds
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.series import averaged
 from rovsim.reporting.figures.style import save, styled
+from rovsim.reporting.html.folder import draw
 from rovsim.reporting.report_data import ReportData, RunData, list_run_figures, list_study_figures
 from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
@@ -393,3 +397,36 @@ def test_noise_on_an_axis_at_rest_is_as_small_as_it_is(name):
     scales = [axes.get_ylim() for axes in figure.axes]
     assert len(set(scales[:3])) == len(set(scales[3:])) == 1
     assert "share their scale" in figure._supxlabel.get_text()
+
+
+def test_two_processes_draw_what_one_does(tmp_path):
+    content = study()
+    known = ReportData(**{name: content[name] for name in ("where", "quality", "comparison")})
+    alone = draw(tmp_path / "alone", known)
+    with ProcessPoolExecutor(1, get_context("spawn")) as other:
+        together = draw(tmp_path / "together", known, other=other)
+    assert len(alone) > 2
+    assert [one.wanted for one in together] == [one.wanted for one in alone]
+    assert [one.picture.png for one in together] == [one.picture.png for one in alone]
+
+
+def test_a_folder_that_an_error_takes_away_stays_away(tmp_path, monkeypatch):
+    content = study()
+    known = ReportData(**{name: content[name] for name in ("where", "quality", "comparison")})
+    first, *others = known.figures
+    slow = Event()
+
+    def draw_selected(out, figure, *rest):
+        if figure == others[0]:
+            slow.wait(5)
+            (out / "late").write_text("")
+        elif figure != first:
+            Timer(0.2, slow.set).start()
+            raise BadInput("none", where="a figure", expected="one", remedy="")
+        return figure
+
+    monkeypatch.setattr("rovsim.reporting.html.folder.draw_selected", draw_selected)
+    with ThreadPoolExecutor(1) as other:
+        with pytest.raises(BadInput):
+            draw(tmp_path, known, other=other)
+        assert (tmp_path / "late").exists()  # written before the error was told

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Mapping, TypeVar
+from typing import TYPE_CHECKING, Any, Mapping, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -101,10 +101,17 @@ class ReportData:
         Raises:
             BadInput: there is no such figure.
         """
-        asked = kind(figure)
+        return kind(figure).draw(**self.select(figure, run))
+
+    def select(self, figure: str, run: str = "") -> dict[str, Any]:
+        """What a figure takes of what is known, or of one run of it: arrays and results.
+
+        Raises:
+            BadInput: there is no such figure.
+        """
         content = RunData(self, run) if run else self
-        given = {name: getattr(content, name) for name in asked.takes if hasattr(content, name)}
-        return asked.draw(**given)
+        takes = kind(figure).takes
+        return {name: getattr(content, name) for name in takes if hasattr(content, name)}
 
 
 @dataclass(frozen=True, eq=False)

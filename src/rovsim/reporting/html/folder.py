@@ -1,10 +1,12 @@
 """A command's results for the eye: figures as files, and all of them on one page."""
 
+from concurrent.futures import Executor, Future, wait
 from pathlib import Path
-from typing import Iterable, Mapping
+from typing import Any, Iterable, Mapping
 
 from rovsim.core.progress import counted
 from rovsim.dynamics.effects.base import Effect
+from rovsim.reporting.figures import kind
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import report
 from rovsim.reporting.html.picture import Drawn, Picture, Wanted
@@ -18,19 +20,37 @@ def present(
     provenance: Mapping[str, object],
     catalogue: Mapping[str, type[Effect]],
     drawn: Iterable[Drawn] = (),
+    other: Executor | None = None,
 ) -> list[Path]:
-    """Draw what is known and not yet `drawn`, write `out`/report.html; returns all files."""
-    shown = draw(out, data, drawn)
+    """Draw what is known and not yet `drawn`, write `out`/report.html; returns all files.
+
+    `other`, a second process, draws half of it.
+    """
+    shown = draw(out, data, drawn, other)
     page = report.Report(campaign, data, [one.picture for one in shown], provenance, catalogue)
     report.write(out / "report.html", page)
     return [out / "report.html", *(path for one in shown for path in one.files)]
 
 
-def draw(out: Path, data: ReportData, drawn: Iterable[Drawn] = ()) -> list[Drawn]:
+def draw(
+    out: Path, data: ReportData, drawn: Iterable[Drawn] = (), other: Executor | None = None
+) -> list[Drawn]:
     """All figures of what is known; those that are not yet `drawn` go into `out`/figures."""
     known = {one.wanted: one for one in drawn}
+    elsewhere: dict[Wanted, Future[Drawn]] = {}
     left = [one for one in list_wanted(data) if one not in known]
-    known |= {one: draw_one(out, *one, data) for one in counted(left, "drawing")}
+    try:
+        for k, one in enumerate(counted(left, "drawing")):
+            content = describe(*one, data), data.select(*one)
+            if other is not None and k % 2:
+                elsewhere[one] = other.submit(draw_selected, out, *one, *content)
+            else:
+                known[one] = draw_selected(out, *one, *content)
+        known |= {one: future.result() for one, future in elsewhere.items()}
+    finally:  # nothing is drawn any more into a folder that an error takes away
+        for future in elsewhere.values():
+            future.cancel()
+        wait(elsewhere.values())
     return [known[one] for one in list_wanted(data)]
 
 
@@ -42,7 +62,14 @@ def list_wanted(data: ReportData) -> list[Wanted]:
 
 def draw_one(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
     """Draw one figure of what is known, or of one run of it, into `out`/figures."""
-    paths = save(data.draw(figure, run), out / "figures", f"{figure}-{run}" if run else figure)
+    return draw_selected(out, figure, run, describe(figure, run, data), data.select(figure, run))
+
+
+def draw_selected(
+    out: Path, figure: str, run: str, about: str, content: Mapping[str, Any]
+) -> Drawn:
+    """Draw one figure of its content, as `ReportData.select` gives it, into `out`/figures."""
+    drawn = kind(figure).draw(**content)
+    paths = save(drawn, out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
-    picture = Picture.read(png, figure, describe(figure, run, data), run)
-    return Drawn((figure, run), picture, paths)
+    return Drawn((figure, run), Picture.read(png, figure, about, run), paths)

@@ -8,6 +8,8 @@ and prints a summary. Of models that `rovsim add` made also OUT/bands.json: how 
 runs lies within what they leave open. A report.html of `rovsim diagnose` there is kept beside it.
 """
 
+from pathlib import Path
+
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.provenance import provenance
@@ -15,9 +17,13 @@ from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import join_files, say
 from rovsim.core.files import appearing_together
+from rovsim.core.second_process import second_process
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.kept import keep_other
+from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.words.terminal import tell_comparison, tell_doubts
+
+DRAWING = "rovsim.reporting.html.folder"  # a second process imports it while this one compares
 
 
 class Settings(CampaignSettings):
@@ -26,23 +32,19 @@ class Settings(CampaignSettings):
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Compare, then write numbers, figures and the report."""
-    from rovsim.reporting.html.folder import present
-
-    data, out = measure_campaign(settings, "compare")
-    models = load_models(settings.model, data.vehicle, catalogue)
-    found = compare(data, models, settings)
-    assert found.comparison is not None
-    assert found.where is not None
-    assert found.forces is not None
-    kept = keep_other(out / "report.html", "compare")
-    with appearing_together(out, last="comparison.json") as folder:
-        found.where.write(folder / "where.json")
-        found.forces.write(folder / "budget.json")
-        found.comparison.write(folder / "comparison.json")
-        if found.coverage is not None:
-            found.coverage.write(folder / "bands.json")
+    with second_process(DRAWING) as other:
+        data, out = measure_campaign(settings, "compare")
+        models = load_models(settings.model, data.vehicle, catalogue)
+        found = compare(data, models, settings)
+        assert found.comparison is not None
+        assert found.where is not None
+        kept = keep_other(out / "report.html", "compare")
         origin = provenance(settings, catalogue, data.campaign)
-        present(folder, data.campaign.name, found, origin, catalogue)
+        with appearing_together(out, last="comparison.json") as folder:
+            _write(folder, found)
+            from rovsim.reporting.html.folder import present
+
+            present(folder, data.campaign.name, found, origin, catalogue, other=other)
     if found.coverage is None:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
     errors = {step.model: step.windows_2s for step in found.steps}
@@ -52,3 +54,15 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
     told = join_files(text + tell_doubts(data.quality), files, kept)
     say(settings, told, found.comparison.to_json())
+
+
+def _write(folder: Path, found: ReportData) -> None:
+    results = {
+        "where": found.where,
+        "budget": found.forces,
+        "bands": found.coverage,
+        "comparison": found.comparison,
+    }
+    for name, result in results.items():
+        if result is not None:
+            result.write(folder / f"{name}.json")
