@@ -95,6 +95,16 @@ def settled_noise(base, runs):
     return bank.redesign(base, noise), noise
 
 
+def wander(bank, base, noise, rate):
+    """Where a search for a current begins, under a current that wanders."""
+    listed = [
+        c for c in list_candidates(bank.runs, built_in(), base.vehicle) if c.effect is Current
+    ]
+    known = linearise_candidates(bank, Hypothesis(base), listed)
+    columns = WhiteColumns(bank, known, replace(noise, drift=DriftingCurrent(rate)))
+    return SearchWorkspace(columns, SearchSettings())
+
+
 @pytest.mark.parametrize(
     ("hidden", "steady"),
     [(hide("current", north=0.1), True), (hide("current_drift", rate=0.015), False)],
@@ -103,16 +113,26 @@ def settled_noise(base, runs):
 def test_a_steady_current_takes_the_place_of_one_that_hardly_wanders(tmp_path, hidden, steady):
     base, runs = observed(tmp_path, duration=60.0, effects=(hidden,))
     bank, noise = settled_noise(base, runs)
-    listed = [c for c in list_candidates(runs, built_in(), base.vehicle) if c.effect is Current]
-    known = linearise_candidates(bank, Hypothesis(base), listed)
-    rate = 0.003 if steady else 0.015
-    columns = WhiteColumns(bank, known, replace(noise, drift=DriftingCurrent(rate)))
-    wandering = SearchWorkspace(columns, SearchSettings())
+    wandering = wander(bank, base, noise, 0.003 if steady else 0.015)
     workspace, found = prefer_steady(wandering, wandering.fit(Hypothesis(base)))
     assert (workspace.noise.drift is None) is steady
     assert [term.id for term in found.hypothesis.terms] == steady * ["current"]
     if steady:
         assert abs(found.hypothesis.model.effects[-1]["north"] - 0.1) < 0.01
+
+
+def test_the_noise_beside_it_is_that_of_what_it_leaves(tmp_path):
+    """A current that wanders may take nearly all of another effect: little noise is left by it."""
+    hidden = (hide("current", north=0.1), hide("thruster_gain", all=0.7))
+    base, runs = observed(tmp_path, duration=60.0, effects=hidden)
+    bank, noise = settled_noise(base, runs)
+    little = replace(noise, disturbance_std=0.01 * noise.disturbance_std)
+    wandering = wander(bank, base, little, 0.003)
+    workspace, found = prefer_steady(wandering, wandering.fit(Hypothesis(base)))
+    assert [term.id for term in found.hypothesis.terms] == ["current"]
+    left = bank.fit_noise(bank.innovations(found.hypothesis.model), FIRST_NOISE).noise
+    ratio = workspace.noise.disturbance_std[:3] / left.disturbance_std[:3]
+    assert np.all(np.abs(np.log(ratio)) < np.log(1.5))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,11 @@ from rovsim.dynamics.effects.current import Current
 
 
 def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorkspace, Fit]:
-    """A steady current in the place of one that wanders, where that is likelier."""
+    """A steady current in the place of one that wanders, where that is likelier.
+
+    The noise is then that of what the steady one leaves: one that wanders takes more than its due,
+    and under the little that it leaves nothing else would be seen.
+    """
     h = current.hypothesis
     if not workspace.noise.drift or Current.id in (term.id for term in h.terms):
         return workspace, current
@@ -22,4 +26,7 @@ def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorks
     steady = calm.fit(h.with_term(Term(Current(), Current.telling)))
     if not calm.score(steady) > workspace.score(current):
         return workspace, current
-    return calm, prune(calm, steady)
+    fresh = calm.update_after(steady)
+    if fresh.noise.drift:
+        return workspace, current
+    return fresh, prune(fresh, fresh.fit(steady.hypothesis))
