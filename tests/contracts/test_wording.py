@@ -239,6 +239,19 @@ def test_why_a_name_has_no_probability_is_said(content, effect, values, beside, 
     assert re.search(f", no probability: .*{why}$", said.worth)
 
 
+@pytest.mark.parametrize(
+    ("removed", "why"), [(0.05, "may make more of the error"), (0.9, "no other name was tried")]
+)
+def test_why_a_small_name_beside_what_is_unexplained_has_no_probability(content, removed, why):
+    one = FittedEffect(effect="lift", parameters={}, error_reduction=removed)
+    left = content["diagnosis"].unexplained.model_copy(
+        update={"fraction": 0.5, "significant": True, "proposal": None}
+    )
+    found = {"selected": (one,), "unexplained": left, "rivals": (), "verdict": "unexplained"}
+    said = explain(content["diagnosis"].model_copy(update=found), built_in()).missing[0]
+    assert said.worth.endswith(why)
+
+
 def test_what_is_unexplained_is_not_said_to_be_all_that_a_perfect_model_leaves(content):
     found = content["diagnosis"]
     left = found.unexplained.model_copy(update={"significant": True, "proposal": None})

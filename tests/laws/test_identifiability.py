@@ -22,6 +22,7 @@ from rovsim.diagnosis.selection.ranking import (
     Selected,
     doubt_lead,
     doubt_names,
+    doubt_small,
     find_stand_ins,
     name_drift,
 )
@@ -183,6 +184,17 @@ def test_what_a_law_makes_unnecessary_is_not_sure():
     kept, idle = doubt_names([drag, thrust], doubted)
     assert doubted == {thrust.term.id}
     assert (kept.probability, idle.probability) == (1.0, None)
+
+
+@pytest.mark.parametrize(
+    ("fraction", "sure"),
+    [(0.3, (1.0, None)), (0.1, (1.0, 1.0)), (1.0, (1.0, None)), (None, (1.0, 1.0))],
+)
+def test_what_removes_less_than_may_be_left_is_not_sure(fraction, sure):
+    """Wakes that hit thrusters were gains of 0.98 to 1.03, each at a probability of one."""
+    drag, gain = (Term(one, ()) for one in (LinearDamping(sway=9.0), ThrusterGain(all=0.98)))
+    named = [Selected(drag, {}, 1.0, 0.6), Selected(gain, {}, 1.0, 0.05)]
+    assert tuple(one.probability for one in doubt_small(named, fraction)) == sure
 
 
 @pytest.mark.parametrize(("left", "doubted"), [(0.4, True), (0.8, False), (-0.1, True)])

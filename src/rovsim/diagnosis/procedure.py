@@ -53,6 +53,7 @@ from rovsim.diagnosis.selection.ranking import (
     Named,
     doubt_lead,
     doubt_names,
+    doubt_small,
     find_stand_ins,
     name_drift,
     name_smoothing,
@@ -138,10 +139,13 @@ def _diagnose(
         drift = answer.bank.measure_drift(answer.fit.seen.e, answer.fit.noise)
         if drift.sure:
             named.append(name_drift(drift, answer.lasting))
+    selected = rank_selected(base, named, usable.runs)
+    if answer.structures and not proposed:
+        selected = doubt_small(selected, answer.structures[0].share)
     return TrainDiagnosis(
         base, usable, answer.fit,
         _correlate(wider),
-        rank_selected(base, named, usable.runs),
+        selected,
         ranking=rank_alone(workspace, nothing, answer.fit),
         rivals=rivals, structures=answer.structures,
         refused=answer.refused or not answer.fit.is_finite, scale=scale,

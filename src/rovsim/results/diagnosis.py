@@ -1,7 +1,7 @@
 """`diagnosis.json`: which physical effects a model lacks, and how sure that is."""
 
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import ClassVar, Iterable, Literal
 
 from pydantic import Field, JsonValue
 
@@ -108,6 +108,16 @@ class Unexplained(Section):
     proposal: Proposal | None = None
     stand_ins: tuple[str, ...] = ()
     disturbance: Disturbance | None = None
+
+
+def bound_unexplained(fraction: float | None, reductions: Iterable[float | None]) -> float:
+    """Share of the base's error that what is left unexplained makes at most.
+
+    Args:
+        fraction: `Unexplained.fraction`; None: nothing is known of it.
+        reductions: `error_reduction` of the selected effects.
+    """
+    return (fraction or 0.0) * max(0.0, 1.0 - sum(one or 0.0 for one in reductions))
 
 
 class DiagnosisErrors(Section):

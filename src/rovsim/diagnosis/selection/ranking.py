@@ -18,6 +18,7 @@ from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
+from rovsim.results.diagnosis import bound_unexplained
 
 CHANGED_SHARE = 0.5  # of an effect: more is not the same effect beside something else
 
@@ -114,6 +115,18 @@ def _differs(own: Term, other: Term) -> bool:
 def doubt_names(named: Sequence[Named], doubted: Collection[str]) -> list[Named]:
     """The same, none of the doubted sure."""
     return [replace(one, probability=None) if one.term.id in doubted else one for one in named]
+
+
+def doubt_small(selected: Sequence[Selected], fraction: float | None) -> list[Selected]:
+    """The same, none sure that removes less error than a structure that is left may make.
+
+    A likelihood weighs names right where all else is noise; what follows a law that nobody named
+    favours the one that looks a little like it.
+    """
+    left = bound_unexplained(fraction, [one.error_reduction for one in selected])
+    return [
+        replace(one, probability=None) if one.error_reduction < left else one for one in selected
+    ]
 
 
 def name_drift(drift: DriftFit, lasting: bool) -> Named:

@@ -9,7 +9,7 @@ from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.wording import IMPROBABLE, listed, tell_probability
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.diagnosis import Diagnosis, bound_unexplained
 from rovsim.results.fitted import FittedEffect, FittedValue
 
 
@@ -56,6 +56,10 @@ def _say_why(one: FittedEffect, found: Diagnosis, known: type[Effect] | None) ->
     smooths = any(each.effect == PoseFilter.id for each in found.selected)
     if known and issubclass(known, InputDelay) and smooths and _leads(one):
         return "the cameras' filter may look ahead"
+    reductions = [each.error_reduction for each in found.selected]
+    left = bound_unexplained(found.unexplained.fraction, reductions)
+    if proposal is None and or_nan(one.error_reduction) < left:
+        return "what is left unexplained may make more of the error"
     return "no other name was tried"
 
 
