@@ -11,7 +11,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.gauss_newton import fit
+from rovsim.diagnosis.selection.fit import fit
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import build_effect
 from rovsim.dynamics.effects.base import MeasurementFilter, StochasticCurrent

@@ -11,7 +11,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.observer.sandwich import estimate_covariance
-from rovsim.diagnosis.selection.gauss_newton import fit
+from rovsim.diagnosis.selection.fit import fit
 from rovsim.dynamics.catalogue import built_in
 
 DRAG = built_in()["quadratic_damping"]

@@ -11,7 +11,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.selection.gauss_newton import fit
+from rovsim.diagnosis.selection.fit import fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import built_in

@@ -9,7 +9,7 @@ from flown import observed
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.gauss_newton import fit, fit_or_give_up
+from rovsim.diagnosis.selection.fit import fit, fit_or_give_up
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 

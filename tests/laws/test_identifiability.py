@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.random_walk import Rate
 from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.diagnosis.selection.ranking import (
     Named,

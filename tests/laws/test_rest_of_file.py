@@ -12,7 +12,7 @@ from rovsim.diagnosis.checks.whole_file import fit_whole_file, is_right_elsewher
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.gauss_newton import fit
+from rovsim.diagnosis.selection.fit import fit
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain, free_terms
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.dynamics.effect_entry import EffectEntry

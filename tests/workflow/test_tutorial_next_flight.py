@@ -21,7 +21,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.train_runs import prepare_train
-from rovsim.diagnosis.selection.gauss_newton import fit, polish
+from rovsim.diagnosis.selection.fit import fit, polish
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.model import nominal

@@ -29,7 +29,7 @@ from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import design_filters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.selection.gauss_newton import REACH
+from rovsim.diagnosis.selection.fit import REACH
 
 NEGLIGIBLE = 1e-3  # of what the train runs hold: less is not worth a comparison
 THINNED = 4  # of so many readings one is asked how errors go on: 0.2 s apart

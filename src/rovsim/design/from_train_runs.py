@@ -14,7 +14,7 @@ from rovsim.diagnosis.observer.least_squares import inner_products
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.candidates import Candidate, list_candidates
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, fit, polish
+from rovsim.diagnosis.selection.fit import REACH, Fit, fit, polish
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace

@@ -12,7 +12,7 @@ from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.gauss_newton import REACH
+from rovsim.diagnosis.selection.fit import REACH
 from rovsim.dynamics.model import Model
 
 RULED_OUT = 1000.0  # to one: a rival with longer odds against it need not be told apart

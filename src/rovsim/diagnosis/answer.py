@@ -19,8 +19,8 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
 from rovsim.diagnosis.selection.cross_validation import drop_idle
+from rovsim.diagnosis.selection.fit import Fit, judge, polish
 from rovsim.diagnosis.selection.forward_selection import search_unnoticed
-from rovsim.diagnosis.selection.gauss_newton import Fit, judge, polish
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.search_result import SearchResult

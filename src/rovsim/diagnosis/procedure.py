@@ -45,8 +45,8 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.filter_delay import absorb_delay, seen_through
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.forward_selection import search
-from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, keep_apart
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.ranking import (

@@ -17,7 +17,7 @@ from rovsim.diagnosis.equations.describe import (
     rounded,
 )
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis

@@ -17,7 +17,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.checks.nuisance_parameters import leave_open
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 

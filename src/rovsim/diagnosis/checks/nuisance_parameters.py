@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.kalman import AxisFilter
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 
 FALSE_ALARM = 0.002  # of all looks together, for each kind of structure
 MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score

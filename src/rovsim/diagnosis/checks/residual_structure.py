@@ -11,7 +11,7 @@ from rovsim.diagnosis.checks.residual import Structure, split_by_axis
 from rovsim.diagnosis.checks.spectral_lines import find_lines
 from rovsim.diagnosis.checks.sudden_pushes import find_kicks, find_sudden
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 
 
 def find_structure(fit: Fit, bank: FilterBank) -> list[Structure]:

@@ -24,7 +24,7 @@ from rovsim.diagnosis.checks.nuisance_parameters import leave_open
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import (
     ONE_GAIN,
     SEVERAL,

@@ -33,7 +33,8 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection.gauss_newton import Fit, judge, levenberg_marquardt
+from rovsim.diagnosis.selection.fit import Fit, judge
+from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
 from rovsim.diagnosis.selection.nominal_terms import (
     GAIN,
     GAIN_SCALE,

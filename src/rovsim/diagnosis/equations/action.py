@@ -11,7 +11,7 @@ from rovsim.diagnosis.equations.form import Form, get_law, split_law
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.innovations import accelerate
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.simulation.measured_states import undo_mocap_view

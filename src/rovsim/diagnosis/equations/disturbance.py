@@ -19,7 +19,7 @@ from rovsim.diagnosis.equations.spectrum import Spectrum, find_spectrum
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.kalman import AxisFilter
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 
 APART, STRONG, LISTED = 1.0, 2.0, 8  # s between pushes, RMS that one stands out by, how many
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Iterable, Mapping, Sequence, TypeVar
+from typing import Any, Mapping, Sequence, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -11,6 +11,7 @@ from scipy.stats import chi2
 from rovsim import AXES
 from rovsim.diagnosis.checks.residual import FALSE_ALARM
 from rovsim.diagnosis.equations.action import find_action, is_half
+from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, get_law
 from rovsim.diagnosis.equations.products.as_effect import (
     Surroundings,
@@ -32,11 +33,11 @@ from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import find_alone, propose
 from rovsim.diagnosis.equations.with_memory import FORMS
 from rovsim.diagnosis.equations.with_thrust import WithThrust, begin, list_thrust_terms, push_thrust
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.candidates import list_means
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.forward_selection import find_relevant
-from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.effects.law import TERMS
@@ -48,31 +49,6 @@ THRUST_LAWS_TRIED = 4
 NEAR = 0.5  # of what products explain: laws of the thrust that may reach so much are fitted
 
 Key = TypeVar("Key")
-
-
-@dataclass(frozen=True, eq=False)
-class FittedLaw:
-    """A law on top of a hypothesis, fitted; `score` with the penalty of each of its numbers.
-
-    `rivals`: equations of laws that were tried in its place, and by how much less likely each is.
-    """
-
-    form: Form
-    fit: Fit
-    score: float
-    rivals: tuple[tuple[str, float], ...] = ()
-
-    @property
-    def law(self) -> Term:
-        """The law with its fitted values."""
-        return get_law(self.fit.hypothesis)
-
-    def beats(self, others: Iterable["FittedLaw"]) -> "FittedLaw":
-        """The same, with others as its rivals."""
-        ranked = sorted(others, key=lambda one: one.score)  # of the same equation the likeliest
-        differences = {one.form.equation: self.score - one.score for one in ranked}
-        differences.pop(self.form.equation, None)  # from another place it came here
-        return replace(self, rivals=(*self.rivals, *differences.items()))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,14 +6,15 @@ from typing import Callable, NamedTuple, Sequence
 
 from rovsim.core.extras import installed
 from rovsim.diagnosis.equations.action import find_action, is_half
+from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
-from rovsim.diagnosis.equations.law_search import FittedLaw, search_laws
+from rovsim.diagnosis.equations.law_search import search_laws
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.cross_validation import cross_validate
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.search_result import SearchResult

@@ -1,5 +1,6 @@
 """A model that runs along a measurement, corrected by a filter: what it could not foresee.
 
+steps             when a run is read, and over which steps models go
 observed_run      a run as read, before any filter
 train_runs        runs of a campaign, prepared: those parts of long ones that tell most
 divergence        where a model runs away although it is corrected

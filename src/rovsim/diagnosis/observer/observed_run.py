@@ -10,13 +10,14 @@ from numpy import ndarray as Array
 from rovsim.core.bounded_cache import Recent
 from rovsim.core.rotations import normalized
 from rovsim.diagnosis.observer.axis_kernels import BIN_MEAN, POSE, SUM
+from rovsim.diagnosis.observer.steps import Steps, divide_run
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import find_measured
-from rovsim.measurement.signals.motion import Motion, Poses
+from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
@@ -27,30 +28,7 @@ SETTLING = 1.0  # s
 # 3 s for a small vehicle at usual speeds.
 SETTLING_UNREAD = 9.0  # s
 MIN_STRETCH_SECONDS = 2.0  # s; a shorter stretch would be mostly settling
-# Frames are read in groups of about this length: what a vehicle of this size does is slower than
-# 5 Hz, and so are its propellers (5 / s, docs/simulator.md).
-GROUP = 0.05  # s
 BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are independent
-
-
-@dataclass(frozen=True, eq=False)
-class Steps:
-    """When a run is read, and over which steps models go from reading to reading.
-
-    Replays take steps between `grid` (k+1,) s; `at` (n,) those at which the samples or bins begin.
-    `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
-    velocities were measured; `group` of them, an odd number, make a reading, which holds at one
-    of the `reading_steps` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of
-    `substeps` (s,) of one length, over each of which the thrust is steady.
-    """
-
-    grid: Array
-    at: Array
-    frames: Array
-    group: int
-    reading_steps: Array
-    edges: Array
-    substeps: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,7 +218,7 @@ def prepare_run(
         kept: where its drives are kept, perhaps with those of other runs.
     """
     grid = StepGrid.over(motion, settings.step)
-    steps = (_step_bins if motion.binned else _step_samples)(stage, motion, grid)
+    steps = divide_run(stage, motion, grid)
     fine = np.linspace(steps.edges[0], steps.edges[-1], int(steps.substeps.sum()) + 1)
     drives = Drives(motion.commands, fine, settings.commands, steps.substeps, kept)
     replayed = drives
@@ -250,40 +228,6 @@ def prepare_run(
         **vars(steps), motion=motion, drives=drives, replay_drives=replayed,
         wrenches=catalogue.wrenches, free_axes=free,
     )  # fmt: skip
-
-
-def _step_bins(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
-    """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
-    begins = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
-    frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
-    steps, ends = _divide(begins, GROUP / grid.h)
-    edges = motion.time[0] + grid.h * steps
-    return Steps(edges, ends, frames, 1, ends, edges, np.diff(steps))
-
-
-def _divide(at: Array, most: float) -> tuple[Array, Array]:
-    """Whole numbers (s+1,) that divide each space between `at` (k,) evenly, and places of `at`.
-
-    Into as many spaces as come closest to `most` each, which may be 1.
-    """
-    count = np.maximum(1, np.round(np.diff(at) / most)).astype(int)
-    ends = np.concatenate([[0], np.cumsum(count)])
-    number = np.arange(ends[-1]) - np.repeat(ends[:-1], count)
-    within = number * np.repeat(np.diff(at), count) // np.repeat(count, count)
-    return np.append(np.repeat(at[:-1], count) + within, at[-1]), ends
-
-
-def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
-    """A group of frames is a reading, and one step leads from it to the next."""
-    assert isinstance(stage, Poses)
-    count, period = len(motion.time), time_step(motion.time)
-    group = 2 * round(0.5 * (GROUP / period - 1.0)) + 1 if period < GROUP else 1
-    readings = count // group
-    steps, ends = _divide(np.arange(readings) * group * grid.stride, GROUP / grid.h)
-    edges = motion.time[0] + group // 2 * period + grid.h * steps
-    frames = np.hstack([stage.eta, np.zeros((count, 6))])
-    at = np.arange(count) * grid.stride
-    return Steps(grid.edges, at, frames, group, ends, edges, np.diff(steps))
 
 
 def _lasts(motion: Motion, a: int, b: int) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 
 from rovsim.diagnosis.observer.observed_run import BLOCK, number_blocks
 from rovsim.diagnosis.observer.sandwich import estimate_covariance
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 

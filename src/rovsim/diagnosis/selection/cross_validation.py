@@ -9,8 +9,8 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import number_blocks
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.forward_selection import find_relevant
-from rovsim.diagnosis.selection.gauss_newton import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 
 FOLDS = 6

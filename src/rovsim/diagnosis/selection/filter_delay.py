@@ -12,7 +12,7 @@ import numpy as np
 
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR

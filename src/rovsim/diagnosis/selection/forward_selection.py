@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection import uncertain_file
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune

@@ -18,7 +18,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import evaluate_possible
 from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model

@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit
+from rovsim.diagnosis.selection.fit import REACH, Fit
 from rovsim.diagnosis.selection.nominal_terms import DRAG, free_terms, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult

@@ -13,7 +13,7 @@ from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import select_usable
-from rovsim.diagnosis.selection.gauss_newton import fit
+from rovsim.diagnosis.selection.fit import fit
 from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, free_terms
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model

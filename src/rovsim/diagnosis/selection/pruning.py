@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 

@@ -12,7 +12,7 @@ from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.odds import probability_of
 from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.clocks import InputDelay

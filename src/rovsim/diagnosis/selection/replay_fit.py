@@ -21,7 +21,8 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.sandwich import estimate_covariance_of_few
 from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.gauss_newton import REACH, Fit, judge, levenberg_marquardt
+from rovsim.diagnosis.selection.fit import REACH, Fit, judge
+from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.dynamics.model import Model
 

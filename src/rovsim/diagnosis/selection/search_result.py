@@ -6,7 +6,7 @@ import numpy as np
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.odds import lr_statistic_of
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 

@@ -17,7 +17,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
 from rovsim.diagnosis.observer.odds import lr_statistic_of
 from rovsim.diagnosis.selection.candidates import Candidate
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain

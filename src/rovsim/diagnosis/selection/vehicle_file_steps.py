@@ -2,7 +2,7 @@
 
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.selection import uncertain_file
-from rovsim.diagnosis.selection.gauss_newton import Fit
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART

@@ -6,7 +6,7 @@ import pytest
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.residual_source import linearise
-from rovsim.diagnosis.selection.gauss_newton import levenberg_marquardt
+from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
 from rovsim.dynamics.catalogue import built_in
 from worlds import model
 

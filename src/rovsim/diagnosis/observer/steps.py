@@ -1,0 +1,74 @@
+"""When a run is read, and the steps that models take from reading to reading."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.measurement.signals.chain import Stage
+from rovsim.measurement.signals.clock import time_step
+from rovsim.measurement.signals.motion import Motion, Poses
+from rovsim.simulation.step_grid import StepGrid
+
+# Frames are read in groups of about this length: what a vehicle of this size does is slower than
+# 5 Hz, and so are its propellers (5 / s, docs/simulator.md).
+GROUP = 0.05  # s
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """When a run is read, and over which steps models go from reading to reading.
+
+    Replays take steps between `grid` (k+1,) s; `at` (n,) those at which the samples or bins begin.
+    `frames` (n, 13): pose NED before the filter, and mean velocity since the frame before where
+    velocities were measured; `group` of them, an odd number, make a reading, which holds at one
+    of the `reading_steps` (k,) of the observer. Its steps are `edges` (s+1,) s, each made of
+    `substeps` (s,) of one length, over each of which the thrust is steady.
+    """
+
+    grid: Array
+    at: Array
+    frames: Array
+    group: int
+    reading_steps: Array
+    edges: Array
+    substeps: Array
+
+
+def divide_run(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
+    """The steps of a run: its poses before the filter, its motion, and the grid of a replay."""
+    return (_step_bins if motion.binned else _step_samples)(stage, motion, grid)
+
+
+def _step_bins(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
+    """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
+    begins = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
+    frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
+    steps, ends = _divide(begins, GROUP / grid.h)
+    edges = motion.time[0] + grid.h * steps
+    return Steps(edges, ends, frames, 1, ends, edges, np.diff(steps))
+
+
+def _divide(at: Array, most: float) -> tuple[Array, Array]:
+    """Whole numbers (s+1,) that divide each space between `at` (k,) evenly, and places of `at`.
+
+    Into as many spaces as come closest to `most` each, which may be 1.
+    """
+    count = np.maximum(1, np.round(np.diff(at) / most)).astype(int)
+    ends = np.concatenate([[0], np.cumsum(count)])
+    number = np.arange(ends[-1]) - np.repeat(ends[:-1], count)
+    within = number * np.repeat(np.diff(at), count) // np.repeat(count, count)
+    return np.append(np.repeat(at[:-1], count) + within, at[-1]), ends
+
+
+def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
+    """A group of frames is a reading, and one step leads from it to the next."""
+    assert isinstance(stage, Poses)
+    count, period = len(motion.time), time_step(motion.time)
+    group = 2 * round(0.5 * (GROUP / period - 1.0)) + 1 if period < GROUP else 1
+    readings = count // group
+    steps, ends = _divide(np.arange(readings) * group * grid.stride, GROUP / grid.h)
+    edges = motion.time[0] + group // 2 * period + grid.h * steps
+    frames = np.hstack([stage.eta, np.zeros((count, 6))])
+    at = np.arange(count) * grid.stride
+    return Steps(grid.edges, at, frames, group, ends, edges, np.diff(steps))
