@@ -158,6 +158,23 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
     return current
 
 
+def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """With the shape of an effect free, where that is likelier: how far from a wall it reaches.
+
+    Left as it usually is, it would have other effects make up for it.
+    """
+    h = current.hypothesis
+    for i, term in enumerate(h.terms):
+        shape = [p.name for p in term.effect.parameters if p.shape and p.name not in term.free]
+        if shape:
+            freed = replace(term, free=(*term.free, *shape))
+            terms = (*h.terms[:i], freed, *h.terms[i + 1 :])
+            trial = prune(workspace, workspace.fit(replace(h, terms=terms)))
+            if workspace.score(trial) > workspace.score(current) + MIN_LR_OF_SWAP:
+                return free_shape(workspace, trial)
+    return current
+
+
 def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     """From the base to the model to which nothing can be added, swapped or taken away.
 
@@ -186,6 +203,7 @@ def _add_and_swap(
         gained = workspace.score(more) - workspace.score(current)
         workspace = workspace.update_after(more)
         workspace, again = prefer_steady(workspace, workspace.fit(more.hypothesis))
+        again = free_shape(workspace, again)
         swap = max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gained)
         current, _ = try_swaps(workspace, again, 1, swap)  # the likeliest other name
     return workspace, current

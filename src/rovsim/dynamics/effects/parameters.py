@@ -17,7 +17,8 @@ class Parameter:
     A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
     change worth looking for: a fit works in multiples of it. `resolution`: changes much smaller
     than this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`:
-    only when asked for. `discrete`: it has a few values, one of which is right: they are tried.
+    only when asked for; but `shape`, once its effect is known to act, where the data determine it.
+    `discrete`: it has a few values, one of which is right: they are tried.
     `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
     """
 
@@ -30,6 +31,7 @@ class Parameter:
     scale: float = field(kw_only=True)
     resolution: float = field(default=0.0, kw_only=True)
     fitted: bool = field(default=True, kw_only=True)
+    shape: bool = field(default=False, kw_only=True)
     discrete: bool = field(default=False, kw_only=True)
     reciprocal: bool = field(default=False, kw_only=True)
 

@@ -23,9 +23,9 @@ def times(factor, tau):
 
 
 def _length(default: float) -> Parameter:
-    # the gain's effect at the usual distances fixes the product of both, hardly the length alone
+    # the gain's effect at the usual distances fixes the product of both, often hardly the length
     return Parameter(
-        "length_scale", "m", "l", low=0.01, default=default, scale=0.2, fitted=False
+        "length_scale", "m", "l", low=0.01, default=default, scale=0.2, fitted=False, shape=True
     )  # fmt: skip
 
 
