@@ -13,7 +13,12 @@ from hypothesis.extra.numpy import arrays
 from rovsim.core.rotations import exp, log, multiply, normalized
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.filter_delay import absorb_delay, seen_through
+from rovsim.diagnosis.selection.filter_delay import (
+    SearchStart,
+    absorb_delay,
+    search_consistent,
+    seen_through,
+)
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
@@ -249,3 +254,35 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
     again, finer = absorb_delay(SearchResult(workspace, found(h), ()), base, smoothing)
     assert (again.best.hypothesis.terms == ()) is absorbed
     assert finer.latency == pytest.approx(lag if absorbed else 0.0)
+
+
+@pytest.mark.parametrize(
+    ("ended", "delayed", "chosen"),
+    [
+        ((8.8, 13.0), False, 0),
+        ((11.0, 13.0), False, 1),
+        ((8.8, 13.0), True, 1),
+        ((20.0, 20.0), True, 1),
+    ],
+    ids=["as the noise tells", "far from that", "with a delay", "neither"],
+)
+def test_what_the_noise_tells_of_a_filter_holds_unless_the_motion_still_differs(
+    ended, delayed, chosen
+):
+    """Dry friction passed for less delay, the filter for one of 13.7 Hz, and that for a lag."""
+    filters = [
+        Smoothing(f, std=0.1, lr_statistic=100.0, told=8.7, lowest=7.8, highest=14.4, frame=0.01)
+        for f in (8.7, 13.7)
+    ]
+    starts = [SearchStart(None, None, one) for one in filters]
+    late = (Term(InputDelay(delay=0.02), ("delay",)),) if delayed else ()
+
+    def search_from(start):
+        k = starts.index(start)
+        best = SimpleNamespace(hypothesis=Hypothesis(model(), late))
+        return SearchResult(None, best, ()), replace(start.smoothing, cutoff=ended[k])
+
+    start, selection, smoothing = search_consistent(starts, search_from)
+    assert start is starts[chosen]
+    assert smoothing.cutoff == ended[chosen]
+    assert selection.best.hypothesis.terms == late

@@ -44,7 +44,12 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns, select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.filter_delay import absorb_delay, seen_through
+from rovsim.diagnosis.selection.filter_delay import (
+    SearchStart,
+    absorb_delay,
+    search_consistent,
+    seen_through,
+)
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, keep_apart
@@ -107,11 +112,16 @@ def _diagnose(
     stage("observing")
     smoothing = find_smoothing(base, usable.runs) if smooths else None
     chosen, apart = keep_apart(usable.runs)
-    nothing, workspace, smoothing = _begin(base, smoothing, chosen, settings, catalogue)
+    starts = _begin(base, smoothing, chosen, settings, catalogue)
     stage("searching")
-    selection = search(workspace, nothing, seed)
-    if smoothing:
-        selection, smoothing = absorb_delay(selection, base, smoothing)
+
+    def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
+        selection = search(start.workspace, start.nothing, seed)
+        return (
+            absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
+        )
+
+    (nothing, workspace, _), selection, smoothing = search_consistent(starts, search_from)
     drifts = selection.best.noise.drift is not None
     holdout = HoldoutValidation(apart, usable.runs, drifts)
     answer = _unmask(settle_noticed(selection, usable, holdout, seed))
@@ -166,23 +176,26 @@ def _unmask(answer: Answer) -> Answer:
 def _begin(
     base: Model, smoothing: Smoothing | None, runs: Sequence[ObservedRun],
     settings: SearchSettings, catalogue: Catalogue,
-) -> tuple[Fit, SearchWorkspace, Smoothing | None]:  # fmt: skip
-    """Nothing but what the camera does, where to look for more, and the camera's filter.
+) -> list[SearchStart]:  # fmt: skip
+    """From where to search, the last one where none before ends where it began.
 
-    What the motion tells of its delay is used before that is taken for something else.
+    Behind a filter what the motion tells of its delay is used before that is taken for something
+    else. But where it is far from what the noise tells, something else may pass for a delay: then
+    what the noise tells comes first.
     """
 
-    def look(smoothing: Smoothing | None) -> tuple[Fit, SearchWorkspace]:
+    def look(smoothing: Smoothing | None) -> SearchStart:
         seen = seen_through(base, smoothing)
         workspace = _observe(seen, runs, settings, catalogue)
-        return workspace.fit(Hypothesis(seen)), workspace
+        return SearchStart(workspace.fit(Hypothesis(seen)), workspace, smoothing)
 
-    nothing, workspace = look(smoothing)
-    if smoothing:
-        _, finer = absorb_delay(SearchResult(workspace, nothing, ()), base, smoothing)
-        if finer is not smoothing:
-            return *look(finer), finer
-    return nothing, workspace, smoothing
+    told = look(smoothing)
+    if smoothing is None:
+        return [told]
+    _, finer = absorb_delay(SearchResult(told.workspace, told.nothing, ()), base, smoothing)
+    if finer is smoothing:
+        return [told]
+    return [look(finer)] if finer.is_near(smoothing) else [told, look(finer)]
 
 
 def _correlate(fit: Fit) -> Correlation:

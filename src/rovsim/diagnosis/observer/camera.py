@@ -50,6 +50,10 @@ class Smoothing:
         """What it does to the poses."""
         return PoseFilter(cutoff=self.cutoff, latency=self.latency)
 
+    def is_near(self, other: "Smoothing") -> bool:
+        """Whether its cutoff is that of another, as finely as noise of an unknown kind tells it."""
+        return abs(self.cutoff - other.cutoff) < OPEN_CUTOFF_SHARE * other.cutoff
+
 
 def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None:
     """The filter that poses were reported through, beside what the base knows; None: none."""

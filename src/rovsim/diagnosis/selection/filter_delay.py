@@ -7,6 +7,7 @@ than software that works frame by frame.
 """
 
 from dataclasses import replace
+from typing import Callable, NamedTuple, Sequence
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.workspace import HOPELESS_LR
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.dynamics.model import Model
@@ -24,6 +25,32 @@ DELAY, LAG = InputDelay.id, ThrusterLag.id
 # Frames: later by so much, and no more, is a latency, not a lower cutoff. Two stages between frames
 # are one frame later than two from frame to frame.
 BETWEEN_FRAMES = (0.5, 1.5)
+
+
+class SearchStart(NamedTuple):
+    """Nothing but what the camera does, where to look for more, and the camera's filter."""
+
+    nothing: Fit
+    workspace: SearchWorkspace
+    smoothing: Smoothing | None
+
+
+def search_consistent(
+    starts: Sequence[SearchStart],
+    search_from: Callable[[SearchStart], tuple[SearchResult, Smoothing | None]],
+) -> tuple[SearchStart, SearchResult, Smoothing | None]:
+    """The first search that ends, beside all that it found, with the camera it began with.
+
+    If none does, the last. Likelihoods do not tell: each camera makes other innovations of the
+    same poses.
+    """
+    for start in starts:
+        selection, smoothing = search_from(start)
+        if start.smoothing is None or smoothing is None:
+            break
+        if smoothing.is_near(start.smoothing) and not has_delay(selection.best.hypothesis):
+            break
+    return start, selection, smoothing
 
 
 def seen_through(base: Model, smoothing: Smoothing | None) -> Model:
@@ -44,10 +71,15 @@ def absorb_delay(
         again, finer = _absorb(selection, _with_delay(selection, unlagged), base, smoothing)
         if again and workspace.score(again) > workspace.score(fit) - HOPELESS_LR:
             return replace(selection, best=prune(workspace, again)), finer
-    if DELAY not in (term.id for term in fit.hypothesis.terms):
+    if not has_delay(fit.hypothesis):
         fit = _with_delay(selection, fit.hypothesis)
     again, finer = _absorb(selection, fit, base, smoothing)
     return (replace(selection, best=prune(workspace, again)) if again else selection), finer
+
+
+def has_delay(h: Hypothesis) -> bool:
+    """Whether commands are late in it."""
+    return any(term.id == DELAY for term in h.terms)
 
 
 def _with_delay(selection: SearchResult, h: Hypothesis) -> Fit:
