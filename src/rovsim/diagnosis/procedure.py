@@ -19,7 +19,7 @@ test runs       opened once, for the errors that are reported
 """
 
 from dataclasses import replace
-from typing import Callable, Sequence
+from typing import Callable, Iterator, Sequence
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -113,9 +113,9 @@ def _diagnose(
     smoothing = find_smoothing(base, usable.runs) if smooths else None
     chosen, apart = keep_apart(usable.runs)
     starts = _begin(base, smoothing, chosen, settings, catalogue)
-    stage("searching")
 
     def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
+        stage("searching")
         selection = search(start.workspace, start.nothing, seed)
         return (
             absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
@@ -176,8 +176,8 @@ def _unmask(answer: Answer) -> Answer:
 def _begin(
     base: Model, smoothing: Smoothing | None, runs: Sequence[ObservedRun],
     settings: SearchSettings, catalogue: Catalogue,
-) -> list[SearchStart]:  # fmt: skip
-    """From where to search, the last one where none before ends where it began.
+) -> Iterator[SearchStart]:  # fmt: skip
+    """From where to search, the last one where none before ends where it began; made when asked.
 
     Behind a filter what the motion tells of its delay is used before that is taken for something
     else. But where it is far from what the noise tells, something else may pass for a delay: then
@@ -191,11 +191,13 @@ def _begin(
 
     told = look(smoothing)
     if smoothing is None:
-        return [told]
+        yield told
+        return
     _, finer = absorb_delay(SearchResult(told.workspace, told.nothing, ()), base, smoothing)
-    if finer is smoothing:
-        return [told]
-    return [look(finer)] if finer.is_near(smoothing) else [told, look(finer)]
+    if finer is smoothing or not finer.is_near(smoothing):
+        yield told
+    if finer is not smoothing:
+        yield look(finer)
 
 
 def _correlate(fit: Fit) -> Correlation:

@@ -7,7 +7,7 @@ than software that works frame by frame.
 """
 
 from dataclasses import replace
-from typing import Callable, NamedTuple, Sequence
+from typing import Callable, Iterable, NamedTuple
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class SearchStart(NamedTuple):
 
 
 def search_consistent(
-    starts: Sequence[SearchStart],
+    starts: Iterable[SearchStart],
     search_from: Callable[[SearchStart], tuple[SearchResult, Smoothing | None]],
 ) -> tuple[SearchStart, SearchResult, Smoothing | None]:
     """The first search that ends, beside all that it found, with the camera it began with.
