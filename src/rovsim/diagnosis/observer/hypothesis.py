@@ -171,3 +171,7 @@ class Hypothesis:
     def without(self, index: int) -> "Hypothesis":
         """The hypothesis without one of its terms."""
         return replace(self, terms=(*self.terms[:index], *self.terms[index + 1 :]))
+
+    def replaced(self, index: int, term: Term) -> "Hypothesis":
+        """The hypothesis with another term in the place of one of its own."""
+        return replace(self, terms=(*self.terms[:index], term, *self.terms[index + 1 :]))

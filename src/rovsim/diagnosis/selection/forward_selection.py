@@ -6,7 +6,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.fit import Fit
@@ -151,11 +151,16 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
     h = current.hypothesis
     for i, term in enumerate(h.terms):
         for start in workspace.list_modes(term):
-            terms = (*h.terms[:i], start, *h.terms[i + 1 :])
-            trial = prune(workspace, workspace.fit(replace(h, terms=terms)))
-            if workspace.score(trial) > workspace.score(current) + MIN_LR_OF_SWAP:
+            if trial := _fit_if_likelier(workspace, h.replaced(i, start), current):
                 return trial
     return current
+
+
+def _fit_if_likelier(workspace: SearchWorkspace, start: Hypothesis, current: Fit) -> Fit | None:
+    """A start, fitted and pruned; None where it is not likelier than the current fit."""
+    trial = prune(workspace, workspace.fit(start))
+    likelier = workspace.score(trial) > workspace.score(current) + MIN_LR_OF_SWAP
+    return trial if likelier else None
 
 
 def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
@@ -167,10 +172,8 @@ def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
     for i, term in enumerate(h.terms):
         shape = [p.name for p in term.effect.parameters if p.shape and p.name not in term.free]
         if shape:
-            freed = replace(term, free=(*term.free, *shape))
-            terms = (*h.terms[:i], freed, *h.terms[i + 1 :])
-            trial = prune(workspace, workspace.fit(replace(h, terms=terms)))
-            if workspace.score(trial) > workspace.score(current) + MIN_LR_OF_SWAP:
+            freed = h.replaced(i, replace(term, free=(*term.free, *shape)))
+            if trial := _fit_if_likelier(workspace, freed, current):
                 return free_shape(workspace, trial)
     return current
 
