@@ -107,16 +107,17 @@ class Commanded:
     def __init__(
         self, clock: Array, time: Array, commanded: Array, shift: float = 0.0, reach: float = REACH
     ) -> None:
-        self.commanded, self.step = commanded, time_step(clock)
-        count = max(1, int(reach / self.step))
-        first, last = clock[0] - count * self.step, clock[-1] + count * self.step
-        times = first + self.step * np.arange(round((last - first) / self.step) + 1)
+        self.commanded, step = commanded, time_step(clock)
+        count = max(1, int(reach / step))
+        first, last = clock[0] - count * step, clock[-1] + count * step
+        times = first + step * np.arange(round((last - first) / step) + 1)
         inside = (times >= time[0] + shift) & (times <= time[-1] + shift + AFTER)
         other = np.stack([np.interp(times, time + shift, c) for c in commanded.T], axis=1)
+        inside &= finite_rows(other)
         other = np.where(inside[:, None], other - _mean(other[inside]), 0.0)
         # the measured stands `k` steps into the commanded: lag = (count - k) * step
         lags = len(other) - len(clock) + 1
-        self.lag = self.step * (count - np.arange(lags)) + shift
+        self.lag = step * (count - np.arange(lags)) + shift
         self.seen = inside.sum()
         laid = _Windows if lags <= FEW else _Spectra
         self.itself, self.squared, self.known = (
