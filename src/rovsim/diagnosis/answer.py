@@ -9,11 +9,7 @@ from rovsim.diagnosis.checks.identifiability import find_doubtful
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
-from rovsim.diagnosis.checks.whole_file import (
-    fit_whole_file,
-    is_right_elsewhere,
-    settle_whole_file,
-)
+from rovsim.diagnosis.checks.whole_file import is_right_elsewhere, settle_whole_file
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
@@ -24,6 +20,7 @@ from rovsim.diagnosis.selection.forward_selection import search_unnoticed
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.selection.whole_file_fit import fit_whole_file
 from rovsim.dynamics.model import Model
 
 
@@ -96,7 +93,8 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> Answer:
         fewer = selection.fit(borne_out.hypothesis)
         if fewer.is_finite:
             return _settle_values(replace(selection, best=fewer), usable)
-    score, whole = selection.workspace.score(fit), fit_whole_file(fit, bank)
+    score = selection.workspace.score(fit)
+    whole = fit_whole_file(fit.hypothesis, bank, fit.noise)
     left = find_structure(fit if whole is None else whole, bank) if fit.is_finite else []
     return Answer(selection, fit, bank, score, left, whole=whole)
 

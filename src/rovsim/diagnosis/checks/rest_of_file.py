@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import Sequence
 
 import numpy as np
-from numpy import ndarray as Array
 
 from rovsim.diagnosis.checks.common_scale import (
     GAIN_NAME,
@@ -21,20 +20,11 @@ from rovsim.diagnosis.checks.common_scale import (
     include_scale,
 )
 from rovsim.diagnosis.checks.nuisance_parameters import leave_open
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import (
-    ONE_GAIN,
-    SEVERAL,
-    STATED,
-    is_off,
-    spread_of_file,
-)
-from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
+from rovsim.diagnosis.selection.nominal_terms import is_off
+from rovsim.diagnosis.selection.whole_file_fit import free_rest, list_spreads
 
 
 def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
@@ -62,29 +52,3 @@ def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScal
     gain = further.index(GAIN_NAME)
     variance = float(rest[gain, gain])
     return fit, describe_scale(fit, variance, opened.along @ rest[:, gain] / variance)
-
-
-def free_rest(h: Hypothesis) -> Hypothesis:
-    """With all free that the file states; each thruster's own gain where several differ."""
-    fitted = set(h.parameter_names)
-    for effect in (built_in()[name] for name in STATED):
-        left = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in fitted)
-        if left:
-            h = h.with_term(Term(effect(), left))
-    return h
-
-
-def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
-    if effect is not ThrusterGain:
-        return [p.name for p in effect.parameters if p.fitted]
-    own = THRUSTERS[: h.base.vehicle.thruster_count]
-    selected = sum(f"{ThrusterGain.id}.{name}" in h.parameter_names for name in own)
-    return (*ONE_GAIN, *own) if selected >= SEVERAL else ONE_GAIN
-
-
-def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
-    """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
-    known = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
-    each = zip(freed.parameter_names, known, strict=True)
-    new = [one for name, one in each if name not in h.parameter_names]
-    return np.array([spread_of_file(h.base, *one) for one in new])

@@ -28,51 +28,19 @@ from scipy.stats import chi2
 
 from rovsim.diagnosis.checks.common_scale import CommonScale, describe_scale
 from rovsim.diagnosis.checks.residual import FALSE_ALARM
-from rovsim.diagnosis.checks.rest_of_file import free_rest, list_spreads
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.fit import Fit, judge
-from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
-from rovsim.diagnosis.selection.nominal_terms import (
-    GAIN,
-    GAIN_SCALE,
-    is_off,
-    mark_gain,
-    share_of_file,
-)
-from rovsim.diagnosis.selection.prior import Prior
+from rovsim.diagnosis.selection.nominal_terms import mark_gain, share_of_file
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
+from rovsim.diagnosis.selection.whole_file_fit import know_file, mark_new
 from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
 MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
-
-
-def fit_whole_file(fit: Fit, bank: FilterBank) -> Fit | None:
-    """All that the file states, fitted; None where it is not off, or such a model diverges."""
-    if not is_off(fit.hypothesis):
-        return None
-    freed = free_rest(fit.hypothesis)
-    prior = _know(fit.hypothesis, freed)
-    seen = levenberg_marquardt(freed, bank, fit.noise, prior)
-    return judge(seen, bank, fit.noise, prior) if seen.finite else None
-
-
-def _know(selected: Hypothesis, freed: Hypothesis) -> Prior:
-    """Of numbers that were not selected, what such files are off by; of a selected gain as well."""
-    new, gain = _mark_new(selected, freed), mark_gain(freed)
-    std = np.full(len(new), np.inf)
-    std[gain] = GAIN / GAIN_SCALE
-    std[new] = list_spreads(selected, freed)
-    return Prior(np.where(gain, freed.absence, freed.x), std, gain & ~new)
-
-
-def _mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
-    known = set(selected.parameter_names)
-    return np.array([name not in known for name in freed.parameter_names], bool)
 
 
 def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
@@ -82,13 +50,13 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
         whole: all of the file, fitted.
         selected: what was selected, as it was fitted.
     """
-    h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
+    h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
     each = [(type(t.effect), p) for t in h.terms for p in t.parameters]
     share = np.array([share_of_file(h.base, *one) for one in each])
     asked, of = new & (share > 0.0), int(np.sum(share > 0.0))
     if not asked.any() or whole.distance(asked) > chi2.isf(FALSE_ALARM, asked.sum()):
         return False
-    known, usual, one = _know(selected, h).std[asked], share[asked], np.eye(asked.sum())
+    known, usual, one = know_file(selected, h).std[asked], share[asked], np.eye(asked.sum())
     in_all = solve(whole.covariance[np.ix_(asked, asked)], one)
     pull = in_all @ (h.x - h.absence)[asked]
     told = in_all - np.diag(known**-2.0)  # by the runs: the fit knew the file as well
@@ -107,8 +75,8 @@ def settle_whole_file(
         selected: what was selected, as it was fitted.
         bank: that of `whole`.
     """
-    h, new = whole.hypothesis, _mark_new(selected, whole.hypothesis)
-    untold = new & (whole.std > TOLD * _know(selected, h).std)
+    h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
+    untold = new & (whole.std > TOLD * know_file(selected, h).std)
     owner = np.array([term.id for term in h.terms for _ in term.free])
     named = {term.id for term in selected.terms} | _name_gain(whole)
     sure = {one for one in set(owner) - named if _is_sure(whole, (owner == one) & ~untold)}

@@ -4,6 +4,7 @@ candidates           every effect of the catalogue, from each of its starts
 sensitivities        how each would change the innovations, to first order
 remaining_noise      of what a hypothesis leaves and none of them explains
 proposals            what each should explain, and what chance would seem to
+promising            which of them are worth a fit
 white_columns        the same under one noise, beside what was found
 workspace            the runs, the columns, one noise for all; what is fitted already
 prior                what is known of parameters before the runs are looked at
@@ -13,6 +14,8 @@ pruning              without what is not worth its penalty
 forward_selection    add, refit, swap, prune
 vehicle_file_steps   what the vehicle file explains as well as something rarer
 uncertain_file       a special effect beside a vehicle file that may be off everywhere
+whole_file_fit       all of a file that is off, fitted with what was selected
+special_effects      each judged beside that
 steady_current       or one that wanders?
 search_result        where that ended, and what else the effects could be
 filter_delay         beside what the camera does

@@ -6,14 +6,22 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import is_off
-from rovsim.diagnosis.selection.proposals import Proposal
+from rovsim.diagnosis.selection.promising import (
+    NEARLY_BEST_SHARE,
+    PROMISING_SHARE,
+    find_swaps,
+    keep_close,
+    list_promising,
+    measure_explained,
+)
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult
+from rovsim.diagnosis.selection.special_effects import judge_beside_file
 from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.vehicle_file_steps import (
     add_file,
@@ -21,33 +29,13 @@ from rovsim.diagnosis.selection.vehicle_file_steps import (
     prefer_file,
     suspect_file,
 )
-from rovsim.diagnosis.selection.workspace import HOPELESS_LR, Removed, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
 MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name
 # Of what the last addition explained: while more is sought, less is not worth a swap.
 MIN_SWAP_SHARE = 0.01
-# Of what a term explains: another name may do better than first order predicts, not twice.
-PROMISING_SHARE = 0.5
-# Of the best predicted decrease: effects predicted about the same are all refitted, for the order
-# of first-order predictions is not that of fits (a torpedo's weight, sixth to first order, was
-# best).
-NEARLY_BEST_SHARE = 0.75
-# Of the best predicted decrease: less has never turned out best after refitting.
-WORTH_TRYING_SHARE = 0.2
-
-
-def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
-    """The proposals that should lower the sum of squares by more than their penalty."""
-    return [p for p in workspace.propose(current) if p.net_decrease > 0.0]
-
-
-def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
-    """The first proposals, as far as they could turn out best once refitted."""
-    return [
-        p for p in ranked[:trials] if p.net_decrease > WORTH_TRYING_SHARE * ranked[0].net_decrease
-    ]
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
@@ -105,7 +93,7 @@ def try_swaps(
         for p in find_swaps(workspace, term, rest, trials):
             trial = None
             worse = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
-            if worse < 0.0 or _explains(workspace, p) > PROMISING_SHARE * rest.ss_increase:
+            if worse < 0.0 or measure_explained(workspace, p) > PROMISING_SHARE * rest.ss_increase:
                 start, worse = rest.hypothesis.with_term(p.term), HOPELESS_LR
                 trial = workspace.fit_unless_worse(start, current, workspace.score(current))
             if trial is not None:
@@ -118,27 +106,6 @@ def try_swaps(
                 worse = max(0.0, weight)  # likelier only beside a loose file: not told apart
             rivals.append(Rival(p.term.id, term.id, worse, trial))
     return current, rivals
-
-
-def find_swaps(
-    workspace: SearchWorkspace, term: Term, rest: Removed, trials: int
-) -> list[Proposal]:
-    """The first other effects that may explain what a removed term did, best first.
-
-    All that should explain nearly as much as it did are among them: loops about three angles were
-    third in the place of weak sticks and drag, and likelier once refitted. Where a term itself is
-    hardly worth its penalty, a rival need not be: the two share what they explain.
-    """
-    others = [p for p in rest.others if p.term.id != term.id]
-    trials = max(trials, sum(p.net_decrease > NEARLY_BEST_SHARE * rest.ss_increase for p in others))
-    worth = keep_close([p for p in others if p.net_decrease > 0.0], trials)
-    least = PROMISING_SHARE * rest.ss_increase
-    return worth or [p for p in others[:trials] if _explains(workspace, p) > least]
-
-
-def _explains(workspace: SearchWorkspace, proposal: Proposal) -> float:
-    """Decrease of the sum of squares, without its penalty."""
-    return proposal.net_decrease + workspace.penalty * proposal.term.choices
 
 
 def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
@@ -190,7 +157,8 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     workspace = workspace.relinearise_if_changed(current)
     current, _ = try_swaps(workspace, current, 1)
     current = change_mode(workspace, current)
-    current = fix_gain(workspace, prefer_file(workspace, current))
+    current = judge_beside_file(workspace, prefer_file(workspace, current))
+    current = fix_gain(workspace, current)
     current, rivals = try_swaps(workspace, current, workspace.settings.trials)
     return SearchResult(workspace, current, tuple(rivals))
 

@@ -39,7 +39,11 @@ Requirement = Literal["nothing", "commands", "demands", "thrusters", "surfaces",
 
 
 class Actuated(Protocol):
-    """What effects ask of a vehicle: how many thrusters it has, and its control surfaces."""
+    """What effects ask of a vehicle: its weight, how many thrusters it has, and its surfaces."""
+
+    @property
+    def dry_mass(self) -> float:
+        """Its mass, kg, without water that it holds."""
 
     @property
     def thruster_count(self) -> int:

@@ -1,11 +1,14 @@
 """Mass and weight: the dry vehicle, and what was bolted to it."""
 
+from functools import cache
+
 import numpy as np
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter
+from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
+WATER = 1000.0  # kg/m3: what a vehicle that neither rises nor sinks takes the place of
 PLACE = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
 
 
@@ -38,6 +41,12 @@ class RigidBody(Coefficients):
         body.add_mass(mass, self.values[4:7], np.diag(moments) - products)
 
 
+def _places(mass: float, reach: float) -> tuple[dict[str, float], ...]:
+    """At CO, and at the ends of a frame: without a mass its place means nothing."""
+    ends = ({axis: place} for axis in "xyz" for place in (-reach, reach))
+    return tuple({"mass": mass} | place for place in ({}, *ends))
+
+
 class Payload(Coefficients):
     """A point mass without volume, carried along."""
 
@@ -61,12 +70,24 @@ class Payload(Coefficients):
     )
     signature = Signature({"mass": 1.0, "x": 0.1, "z": 0.15}, "pitch", "pitch angle")
     parameters = (Parameter("mass", "kg", "m", low=0.0, scale=0.5), *PLACE)
-    # without a mass its place means nothing; so: at CO, and at the ends of a frame 0.4 m long
-    starts = (
-        {"mass": 0.3},
-        *({"mass": 0.3, axis: place} for axis in "xyz" for place in (-0.15, 0.15)),
-    )
+    starts = _places(mass=0.3, reach=0.15)
+
+    @classmethod
+    def on(cls, vehicle: Actuated) -> type[Effect]:
+        """With starts that suit its size."""
+        return _on_a_vehicle_of(vehicle.dry_mass)
 
     def enter(self, body: Body) -> None:
         """Add the point mass and its weight."""
         body.add_mass(self["mass"], self.values[1:], np.zeros((3, 3)))
+
+
+@cache
+def _on_a_vehicle_of(mass: float) -> type[Payload]:
+    """A fortieth of the vehicle's mass, within a frame three times as large as its water.
+
+    For a BlueROV2 (11.5 kg, 0.46 m) 0.3 kg, 0.15 m from its middle.
+    """
+    starts = _places(mass / 40.0, (mass / WATER) ** (1.0 / 3.0) * 2.0 / 3.0)
+    own = {"starts": starts, "__doc__": Payload.__doc__, "__module__": __name__}
+    return type(Payload.__name__, (Payload,), own)

@@ -112,6 +112,11 @@ class Vehicle(Section):
         return np.array([axis in self.degrees_of_freedom for axis in AXES])
 
     @property
+    def dry_mass(self) -> float:
+        """Its mass, kg, without water that it holds."""
+        return self.rigid_body.mass
+
+    @property
     def thruster_count(self) -> int:
         """Number of thrusters."""
         return len(self.thrusters.units)

@@ -1,0 +1,88 @@
+"""All of a vehicle file that is off, fitted together with what was selected."""
+
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import Noise
+from rovsim.diagnosis.selection.fit import Fit, judge
+from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
+from rovsim.diagnosis.selection.nominal_terms import (
+    GAIN,
+    GAIN_SCALE,
+    ONE_GAIN,
+    SEVERAL,
+    STATED,
+    is_off,
+    mark_gain,
+    spread_of_file,
+)
+from rovsim.diagnosis.selection.prior import Prior
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
+
+
+def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit | None:
+    """All that the file states, fitted; None where it is not off, or such a model diverges."""
+    if not is_off(selected):
+        return None
+    freed = free_rest(selected)
+    prior = know_file(selected, freed)
+    seen = levenberg_marquardt(freed, bank, noise, prior)
+    return judge(seen, bank, noise, prior) if seen.finite else None
+
+
+def measure_misfit(whole: Fit, selected: Hypothesis) -> float:
+    """Minus twice the log likelihood of such a fit, and of what is known of files; no constant.
+
+    Args:
+        whole: all of the file, fitted.
+        selected: what was selected, as it was fitted.
+    """
+    x = whole.hypothesis.x
+    return know_file(selected, free_rest(selected)).cost(x) - whole.two_log_likelihood
+
+
+def know_file(selected: Hypothesis, freed: Hypothesis) -> Prior:
+    """Of numbers that were not selected, what such files are off by; of a selected gain as well."""
+    new, gain = mark_new(selected, freed), mark_gain(freed)
+    std = np.full(len(new), np.inf)
+    std[gain] = GAIN / GAIN_SCALE
+    std[new] = list_spreads(selected, freed)
+    return Prior(np.where(gain, freed.absence, freed.x), std, gain & ~new)
+
+
+def mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
+    """Which parameters (k,) of the one are not selected."""
+    known = set(selected.parameter_names)
+    return np.array([name not in known for name in freed.parameter_names], bool)
+
+
+def free_rest(h: Hypothesis) -> Hypothesis:
+    """With all free that the file states; each thruster's own gain where several differ."""
+    fitted = set(h.parameter_names)
+    for effect in (built_in()[name] for name in STATED):
+        left = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in fitted)
+        if left:
+            h = h.with_term(Term(effect(), left))
+    return h
+
+
+def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
+    if effect is not ThrusterGain:
+        return [p.name for p in effect.parameters if p.fitted]
+    own = THRUSTERS[: h.base.vehicle.thruster_count]
+    selected = sum(f"{ThrusterGain.id}.{name}" in h.parameter_names for name in own)
+    return (*ONE_GAIN, *own) if selected >= SEVERAL else ONE_GAIN
+
+
+def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
+    """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
+    known = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
+    each = zip(freed.parameter_names, known, strict=True)
+    new = [one for name, one in each if name not in h.parameter_names]
+    return np.array([spread_of_file(h.base, *one) for one in new])
