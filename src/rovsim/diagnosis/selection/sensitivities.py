@@ -59,6 +59,11 @@ class Sensitivities:
         """Number of columns."""
         return len(self.columns[0])
 
+    @property
+    def finite(self) -> bool:
+        """Whether the observer holds the model that they were made at."""
+        return all(np.isfinite(one).all() for one in self.base)
+
 
 def linearise_candidates(
     bank: FilterBank, base: Hypothesis, candidates: Sequence[Candidate]

@@ -71,20 +71,29 @@ class SearchWorkspace:
     def update_after(self, current: Fit) -> "SearchWorkspace":
         """The workspace whose filters, columns and noise suit what is now known to act.
 
-        Columns take longest: they are made anew each time that twice as much was found.
+        Columns take longest: they are made anew each time that twice as much was found. The same
+        where filters under the noise that was known do not hold the model.
         """
         at, beside = current.hypothesis, self.columns.beside(current.hypothesis).beside
         fresh = self.relinearise_if_changed(current) if len(at.terms) >= 2 * len(beside) else self
-        noise = fit_remaining_noise(fresh.columns.beside(at), at, self.noise, rounds=1)
-        return fresh.with_noise(at, noise)
+        known = fresh.columns.beside(at)
+        if not known.finite:
+            return self
+        return fresh.with_noise(at, fit_remaining_noise(known, at, self.noise, rounds=1))
 
     def relinearise_if_changed(self, current: Fit) -> "SearchWorkspace":
-        """The workspace with columns beside all that was found, where that has changed them."""
+        """The workspace with columns beside all that was found, where that has changed them.
+
+        The same where its filters do not hold that.
+        """
         at, names = current.hypothesis, {term.id for term in current.hypothesis.terms}
         known = names == set(self.columns.beside(at).beside)
         if known or not self.columns.have_changed(current.seen):
             return self
-        return replace(self, columns=self.columns.relinearised(at), _proposed={}, _removed={})
+        columns = self.columns.relinearised(at)
+        if not columns.beside(at).finite:
+            return self
+        return replace(self, columns=columns, _proposed={}, _removed={})
 
     def with_noise(self, at: Hypothesis, noise: Noise) -> "SearchWorkspace":
         """The workspace whose filters suit a hypothesis and a noise.
@@ -225,8 +234,10 @@ class SearchWorkspace:
 
     def chance_limit(self, current: Fit, seed: int) -> float:
         """Net decrease by the best candidate where all is chance, but for false alarms allowed."""
+        products = self.columns.products(current.seen)[1:, 1:]
+        if not np.isfinite(products).all():
+            return np.inf  # the observer cannot hold the model, and nothing can be told
         decreases = draw_chance_decreases(
-            self.columns.products(current.seen)[1:, 1:], self.sensitivities.blocks, self.penalty,
-            self.settings.draws, seed,
-        )  # fmt: skip
+            products, self.sensitivities.blocks, self.penalty, self.settings.draws, seed
+        )
         return max(0.0, float(np.quantile(decreases, 1.0 - self.settings.false_alarm)))
