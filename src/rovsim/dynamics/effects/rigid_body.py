@@ -8,7 +8,8 @@ from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
-WATER = 1000.0  # kg/m3: what a vehicle that neither rises nor sinks takes the place of
+# Of a payload, where a fit begins: kg, m from the middle of a BlueROV2 Heavy (13.5 kg, 0.46 m long).
+START, REACH, HEAVY = 0.3, 0.15, 13.5
 PLACE = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
 
 
@@ -70,7 +71,7 @@ class Payload(Coefficients):
     )
     signature = Signature({"mass": 1.0, "x": 0.1, "z": 0.15}, "pitch", "pitch angle")
     parameters = (Parameter("mass", "kg", "m", low=0.0, scale=0.5), *PLACE)
-    starts = _places(mass=0.3, reach=0.15)
+    starts = _places(START, REACH)
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:
@@ -84,10 +85,8 @@ class Payload(Coefficients):
 
 @cache
 def _on_a_vehicle_of(mass: float) -> type[Payload]:
-    """A fortieth of the vehicle's mass, within a frame three times as large as its water.
-
-    For a BlueROV2 (11.5 kg, 0.46 m) 0.3 kg, 0.15 m from its middle.
-    """
-    starts = _places(mass / 40.0, (mass / WATER) ** (1.0 / 3.0) * 2.0 / 3.0)
+    """With starts that suit a vehicle of so many kg: as on a BlueROV2 Heavy, but for its size."""
+    size = mass / HEAVY
+    starts = _places(START * size, REACH * size ** (1.0 / 3.0))
     own = {"starts": starts, "__doc__": Payload.__doc__, "__module__": __name__}
     return type(Payload.__name__, (Payload,), own)
