@@ -7,14 +7,15 @@ from hypothesis import strategies as st
 
 from flown import observed
 from rovsim import AXES
-from rovsim.diagnosis.checks.rest_of_file import free_rest, include_rest, list_spreads
-from rovsim.diagnosis.checks.whole_file import fit_whole_file, is_right_elsewhere, settle_whole_file
+from rovsim.diagnosis.checks.rest_of_file import include_rest
+from rovsim.diagnosis.checks.whole_file import is_right_elsewhere, settle_whole_file
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.fit import fit
 from rovsim.diagnosis.selection.nominal_terms import doubt_gain, free_terms
 from rovsim.diagnosis.selection.prior import Prior
+from rovsim.diagnosis.selection.whole_file_fit import fit_whole_file, free_rest, list_spreads
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
@@ -51,6 +52,10 @@ def fitted(bank, axes, names=COEFFICIENTS):
     return fit(Hypothesis(base, free_terms(base, axes, names)), bank, FIRST_NOISE)
 
 
+def fit_whole(found, bank):
+    return fit_whole_file(found.hypothesis, bank, found.noise)
+
+
 def miss(found, off):
     """Of each value, in standard deviations."""
     z = []
@@ -75,7 +80,7 @@ def test_what_the_rest_of_the_file_hides_is_in_the_intervals(flown, bank):
 def test_the_rest_of_the_file_is_found_beside_what_is_known_of_such_files(flown, bank):
     _, _, off = flown
     found = fitted(bank, ("surge", "sway"))
-    whole = fit_whole_file(found, bank)
+    whole = fit_whole(found, bank)
     (heave,) = (t.effect["heave"] for t in whole.hypothesis.terms if t.id == "quadratic_damping")
     assert heave == pytest.approx(off["quadratic_damping"]["heave"], rel=0.5)
     assert np.abs(miss(whole, off)).max() < 3.0
@@ -87,7 +92,7 @@ def test_of_the_file_only_that_is_named_without_which_a_replay_is_worse(flown, b
     """With the file's gain, all forces are a twentieth too large; so must the restoring ones be."""
     _, _, off = flown
     found = fitted(bank, ("surge", "sway"))
-    final, scale = settle_whole_file(fit_whole_file(found, bank), found.hypothesis, bank)
+    final, scale = settle_whole_file(fit_whole(found, bank), found.hypothesis, bank)
     assert {term.id for term in final.hypothesis.terms} == {*COEFFICIENTS, "buoyancy_center"}
     assert np.abs(miss(final, off)).max() < 3.0
     assert "added_mass.surge" in scale.parameters
@@ -99,7 +104,7 @@ def test_a_gain_that_is_surely_off_stays_though_no_replay_would_miss_it(tmp_path
     other = FilterBank.design(runs, base, FIRST_NOISE)
     found = fitted(other, ("surge", "sway"))
     assert "thruster_gain.all" not in found.hypothesis.parameter_names
-    final, _ = settle_whole_file(fit_whole_file(found, other), found.hypothesis, other)
+    final, _ = settle_whole_file(fit_whole(found, other), found.hypothesis, other)
     assert np.abs(miss(final, off)).max() < 3.5
     (gain,) = (t.effect["all"] for t in final.hypothesis.terms if t.id == "thruster_gain")
     assert gain == pytest.approx(WEAKER, abs=0.1)
@@ -109,7 +114,7 @@ def test_a_gain_that_is_surely_off_stays_though_no_replay_would_miss_it(tmp_path
 def test_a_file_that_is_off_everywhere_is_not_right_elsewhere(bank, axes):
     """Its ballast is where it says, which tells nothing of drag."""
     found = fitted(bank, axes)
-    assert not is_right_elsewhere(fit_whole_file(found, bank), found.hypothesis)
+    assert not is_right_elsewhere(fit_whole(found, bank), found.hypothesis)
 
 
 def test_a_file_may_be_right_but_for_what_was_selected(flown, tmp_path):
@@ -121,13 +126,13 @@ def test_a_file_may_be_right_but_for_what_was_selected(flown, tmp_path):
     base, runs = observed(tmp_path, duration=20.0, effects=some)
     other = FilterBank.design(runs, base, FIRST_NOISE)
     found = fitted(other, ("surge", "sway"))
-    assert is_right_elsewhere(fit_whole_file(found, other), found.hypothesis)
+    assert is_right_elsewhere(fit_whole(found, other), found.hypothesis)
 
 
 def test_one_effect_may_be_all_that_is_wrong(flown, bank):
     found = fitted(bank, AXES, ("added_mass",))
     assert include_rest(found, flown[1]) == (found, None)
-    assert fit_whole_file(found, bank) is None
+    assert fit_whole(found, bank) is None
 
 
 def with_gain(base, gain, *names):

@@ -19,9 +19,9 @@ from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.whole_file_fit import fit_whole_file, measure_misfit
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 
-# Times its limit: what a term takes away to first order may be far more than what it does once all
-# of the file is fitted (137 for 1, of a limit of 60).
-WORTH_FITTING = 10.0
+# Times its limit: to first order a term may seem to take far more than it does once all of the file
+# is fitted (137 for 1 of a limit of 60, 401 for less than 0 of one of 31).
+WORTH_FITTING = 30.0
 
 
 class Alternative(NamedTuple):

@@ -8,7 +8,7 @@ from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 
-# Of a payload, where a fit begins: kg, m from the middle of a BlueROV2 Heavy (13.5 kg, 0.46 m long).
+# Where the fit of a payload begins on a BlueROV2 Heavy (13.5 kg): kg, m from its middle.
 START, REACH, HEAVY = 0.3, 0.15, 13.5
 PLACE = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
 

@@ -1,0 +1,70 @@
+"""A special effect that only makes up for a common scale which a vehicle file has wrong."""
+
+import numpy as np
+import pytest
+import yaml
+
+from flown import observed
+from rovsim import AXES
+from rovsim.diagnosis.observer.filter_bank import FilterBank
+from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.nominal_terms import STATED, free_terms
+from rovsim.diagnosis.selection.sensitivities import linearise_candidates
+from rovsim.diagnosis.selection.special_effects import judge_beside_file
+from rovsim.diagnosis.selection.vehicle_file_steps import prefer_file
+from rovsim.diagnosis.selection.white_columns import WhiteColumns
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.settings import SearchSettings
+from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effect_entry import EffectEntry
+from rovsim.dynamics.effects.rigid_body import Payload
+from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.dynamics.vehicle import default_vehicle
+from rovsim.dynamics.vehicle.load import vehicle_file
+
+OFF, GAIN = 0.2, 1.3
+NUMBERS = ("linear_damping", "quadratic_damping", "added_mass")
+BALLAST = 0.05  # m below CO: couples surge with pitch by a mass that no number of the file is
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory):
+    """A vehicle with thrusters that are stronger than its file says, and all else 20 % off."""
+    folder = tmp_path_factory.mktemp("heavy")
+    stated = yaml.safe_load(vehicle_file(default_vehicle()).read_text())
+    stated["rigid_body"]["center_of_gravity"] = [0.0, 0.0, BALLAST]
+    path = folder / "heavy.yaml"
+    path.write_text(yaml.safe_dump(stated))
+    water = stated["hydrodynamics"]
+    off = {n: dict(zip(AXES, OFF * np.array(water[n]), strict=True)) for n in NUMBERS}
+    off["thruster_gain"] = {"all": GAIN}
+    hidden = tuple(EffectEntry(effect=name, parameters=own) for name, own in off.items())
+    base, runs = observed(folder, duration=30.0, vehicle=str(path), effects=hidden)
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
+    listed = list_candidates(runs, built_in(), base.vehicle)
+    some = [c for c in listed if c.effect.id in (*STATED, Payload.id)]
+    known = linearise_candidates(bank, Hypothesis(base), some)
+    return SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
+
+
+def test_a_payload_does_not_stand_for_a_scale(workspace):
+    """To first order the file does not explain it: such a factor is too large a step."""
+    base = workspace.bank.model
+    file = free_terms(base, AXES, (*NUMBERS, "net_buoyancy", "buoyancy_center"))
+    payload = Term(Payload(mass=0.3, z=-0.3), ("mass", "z"))
+    found = prefer_file(workspace, workspace.fit(Hypothesis(base, (*file, payload))))
+    assert Payload.id in {term.id for term in found.hypothesis.terms}
+    judged = judge_beside_file(workspace, found).hypothesis
+    assert {term.id for term in judged.terms} <= {*STATED}
+    (gain,) = (t.effect["all"] for t in judged.terms if t.id == ThrusterGain.id)
+    assert gain == pytest.approx(GAIN, abs=0.1)
+
+
+def test_where_a_file_is_not_off_everywhere_nothing_is_judged(workspace):
+    base = workspace.bank.model
+    two = free_terms(base, AXES, NUMBERS[:2])
+    payload = Term(Payload(mass=0.3, z=-0.3), ("mass", "z"))
+    found = workspace.fit(Hypothesis(base, (*two, payload)))
+    assert judge_beside_file(workspace, found) is found
