@@ -11,6 +11,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.nominal_terms import STATED, free_terms
+from rovsim.diagnosis.selection.search_result import Rival, keep_likeliest
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.special_effects import judge_beside_file
 from rovsim.diagnosis.selection.vehicle_file_steps import prefer_file
@@ -56,7 +57,7 @@ def test_a_payload_does_not_stand_for_a_scale(workspace):
     payload = Term(Payload(mass=0.3, z=-0.3), ("mass", "z"))
     found = prefer_file(workspace, workspace.fit(Hypothesis(base, (*file, payload))))
     assert Payload.id in {term.id for term in found.hypothesis.terms}
-    judged = judge_beside_file(workspace, found).hypothesis
+    judged = judge_beside_file(workspace, found).fit.hypothesis
     assert {term.id for term in judged.terms} <= {*STATED}
     (gain,) = (t.effect["all"] for t in judged.terms if t.id == ThrusterGain.id)
     assert gain == pytest.approx(GAIN, abs=0.1)
@@ -67,4 +68,10 @@ def test_where_a_file_is_not_off_everywhere_nothing_is_judged(workspace):
     two = free_terms(base, AXES, NUMBERS[:2])
     payload = Term(Payload(mass=0.3, z=-0.3), ("mass", "z"))
     found = workspace.fit(Hypothesis(base, (*two, payload)))
-    assert judge_beside_file(workspace, found) is found
+    assert judge_beside_file(workspace, found) == (found, ())
+
+
+def test_of_rivals_for_the_same_the_likeliest_is_kept():
+    far, near = (Rival("lift", "payload", worse) for worse in (9.0, 2.0))
+    other = Rival("lift", "current", 5.0)
+    assert keep_likeliest([far, other, near]) == (near, other)

@@ -20,7 +20,7 @@ from rovsim.diagnosis.selection.promising import (
     measure_explained,
 )
 from rovsim.diagnosis.selection.pruning import prune
-from rovsim.diagnosis.selection.search_result import Rival, SearchResult
+from rovsim.diagnosis.selection.search_result import Rival, SearchResult, keep_likeliest
 from rovsim.diagnosis.selection.special_effects import judge_beside_file
 from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.vehicle_file_steps import (
@@ -157,10 +157,10 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     workspace = workspace.relinearise_if_changed(current)
     current, _ = try_swaps(workspace, current, 1)
     current = change_mode(workspace, current)
-    current = judge_beside_file(workspace, prefer_file(workspace, current))
-    current = fix_gain(workspace, current)
+    judged = judge_beside_file(workspace, prefer_file(workspace, current))
+    current = fix_gain(workspace, judged.fit)
     current, rivals = try_swaps(workspace, current, workspace.settings.trials)
-    return SearchResult(workspace, current, tuple(rivals))
+    return SearchResult(workspace, current, keep_likeliest([*rivals, *judged.rivals]))
 
 
 def _add_and_swap(

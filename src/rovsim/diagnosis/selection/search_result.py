@@ -1,6 +1,7 @@
 """Where a search ended, and what else the effects it found could be."""
 
 from dataclasses import dataclass, field
+from typing import Iterable
 
 import numpy as np
 
@@ -25,6 +26,16 @@ class Rival:
     instead_of: str
     deviance_difference: float
     fit: Fit | None = field(default=None, compare=False, repr=False)
+
+
+def keep_likeliest(rivals: Iterable[Rival]) -> tuple[Rival, ...]:
+    """Each that stands for the same once, as it is likeliest."""
+    best: dict[tuple[str, str], Rival] = {}
+    for one in rivals:
+        known = best.setdefault((one.instead_of, one.effect), one)
+        if one.deviance_difference < known.deviance_difference:
+            best[one.instead_of, one.effect] = one
+    return tuple(best.values())
 
 
 @dataclass(frozen=True, eq=False)
