@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.core.threads import map_in_threads
+from rovsim.core.threads import side_by_side
 from rovsim.dynamics.engine.modules import engine
 from rovsim.dynamics.engine.parallel import on_cores
 
@@ -61,13 +61,13 @@ def test_what_goes_wrong_in_a_part_is_told():
 
 
 @given(st.lists(st.integers()), st.integers(1, 4))
-def test_threads_do_what_one_after_the_other_does(things, cores):
-    assert map_in_threads(lambda x: x + 1, things, cores) == [x + 1 for x in things]
+def test_side_by_side_is_one_after_the_other(things, cores):
+    assert side_by_side(lambda x: x + 1, things, cores) == [x + 1 for x in things]
 
 
-def test_in_threads_numpy_treats_what_is_not_finite_as_here():
+def test_side_by_side_numpy_treats_what_is_not_finite_as_here():
     with np.errstate(divide="raise"), pytest.raises(FloatingPointError):
-        map_in_threads(lambda x: np.ones(1) / x, [0.0, 0.0], 2)
+        side_by_side(lambda x: np.ones(1) / x, [0.0, 0.0], 2)
 
 
 def test_threads_share_what_one_of_them_makes():

@@ -20,7 +20,7 @@ if hasattr(os, "register_at_fork"):  # where processes fork, a child has none of
     os.register_at_fork(after_in_child=threads.cache_clear)
 
 
-def map_in_threads(work: Callable[[A], B], things: Sequence[A], cores: int) -> list[B]:
+def side_by_side(work: Callable[[A], B], things: Sequence[A], cores: int) -> list[B]:
     """`[work(one) for one in things]`, `cores` at once; not for work that does this itself."""
     if cores == 1 or len(things) < 2:
         return [work(one) for one in things]

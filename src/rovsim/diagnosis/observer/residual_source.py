@@ -7,7 +7,7 @@ from typing import Callable, Protocol, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.threads import map_in_threads
+from rovsim.core.threads import side_by_side
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.engine.parallel import core_count
@@ -92,7 +92,7 @@ def evaluate_each(
     def of_run(k: int) -> Array:
         return evaluate_possible(models, counts[k], partial(errors, k))
 
-    return map_in_threads(of_run, range(len(counts)), core_count())
+    return side_by_side(of_run, range(len(counts)), core_count())
 
 
 def evaluate_possible(
