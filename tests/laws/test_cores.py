@@ -10,8 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.core.threads import side_by_side
-from rovsim.dynamics.engine.modules import engine
 from rovsim.dynamics.engine.parallel import on_cores
 
 
@@ -58,19 +56,3 @@ def test_what_goes_wrong_in_a_part_is_told():
 
     with on(2), pytest.raises(ZeroDivisionError):
         on_cores(work, np.ones(9))
-
-
-@given(st.lists(st.integers()), st.integers(1, 4))
-def test_side_by_side_is_one_after_the_other(things, cores):
-    assert side_by_side(lambda x: x + 1, things, cores) == [x + 1 for x in things]
-
-
-def test_side_by_side_numpy_treats_what_is_not_finite_as_here():
-    with np.errstate(divide="raise"), pytest.raises(FloatingPointError):
-        side_by_side(lambda x: np.ones(1) / x, [0.0, 0.0], 2)
-
-
-def test_threads_share_what_one_of_them_makes():
-    with ThreadPoolExecutor(4) as threads:
-        found = list(threads.map(lambda _: engine([], attachable=True), range(8)))
-    assert len({id(one) for one in found}) == 1

@@ -18,7 +18,6 @@ normal          numbers of the normal distribution
 gauss_markov    noise that lasts: drawn from step to step, of unit variance
 bounded_cache   values that are made again where memory did not hold them
 collector       when Python collects, and what is given back to the system
-threads         work on all cores, in threads
 second_process  a second process for what needs other libraries
 termination     SIGTERM as Ctrl-C
 extras          packages that only some commands need

@@ -1,7 +1,7 @@
 """Innovations, and how they change with parameters: what all decisions are made of."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Sequence
 
 import numpy as np
@@ -25,7 +25,7 @@ from rovsim.diagnosis.observer.noise import (
 )
 from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_each, linearise
+from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
 from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # at most: what wanders and what pushes for a second are told apart by then
@@ -62,7 +62,10 @@ class FilterBank:
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
-        return evaluate_each(models, [len(run.time) for run in self.runs], self._of_run)
+        return [
+            evaluate_possible(models, len(run.time), partial(self._of_run, k))
+            for k, run in enumerate(self.runs)
+        ]
 
     def innovations(self, model: Model) -> list[Array]:
         """Innovations (6, n) of each run of one model."""

@@ -1,16 +1,13 @@
 """Errors of models, how they change with parameters, and what makes them comparable."""
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Callable, Protocol, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.threads import side_by_side
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
-from rovsim.dynamics.engine.parallel import core_count
 from rovsim.dynamics.model import Model
 
 Errors = Callable[[Sequence[Model]], list[Array]]
@@ -82,17 +79,6 @@ def step_back(at: Hypothesis, i: int) -> Hypothesis | None:
     """The other way from `linearise`'s step of one parameter; None where its range ends there."""
     to = at.at(at.x - np.where(np.arange(len(at.x)) == i, at.steps, 0.0))
     return to if to.x[i] != at.x[i] else None
-
-
-def evaluate_each(
-    models: Sequence[Model], counts: Sequence[int], errors: Callable[[int, Sequence[Model]], Array]
-) -> list[Array]:
-    """Errors (m, 6, count) of models on each run, by its number; see `evaluate_possible`."""
-
-    def of_run(k: int) -> Array:
-        return evaluate_possible(models, counts[k], partial(errors, k))
-
-    return side_by_side(of_run, range(len(counts)), core_count())
 
 
 def evaluate_possible(

@@ -8,7 +8,7 @@ noise (sandwich.py; windows are the clusters).
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Sequence
 
 import numpy as np
@@ -18,7 +18,7 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_each, linearise
+from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
 from rovsim.diagnosis.observer.sandwich import estimate_covariance_of_few
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.fit import REACH, Fit, judge
@@ -53,10 +53,13 @@ class Replays:
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Scaled errors (m, 6, n) of each run; NaN where a model cannot move at all."""
         counts = [len(own.number) + int(np.sum(_follows(own))) for own in self.windows]
-        return evaluate_each(models, counts, self._compare)
+        return [
+            evaluate_possible(models, count, partial(self._compare, own))
+            for own, count in zip(self.windows, counts, strict=True)
+        ]
 
-    def _compare(self, k: int, models: Sequence[Model]) -> Array:
-        (velocity, acceleration), windows = self.spread, self.windows[k]
+    def _compare(self, windows: Windows, models: Sequence[Model]) -> Array:
+        velocity, acceleration = self.spread
         nu, time = windows.compare(models), windows.run.motion.time[windows.compared]
         step = np.diff(nu, axis=1) / np.diff(time)[:, None]
         both = [nu / velocity, step[:, _follows(windows)] / acceleration]

@@ -12,7 +12,6 @@ import sys
 import textwrap
 from functools import cache
 from pathlib import Path
-from threading import RLock
 from types import ModuleType
 from typing import Any, Sequence
 
@@ -106,22 +105,18 @@ PUSH = """\
 """
 COLUMNS, MARGIN = 88, " " * 12  # of the parameters in `PUSH`
 
-_MAKING = RLock()  # what two threads ask for at once is made once
-
 
 def engine(wrenches: Sequence[Any], attachable: bool = False) -> ModuleType:
     """The compiled equation of motion with these wrench effects, in this order.
 
     Where others can be attached, each parameter set brings their values behind those of its own.
     """
-    with _MAKING:
-        return _engine(tuple(wrenches), attachable)
+    return _engine(tuple(wrenches), attachable)
 
 
 def attached(wrenches: Sequence[Any], channel: int) -> Any:
     """The compiled wrench of these effects, in this order; `channel` is the first of theirs."""
-    with _MAKING:
-        return _attached(tuple(wrenches), channel)
+    return _attached(tuple(wrenches), channel)
 
 
 @cache
