@@ -41,8 +41,13 @@ class Judged(NamedTuple):
     rivals: tuple[Rival, ...] = ()
 
 
-def judge_beside_file(workspace: SearchWorkspace, current: Fit) -> Judged:
-    """With what holds in the place of each special effect beside all of a file that is off."""
+def judge_beside_file(
+    workspace: SearchWorkspace, current: Fit, gone: frozenset[str] = frozenset()
+) -> Judged:
+    """With what holds in the place of each special effect beside all of a file that is off.
+
+    `gone`: effects that had to go already, and do not come back: so this ends.
+    """
     if not is_off(current.hypothesis):
         return Judged(current)
     _, own = _fit_beside(workspace, current.hypothesis)
@@ -53,11 +58,13 @@ def judge_beside_file(workspace: SearchWorkspace, current: Fit) -> Judged:
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         limit = uncertain_file.find_limit(workspace, term)
         for other in _list_alternatives(workspace, current, term, rest):
+            if other.name in gone:
+                continue
             fitted, misfit = _fit_beside(workspace, other.start)
             worse = misfit + other.limit - own - limit
             if fitted is not None and worse < 0.0:
-                start = workspace.fit(fitted.hypothesis)
-                return judge_beside_file(workspace, prune(workspace, start))
+                better = prune(workspace, workspace.fit(fitted.hypothesis))
+                return judge_beside_file(workspace, better, gone | {term.id})
             if other.name not in named:
                 rivals.append(Rival(other.name, term.id, worse, fitted))
     return Judged(current, tuple(rivals))
