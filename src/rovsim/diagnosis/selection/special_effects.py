@@ -3,7 +3,7 @@
 Beside what was selected of a file alone, numbers that were left as they are fix the factor that all
 forces and inertia share, and a rarer effect may make up for that: a payload a metre above a vehicle
 for thrusters 11 % stronger, couplings of the added mass for a payload. To first order that is not
-seen, for such a factor is too large a step.
+seen, for such a factor is too large a step: it promised a loss of 3754 where none was.
 """
 
 from typing import Iterator, NamedTuple
@@ -21,8 +21,7 @@ from rovsim.diagnosis.selection.whole_file_fit import fit_whole_file, measure_mi
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
-# Times its limit: to first order a term may seem to take far more than it does once all of the file
-# is fitted (137 for 1 of a limit of 60, 401 for less than 0 of one of 31).
+# Times its limit, to first order: another effect that leaves more in its place is not fitted.
 WORTH_FITTING = 30.0
 
 
@@ -57,7 +56,7 @@ def judge_beside_file(
     named = {term.id for term in current.hypothesis.terms}
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         limit = uncertain_file.find_limit(workspace, term)
-        for other in _list_alternatives(workspace, current, term, rest):
+        for other in _list_alternatives(workspace, term, rest):
             if other.name in gone:
                 continue
             fitted, misfit = _fit_beside(workspace, other.start)
@@ -71,7 +70,7 @@ def judge_beside_file(
 
 
 def _list_alternatives(
-    workspace: SearchWorkspace, current: Fit, term: Term, rest: Removed
+    workspace: SearchWorkspace, term: Term, rest: Removed
 ) -> Iterator[Alternative]:
     """The file alone, or another special effect, where these should explain nearly as much.
 
@@ -79,9 +78,8 @@ def _list_alternatives(
     """
     if term.id in STATED:
         return
+    yield Alternative(ThrusterGain.id, rest.hypothesis, 0.0)
     hopeless = WORTH_FITTING * uncertain_file.find_limit(workspace, term)
-    if uncertain_file.measure_loss(workspace, current, term) < hopeless:
-        yield Alternative(ThrusterGain.id, rest.hypothesis, 0.0)
     for p in find_swaps(workspace, term, rest, workspace.settings.trials):
         if p.term.id in STATED or rest.ss_increase - p.net_decrease > hopeless:
             continue
