@@ -47,13 +47,13 @@ def judge_beside_file(
 
     `gone`: effects that had to go already, and do not come back: so this ends.
     """
-    if not is_off(current.hypothesis):
+    named = {term.id for term in current.hypothesis.terms}
+    if not is_off(current.hypothesis) or named <= {*STATED}:
         return Judged(current)
     _, own = _fit_beside(workspace, current.hypothesis)
     if np.isinf(own):
         return Judged(current)
     rests, rivals = workspace.remove_each(current), []
-    named = {term.id for term in current.hypothesis.terms}
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         limit = uncertain_file.find_limit(workspace, term)
         for other in _list_alternatives(workspace, term, rest):
