@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Mapping, Sequence, TypeVar
+from typing import Any, Iterator, Mapping, Sequence, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -88,12 +88,12 @@ class LawSearch:
         return None if fitted is None else self._score_law(form, fitted)
 
     def fit_each(
-        self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit
+        self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit, score: float = -np.inf
     ) -> dict[Key, FittedLaw]:
-        """Laws beside what is there, the likeliest first; none that surely falls far behind."""
+        """Laws beside what is there, likeliest first; none far behind the others, or a score."""
         fitted: dict[Key, FittedLaw] = {}
         for key, (form, h) in laws.items():
-            best = max((one.score for one in fitted.values()), default=-np.inf)
+            best = max((score, *(one.score for one in fitted.values())))
             judged = self.fit_unless_worse(form, h, current, best)
             fitted |= {key: judged} if judged else {}
         return dict(sorted(fitted.items(), key=lambda one: -one[1].score))
@@ -159,9 +159,9 @@ class LawSearch:
             terms, fit, score = (*terms, more), best.fit, best.score
         return best
 
-    def fit_memory_laws(self, start: Hypothesis) -> list[FittedLaw]:
+    def fit_memory_laws(self, start: Hypothesis) -> Iterator[FittedLaw | None]:
         """Of each form with a memory the likeliest, if it is worth anything."""
-        runs, worthy = self.workspace.bank.runs, []
+        runs = self.workspace.bank.runs
         axes = np.logical_and.reduce([run.axes for run in runs])
         moving = [AXES[i] for i in np.flatnonzero(axes)]
         means = list_means(runs, start.base.vehicle)
@@ -171,10 +171,20 @@ class LawSearch:
             if not bare.is_finite:
                 continue
             laws = [(form, bare.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
-            best = next(iter(self.fit_each(dict(enumerate(laws)), bare).values()))
-            if self.is_worth(best, bare, self.workspace.score(bare)):
-                worthy.append(best)
-        return worthy
+            yield self._find_likeliest(dict(enumerate(laws)), bare)
+
+    def _find_likeliest(
+        self, laws: Mapping[Key, tuple[Form, Hypothesis]], beside: Fit
+    ) -> FittedLaw | None:
+        """The likeliest of laws to which nothing is added, if it is worth anything.
+
+        None either where all stay far behind what was selected: such a law takes its place never.
+        """
+        selected = self.workspace.score(self.selection.best)
+        best, *others = self.fit_each(laws, beside, selected).values() or (None,)
+        if best is None or not self.is_worth(best, beside, self.workspace.score(beside)):
+            return None
+        return best.beats(others)
 
     def keep_close(self, grown: Sequence[FittedLaw]) -> list[FittedLaw]:
         """Laws that may be the likeliest once they are finished."""
@@ -187,13 +197,13 @@ class LawSearch:
         action = find_action(grown.form, grown.fit, bank.runs)
         return is_half(action.axis, grown.fit, bank, HALF_LAW_MARGIN)
 
-    def fit_thrust_laws(self, start: Hypothesis, grown: FittedLaw | None) -> list[FittedLaw]:
+    def fit_thrust_laws(self, start: Hypothesis, grown: FittedLaw | None) -> FittedLaw | None:
         """The likeliest law of the thrust, where it may come near to what products explain."""
         fit = self.selection.fit(start)
         runs, score = self.workspace.bank.runs, self.workspace.score(fit)
         terms = list_thrust_terms(runs, fit.hypothesis.model)
         if not terms or not fit.is_finite:
-            return []
+            return None
         columns = project_terms(self.workspace, fit, terms, middle_of(runs), push_thrust)
         explained = find_alone(columns.products) - self.penalty
         least = max(self.chance, 0.0 if grown is None else NEAR * (grown.score - score))
@@ -202,10 +212,7 @@ class LawSearch:
             int(k): (WithThrust(columns.terms[k]), begin(columns, int(k), fit.hypothesis))
             for k in order if explained[k] > least
         }  # fmt: skip
-        best, *others = self.fit_each(laws, fit).values() or (None,)
-        if best is None or not self.is_worth(best, fit, score):
-            return []
-        return [best.beats(others)]
+        return self._find_likeliest(laws, fit)
 
     def finish(self, grown: FittedLaw) -> FittedLaw:
         """Without effects of the catalogue that the law has made idle, and terms it can spare."""
@@ -263,9 +270,9 @@ def search_laws(selection: SearchResult) -> FittedLaw | None:
     if fit.hypothesis.terms:
         starts.append(replace(fit.hypothesis, terms=()))
     each = [(start, search.select_terms(start)) for start in starts]
-    grown = [one for _, one in each if one is not None]
-    grown += [one for start, own in each for one in search.fit_thrust_laws(start, own)]
-    grown += [one for start in starts for one in search.fit_memory_laws(start)]
+    laws = [own for _, own in each] + [search.fit_thrust_laws(*one) for one in each]
+    laws += [law for start in starts for law in search.fit_memory_laws(start)]
+    grown = [law for law in laws if law is not None]
     if all(search.is_surely_half(one) for one in search.keep_close(grown)):
         return None  # which effects it can spare need not be known
     finished = sorted((search.finish(one) for one in grown), key=lambda one: -one.score)

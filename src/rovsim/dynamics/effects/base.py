@@ -22,7 +22,7 @@ method. Effects are immutable and add: a model is a list of them.
 from abc import ABC, abstractmethod
 from collections import namedtuple
 from copy import copy
-from typing import Any, ClassVar, Literal, Mapping, Protocol
+from typing import Any, ClassVar, Literal, Mapping, Protocol, Self
 
 import numpy as np
 from numpy import ndarray as Array
@@ -140,6 +140,12 @@ class Effect(ABC):
     def on(cls, vehicle: Actuated) -> "type[Effect]":
         """The same effect with the parameters and starts that it has on a vehicle."""
         return cls
+
+    @classmethod
+    def adapted(cls, **own: Any) -> type[Self]:
+        """The same effect with its own parameters or starts, as `on` returns it."""
+        known = {"__doc__": cls.__doc__, "__module__": cls.__module__}
+        return type(cls.__name__, (cls,), known | own)
 
     @classmethod
     def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:

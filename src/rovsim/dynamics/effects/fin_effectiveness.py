@@ -54,6 +54,4 @@ class FinEffectiveness(Coefficients):
 @cache
 def _of(names: tuple[str, ...]) -> type[FinEffectiveness]:
     """With a parameter for each of these surfaces."""
-    parameters = (*(_gain(name) for name in names), _gain("all"))
-    own = {"parameters": parameters, "__doc__": FinEffectiveness.__doc__, "__module__": __name__}
-    return type(FinEffectiveness.__name__, (FinEffectiveness,), own)
+    return FinEffectiveness.adapted(parameters=(*(_gain(name) for name in names), _gain("all")))

@@ -87,6 +87,4 @@ class Payload(Coefficients):
 def _on_a_vehicle_of(mass: float) -> type[Payload]:
     """With starts that suit a vehicle of so many kg: as on a BlueROV2 Heavy, but for its size."""
     size = mass / HEAVY
-    starts = _places(START * size, REACH * size ** (1.0 / 3.0))
-    own = {"starts": starts, "__doc__": Payload.__doc__, "__module__": __name__}
-    return type(Payload.__name__, (Payload,), own)
+    return Payload.adapted(starts=_places(START * size, REACH * size ** (1.0 / 3.0)))

@@ -65,9 +65,4 @@ def _among(count: int) -> type[ThrusterOrder]:
     """All pairs of so many thrusters."""
     pairs = combinations(range(1, count + 1), 2)
     starts = tuple({"first": float(i), "second": float(j)} for i, j in pairs)
-    own = {
-        "starts": starts or ThrusterOrder.starts,
-        "__doc__": ThrusterOrder.__doc__,
-        "__module__": __name__,
-    }
-    return type(ThrusterOrder.__name__, (ThrusterOrder,), own)
+    return ThrusterOrder.adapted(starts=starts or ThrusterOrder.starts)
