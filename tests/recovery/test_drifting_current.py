@@ -95,6 +95,21 @@ def settled_noise(base, runs):
     return bank.redesign(base, noise), noise
 
 
+def test_what_wanders_leaves_the_disturbance_its_own(tmp_path):
+    rate, little = 0.004, {"force": 0.05, "moment": 0.005}
+    hidden = (hide("current_drift", rate=rate),)
+    known = {"duration": 60.0, "turbulence": little}
+    calm = settled_noise(*observed(tmp_path / "calm", **known))[1]
+    base, runs = observed(tmp_path / "wandering", effects=hidden, **known)
+    bank, noise = settled_noise(base, runs)
+    for _ in range(4):
+        noise = bank.fit_noise(bank.innovations(base), noise, thorough=True).noise
+        bank = bank.redesign(base, noise)
+    assert abs(noise.drift.rate / rate - 1.0) < 0.2
+    # what wanders faster than the walk's terms is the disturbance's, too
+    assert (noise.disturbance_std[:2] > 0.8 * calm.disturbance_std[:2]).all()
+
+
 def wander(bank, base, noise, rate):
     """Where a search for a current begins, under a current that wanders."""
     listed = [

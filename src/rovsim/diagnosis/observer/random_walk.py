@@ -21,6 +21,7 @@ MAX_FREQUENCY_HZ = 0.5  # what is faster is too little to be told from the distu
 LEAD_SECONDS = 60.0  # for which it has wandered when a recording begins: a flight made ready
 MIN_POWER_SHARE = 1e-9  # of the largest: directions that show nothing
 MIN_RATE, MAX_RATE, RATES_TRIED = 1e-5, 10.0, 80  # rates, from none that shows to larger than any
+DRAW = 0  # seed
 LOG_RATE_STEP = 0.05  # for the second derivative
 
 
@@ -41,6 +42,12 @@ class _Principal(NamedTuple):
     directions: Array
     power: Array
     mix: Array
+
+    def spread(self, std: Array, chance: Array) -> Array:
+        """Terms (c,) of that std (k,) where the walk shows, of normal numbers (c,)."""
+        axes = self.mix / np.sqrt(self.power)
+        # by the symmetric root: unlike eigenvectors it hardly changes with a rounding
+        return np.asarray(axes @ (std * (axes.T @ chance)))
 
 
 def list_terms(run: ObservedRun) -> Array:
@@ -99,7 +106,10 @@ class RandomWalk:
     def take_out(
         self, e: Sequence[Array], z: Sequence[Array], rate: float, run_filters: Sequence[RunFilters]
     ) -> tuple[list[Array], list[Array]]:
-        """Innovations (6, n) of each run less the likeliest walk, and that walk (n, d).
+        """Innovations (6, n) of each run less a likely walk, and the likeliest walk (n, d).
+
+        What is taken out is drawn from all that the data allow: the likeliest walk takes the slow
+        part of the disturbance, too, which then would seem less than it is, and the walk more.
 
         Args:
             e: the innovations.
@@ -107,13 +117,15 @@ class RandomWalk:
             rate: of the walk.
             run_filters: the filters that made them white.
         """
-        rests, walks = [], []
+        rests, walks, random = [], [], np.random.default_rng(DRAW)
         every = zip(self._decompose(run_filters), z, e, self.columns, self.runs, strict=True)
         for own, white, one, columns, run in every:
-            x = own.mix @ (own.directions @ white.ravel() / (own.power + rate**-2.0))
-            rests.append(one - np.tensordot(x, columns, axes=1))
+            sure = own.power + rate**-2.0
+            best = own.mix @ (own.directions @ white.ravel() / sure)
+            drawn = best + own.spread(sure**-0.5, random.normal(size=len(best)))
+            rests.append(one - np.tensordot(drawn, columns, axes=1))
             terms = list_terms(run)
-            walks.append(terms.T @ x.reshape(len(terms), -1))
+            walks.append(terms.T @ best.reshape(len(terms), -1))
         return rests, walks
 
 
