@@ -50,7 +50,7 @@ def fit_noise(
         e: innovations of each run.
         runs: the runs.
         made_by: the filters that each was made by.
-        motions: how errors of the six axes go on.
+        error_dynamics: how errors of the six axes go on.
         start: where to begin.
         with_bias: whether to look for slow errors of the readings; if not, they stay.
         draws: how often each run is there, with innovations that might all be its own.
