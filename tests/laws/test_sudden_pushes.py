@@ -1,4 +1,4 @@
-"""A single push is told from noise, but where nobody knows whether a thruster turned."""
+"""Pushes that come at once are told from noise, but where nobody knows what thrusters did."""
 
 from types import SimpleNamespace
 
@@ -6,7 +6,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from rovsim.diagnosis.checks.residual import AxisResidual
-from rovsim.diagnosis.checks.sudden_pushes import find_kicks
+from rovsim.diagnosis.checks.sudden_pushes import find_kicks, find_sudden
 from rovsim.diagnosis.observer.axis_kernels import POSE
 from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
@@ -21,12 +21,18 @@ def residual_with(size, undecided, noise=1.0):
     push[KICK : KICK + 4] = size
     shown = lfilter(*f.response, push)
     white = noise * np.random.default_rng(3).normal(size=COUNT) + shown
+    return residual_of(white, f, undecided, np.zeros(COUNT, bool))
+
+
+def residual_of(white, f, undecided, unlogged):
+    """Innovations of an axis, as its filter left them."""
     time = PERIOD * np.arange(COUNT)
     run = SimpleNamespace(
         period=PERIOD, time=time, edges=time, settled=np.ones(COUNT, bool),
         motion=SimpleNamespace(run=SimpleNamespace(id="a"), measured=None),
     )  # fmt: skip
-    return AxisResidual("surge", (white,), np.empty((0, COUNT)), (run,), (f,), 0.02, (undecided,))
+    nothing = np.empty((0, COUNT))
+    return AxisResidual("surge", (white,), nothing, (run,), (f,), 0.02, (undecided,), (unlogged,))
 
 
 def test_a_push_is_found_at_its_time():
@@ -53,3 +59,16 @@ def test_a_push_while_a_thruster_was_at_the_edge_of_its_deadband_is_none():
     assert list(find_kicks(residual_with(0.25, undecided)))
     undecided[KICK - 4 : KICK + 8] = True
     assert not [one for one in find_kicks(residual_with(0.25, undecided)) if "0.2 s" in one.what]
+
+
+def test_many_pushes_are_none_where_the_log_lost_what_thrusters_did():
+    white = np.random.default_rng(3).normal(size=COUNT)
+    pushed = np.zeros(COUNT, bool)
+    for k in range(10, COUNT, 100):
+        pushed[4 * (k // 4) : 4 * (k // 4) + 4] = True
+    f = design_filter(POSE, PERIOD, AxisErrorDynamics(1.0), NOISE)
+    white, known = white + 4.0 * pushed, np.zeros(COUNT, bool)
+    (found,) = find_sudden(residual_of(white, f, known, known))
+    assert "sudden pushes" in found.what
+    assert not list(find_sudden(residual_of(white, f, known, pushed)))
+    assert not list(find_sudden(residual_of(white, f, known, ~known)))

@@ -50,7 +50,7 @@ class AxisResidual:
 
     `fitted` (k, n), over all runs, are their derivatives to what was fitted, whose directions are
     not judged again; `disturbance_std` in m/s2 or rad/s2; `undecided` (n_run,): where nobody knows
-    whether a thruster turned.
+    whether a thruster turned; `unlogged` (n_run,): where thrusters follow a command that was lost.
     """
 
     axis: str
@@ -60,6 +60,7 @@ class AxisResidual:
     filters: tuple[AxisFilter, ...]
     disturbance_std: float
     undecided: tuple[Array, ...]
+    unlogged: tuple[Array, ...]
 
     @property
     def of_channels(self) -> bool:
@@ -112,7 +113,9 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     run_filters = bank.design_filters(fit.noise)
     model = fit.hypothesis.model
     unknown = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
-    off = [find_jumps(run, model, lost) for run, lost in zip(bank.runs, unknown, strict=True)]
+    pairs = list(zip(bank.runs, unknown, strict=True))
+    off = [find_jumps(run, model, lost) for run, lost in pairs]
+    unlogged = tuple(_mark_unlogged(run, lost)[run.settled] for run, lost in pairs)
     undecided = tuple(mark_undecided(fit.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
@@ -122,13 +125,22 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
         each = zip(white, filters, bank.runs, unknown, off, strict=True)
         cleared = tuple(_clear(own[i], f, run, lost, by[:, i]) for own, f, run, lost, by in each)
         std = float(fit.noise.disturbance_std[i])
-        residuals.append(AxisResidual(axis, cleared, J[:, i], bank.runs, filters, std, undecided))
+        of_axis = (axis, cleared, J[:, i], bank.runs, filters, std, undecided, unlogged)
+        residuals.append(AxisResidual(*of_axis))
     return residuals
 
 
 def _split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
     counts = np.cumsum([int(run.settled.sum()) for run in runs])[:-1]
     return np.split(white, counts, axis=-1)
+
+
+def _mark_unlogged(run: ObservedRun, lost: Array) -> Array:
+    """Readings (n,) from where lines (g, 2) were lost until thrusters have followed."""
+    found = np.zeros(len(run.time), bool)
+    for begin, end in lost:
+        found |= run.overlapping(begin, end + SPIN)
+    return found
 
 
 def _clear(w: Array, f: AxisFilter, run: ObservedRun, lost: Array, off: Array) -> Array:

@@ -23,9 +23,13 @@ MOMENT = 4.0  # standard deviations of the disturbance
 
 
 def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
-    """Innovations with a heavier tail than any Gaussian disturbance."""
+    """Innovations with a heavier tail than any Gaussian disturbance, where commands were known."""
     few = max(1, round(SUDDEN / residual.runs[0].period))
-    sums = np.concatenate([_add_neighbours(w, few) for w in residual.white])
+    every = zip(residual.white, residual.unlogged, strict=True)
+    known = [_add_neighbours(w, few)[_add_neighbours(lost, few) == 0] for w, lost in every]
+    sums = np.concatenate(known)
+    if not len(sums):
+        return
     # the median is not moved by what is looked for
     usual = STD_PER_MAD * float(np.median(np.abs(sums)))
     count = int(np.sum(np.abs(sums) > RARE * usual))
