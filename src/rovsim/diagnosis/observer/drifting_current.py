@@ -104,11 +104,10 @@ class MovingWater:
         rate = self.walk.fit_rate(z, run_filters)
         if rate.lr_statistic < MIN_LR_OF_DRIFT:
             return DriftFit(rate, rate.lr_statistic)
-        forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
-        others = [self._walk(pushes).fit_rate(z, run_filters).lr_statistic for pushes in forces]
-        by_place = self._lr_by_place(z, run_filters, _lines(self.runs))
+        others = [force.fit_rate(z, run_filters).lr_statistic for force in self._forces]
+        by_place = self._lr_by_place(z, run_filters, self._by_lines)
         if not self.paths:  # about its own path what wanders is always likelier than a steady flow
-            flow = self._lr_by_place(z, run_filters, _eddies(self.runs))
+            flow = self._lr_by_place(z, run_filters, self._by_eddies)
             if flow - rate.lr_statistic > MIN_LR_MARGIN:
                 return DriftFit(rate, rate.lr_statistic - flow)
         return DriftFit(rate, rate.lr_statistic - max(0.0, by_place, *others))
@@ -116,24 +115,40 @@ class MovingWater:
     def varies_with_place(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> bool:
         """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
         rate = self.walk.fit_rate(z, run_filters)
-        flow = self._lr_by_place(z, run_filters, _eddies(self.runs))
+        flow = self._lr_by_place(z, run_filters, self._by_eddies)
         return rate.lr_statistic - flow < MIN_LR_MARGIN
 
+    @cached_property
+    def _forces(self) -> list[RandomWalk]:
+        """Forces that wander."""
+        forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
+        return [self._walk(pushes) for pushes in forces]
+
+    @cached_property
+    def _by_lines(self) -> list[Array]:
+        return self._show_flow(_lines(self.runs))
+
+    @cached_property
+    def _by_eddies(self) -> list[Array]:
+        return self._show_flow(_eddies(self.runs))
+
+    def _show_flow(self, fields: Sequence[Array]) -> list[Array]:
+        """Innovations (2 k, 6, n) of each run by each part of a steady flow.
+
+        `fields` (k, n) of each run: how each part of it varies along the way.
+        """
+        every = zip(self.runs, self.run_filters, fields, self._pushes, self.bends, strict=True)
+        return [self._show(*one) for one in every]
+
     def _lr_by_place(
-        self, z: Sequence[Array], run_filters: Sequence[RunFilters], fields: Sequence[Array]
+        self, z: Sequence[Array], run_filters: Sequence[RunFilters], shown: Sequence[Array]
     ) -> float:
         """Likelihood-ratio statistic of a current that is steady, of another size at every place.
 
-        A vehicle that moves through it meets a current that wanders. `fields` (k, n) of each run:
-        how each part of it varies along the way.
+        A vehicle that moves through it meets a current that wanders. `shown`: by each part of it.
         """
-        pushes = zip(fields, self._pushes, self.bends, strict=True)
-        every = zip(self.runs, self.run_filters, run_filters, pushes, strict=True)
-        columns = [
-            whiten_run(self._show(run, found, *how), run, found, wanted)
-            for run, found, wanted, how in every
-        ]
-        return fit_common(columns, z).lr_statistic
+        every = zip(shown, self.runs, self.run_filters, run_filters, strict=True)
+        return fit_common([whiten_run(*one) for one in every], z).lr_statistic
 
     def shows_drift(self, run_filters: Sequence[RunFilters]) -> bool:
         """Whether a drift worth looking for would be told from none."""

@@ -28,8 +28,8 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
 from rovsim.dynamics.model import Model
 
-ROUNDS = 8  # at most: what wanders and what pushes for a second are told apart by then
-RATE_TOLERANCE = 0.01  # of a drift: the rounds that are left bring about three times as much
+ROUNDS = 3  # at most: what wanders and what pushes for a second are told apart by then
+RATE_TOLERANCE = 0.05  # of a drift, which its standard deviation exceeds
 
 
 @dataclass(frozen=True, eq=False)
