@@ -13,6 +13,7 @@ from rovsim.diagnosis.checks.unknown_thrust import (
     find_jumps,
     find_lost_commands,
     mark_undecided,
+    mark_unlogged,
 )
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.kalman import AxisFilter
@@ -115,7 +116,7 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     unknown = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
     pairs = list(zip(bank.runs, unknown, strict=True))
     off = [find_jumps(run, model, lost) for run, lost in pairs]
-    unlogged = tuple(_mark_unlogged(run, lost)[run.settled] for run, lost in pairs)
+    unlogged = tuple(mark_unlogged(run, lost)[run.settled] for run, lost in pairs)
     undecided = tuple(mark_undecided(fit.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
@@ -125,22 +126,15 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
         each = zip(white, filters, bank.runs, unknown, off, strict=True)
         cleared = tuple(_clear(own[i], f, run, lost, by[:, i]) for own, f, run, lost, by in each)
         std = float(fit.noise.disturbance_std[i])
-        of_axis = (axis, cleared, J[:, i], bank.runs, filters, std, undecided, unlogged)
-        residuals.append(AxisResidual(*of_axis))
+        residuals.append(
+            AxisResidual(axis, cleared, J[:, i], bank.runs, filters, std, undecided, unlogged)
+        )
     return residuals
 
 
 def _split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
     counts = np.cumsum([int(run.settled.sum()) for run in runs])[:-1]
     return np.split(white, counts, axis=-1)
-
-
-def _mark_unlogged(run: ObservedRun, lost: Array) -> Array:
-    """Readings (n,) from where lines (g, 2) were lost until thrusters have followed."""
-    found = np.zeros(len(run.time), bool)
-    for begin, end in lost:
-        found |= run.overlapping(begin, end + SPIN)
-    return found
 
 
 def _clear(w: Array, f: AxisFilter, run: ObservedRun, lost: Array, off: Array) -> Array:

@@ -51,10 +51,20 @@ def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
     A command is rounded before it is logged, so that near the edge of a deadband the log does not
     say on which side it was.
     """
+    times = [find_different(run, *models) for models in _list_either_side(h)]
+    return _mark(run, np.vstack([np.empty((0, 2)), *times]))
+
+
+def mark_unlogged(run: ObservedRun, lost: Array) -> Array:
+    """Innovations (n,) of readings from where lines (g, 2) were lost until thrusters followed."""
+    return _mark(run, lost + np.array([0.0, SPIN]))
+
+
+def _mark(run: ObservedRun, times: Array) -> Array:
+    """Innovations (n,) that overlap any of these times (g, 2)."""
     found = np.zeros(len(run.time), bool)
-    for narrow, wide in _list_either_side(h):
-        for begin, end in find_different(run, narrow, wide):
-            found |= run.overlapping(begin, end)
+    for begin, end in times:
+        found |= run.overlapping(begin, end)
     return found
 
 

@@ -178,7 +178,7 @@ class LawSearch:
     ) -> FittedLaw | None:
         """The likeliest of laws to which nothing is added, if it is worth anything.
 
-        None either where all stay far behind what was selected: such a law takes its place never.
+        None either where all stay far behind what was selected: such a law never takes its place.
         """
         selected = self.workspace.score(self.selection.best)
         best, *others = self.fit_each(laws, beside, selected).values() or (None,)
@@ -197,7 +197,7 @@ class LawSearch:
         action = find_action(grown.form, grown.fit, bank.runs)
         return is_half(action.axis, grown.fit, bank, HALF_LAW_MARGIN)
 
-    def fit_thrust_laws(self, start: Hypothesis, grown: FittedLaw | None) -> FittedLaw | None:
+    def fit_thrust_law(self, start: Hypothesis, grown: FittedLaw | None) -> FittedLaw | None:
         """The likeliest law of the thrust, where it may come near to what products explain."""
         fit = self.selection.fit(start)
         runs, score = self.workspace.bank.runs, self.workspace.score(fit)
@@ -270,7 +270,7 @@ def search_laws(selection: SearchResult) -> FittedLaw | None:
     if fit.hypothesis.terms:
         starts.append(replace(fit.hypothesis, terms=()))
     each = [(start, search.select_terms(start)) for start in starts]
-    laws = [own for _, own in each] + [search.fit_thrust_laws(*one) for one in each]
+    laws = [own for _, own in each] + [search.fit_thrust_law(*one) for one in each]
     laws += [law for start in starts for law in search.fit_memory_laws(start)]
     grown = [law for law in laws if law is not None]
     if all(search.is_surely_half(one) for one in search.keep_close(grown)):
